@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/digitiser/digitiser.hpp"
+
+namespace kolsky {
+
+/// What is asked of a digitiser when it is opened.
+struct DigitiserOptions {
+  std::vector<std::string> channels;      ///< the digitiser's channels to read, in the bench's gauge order;
+                                          ///< empty: the first `channel_count` voltage channels
+  std::size_t channel_count = 0;
+  double sampling_frequency_Hz = 0.0;     ///< set where the device can, read back, refused where it differs
+  std::size_t block_samples = 1024;
+  std::string device;                     ///< IIO device name; empty: the first with enough input channels
+  double replay_speed = 0.0;              ///< factor on the real rate; 0: as fast as possible
+};
+
+/// Opens `replay:CAPTURE-or-folder` or any libiio URI (`ip:host:port`, `usb:...`, `local:`).
+/// @throws InputError with the URI as its place
+[[nodiscard]] std::unique_ptr<Digitiser> open_digitiser(const std::string& uri,
+                                                        const DigitiserOptions& options);
+
+}  // namespace kolsky

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "processing/base/material.hpp"
+
+namespace kolsky {
+
+/// @throws InputError: file, key and mend
+[[nodiscard]] Material read_material(const std::filesystem::path& path);
+[[nodiscard]] Material parse_material(const std::string& text, const std::string& name);
+
+/// TOML with 17 digits, so that reading it again gives the same bits.
+[[nodiscard]] std::string format_material(const Material& material);
+
+}  // namespace kolsky

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kolsky {
+
+/// Where things are in a store.
+struct StoreLayout {
+  std::filesystem::path root;
+  [[nodiscard]] std::filesystem::path journals() const { return root / "journal"; }
+  [[nodiscard]] std::filesystem::path shots() const { return root / "shots"; }
+  [[nodiscard]] std::filesystem::path catalogue() const { return root / "catalogue.sqlite"; }
+  [[nodiscard]] std::filesystem::path capture_of(const std::string& shot_id) const {
+    return shots() / (shot_id + ".h5");
+  }
+  /// Makes the folders. @throws InputError
+  void create() const;
+};
+
+/// What `verify_store` and `recover_store` found, for people and for --json.
+struct StoreReport {
+  struct Problem {
+    std::string file;
+    std::string text;
+  };
+  std::size_t journals = 0;
+  std::size_t journaled_shots = 0;
+  std::size_t captures = 0;
+  std::uint64_t bytes_ignored = 0;     ///< torn ends of journals: harmless, counted
+  std::vector<std::string> recovered;  ///< ids whose capture was written from the journal
+  std::vector<Problem> problems;
+};
+
+/// Checks every journal record and every capture against its checksums, and that every journaled shot has a
+/// capture with the same codes. Changes nothing.
+[[nodiscard]] StoreReport verify_store(const StoreLayout& store);
+
+/// Writes the capture of every whole journaled shot that has none, and removes temporary files a crash
+/// left.
+[[nodiscard]] StoreReport recover_store(const StoreLayout& store);
+
+}  // namespace kolsky

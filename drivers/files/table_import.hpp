@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "processing/base/shot.hpp"
+
+namespace kolsky {
+
+/// What `kolsky import csv` takes.
+struct TableImport {
+  std::vector<std::filesystem::path> tables;  ///< one with all gauges, or one per gauge
+  std::filesystem::path bench;
+  std::map<std::string, std::string> meta;
+};
+
+/// Reads tables into a shot: `time_s,<gauge>,...` and what PicoScope, Tektronix and other scopes write
+/// (preambles, unit rows, ; or tab between columns, decimal commas, columns of header fields beside the
+/// data, waveforms with t0 and dt in their first rows). The time column gives the rate.
+/// Values are kept as 32-bit codes with a power of two as scale, so that rounding stays below 5e-10 of the
+/// full scale; where the column is in other units (mV, microstrain) its header says so and it is converted.
+/// @throws InputError: file, line and column, mend. The rate 1 % off the bench's and a step 5 % off are
+///   refused.
+[[nodiscard]] Shot import_tables(const TableImport& request);
+
+}  // namespace kolsky

@@ -1,0 +1,38 @@
+#include "processing/base/bench.hpp"
+
+#include <numbers>
+
+namespace kolsky {
+
+namespace {
+
+double circle_area_m2(double diameter_m) {
+  return std::numbers::pi * diameter_m * diameter_m / 4.0;
+}
+
+}  // namespace
+
+double Bar::area_m2() const {
+  return circle_area_m2(diameter_m);
+}
+
+double Bar::dispersion_radius_m() const {
+  if (section == Section::square && side_m) {
+    return *side_m / (2.0 * std::numbers::sqrt3);
+  }
+  return diameter_m / 2.0;
+}
+
+double Specimen::area_m2() const {
+  return circle_area_m2(diameter_m);
+}
+
+const Bar& Bench::bar_of(const Gauge& gauge) const {
+  return gauge.bar == "output" && output ? *output : input;
+}
+
+double Bench::distance_to_specimen_m(const Gauge& gauge) const {
+  return gauge.bar == "output" ? gauge.position_m.value : input.length_m - gauge.position_m;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "processing/base/measured.hpp"
+
+namespace kolsky {
+
+/// A three-element solid, J = 1/E1 + 1/(E2 + i w eta2): a spring in series with a spring and a dashpot in
+/// parallel (paper, eq. A3).
+struct Material {
+  Measured density_kg_m3;
+  Measured poisson_ratio;
+  Measured E1_Pa;
+  Measured E2_Pa;
+  Measured eta2_Pa_s;
+  std::string source;  ///< where the numbers come from, for people
+};
+
+/// PMMA of the paper's Table 4, row 1.
+[[nodiscard]] Material paper_pmma();
+
+/// Ranges, as for a bench. @throws InputError whose place is the key, as "E1_Pa"
+void check(const Material& material);
+
+}  // namespace kolsky
