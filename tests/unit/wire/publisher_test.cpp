@@ -368,7 +368,7 @@ TEST(Publisher, PreviewMayDropAndResultsDoNotCare) {
   until_connected(publisher, results);
   Subscriber preview = listen(publisher.preview_endpoint(), {"preview"}, 1);
   v1::Preview big;
-  big.add_channels()->set_gauge(std::string(1 << 20, 'x'));
+  big.add_channels()->mutable_minimum()->set_data(std::string(1 << 20, 'x'));
   const auto until = Clock::now() + kPatience;
   while (std::holds_alternative<Silence>(preview.next(10ms)) && Clock::now() < until) {
     publisher.publish_preview(big);
