@@ -250,8 +250,9 @@ class Pass {
                                : std::min(t_.band.from_noise(pulse, input_noise_), t_.highest_Hz);
     t_.transform.forward(t_.input_strain, t_.rest);
     t_.transform.forward(t_.output_strain, t_.output_spectrum);
-    for (auto* spectrum : {&t_.incident, &t_.rest, &t_.output_spectrum}) {
-      t_.band.apply(reduction_.band_limit_Hz, *spectrum);
+    for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
+      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
+      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
     }
     complete_incident();
     for (std::size_t k = 0; k < t_.rest.size(); ++k) {
@@ -262,6 +263,7 @@ class Pass {
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there.
   void complete_incident() {
+    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
     t_.kernels.push_from_incident(t_.incident);
     t_.transform.inverse(t_.incident, t_.history);
     const double known =
@@ -271,6 +273,7 @@ class Pass {
     std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
     t_.transform.forward(t_.history, t_.incident);
     t_.kernels.incident_from_push(t_.incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
   }
 
   /// How much of the push is left at the end of what is known of it, averaged over a few samples so
@@ -290,9 +293,9 @@ class Pass {
     t_.kernels.right_going_front(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
     const double travel = front_time_s(t_.input, in_.gauge_to_specimen_m) * rate_Hz_;
-    const auto begin = static_cast<std::size_t>(std::max(0.0, gauge_foot_ + travel * 0.5));
-    const auto end =
-        std::min(t_.history.size(), static_cast<std::size_t>(static_cast<double>(split_) + travel));
+    const double late = travel + static_cast<double>(t_.delay);
+    const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
+    const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
     for (std::size_t n = 0; n < end; ++n) {
       t_.history[n] *= sense_;
     }
