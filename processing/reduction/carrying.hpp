@@ -65,6 +65,7 @@ class CarryingKernels {
   void right_going_back(const Inputs& in, std::vector<Complex>& out) const;
 
  private:
+  std::vector<Complex> to_impact_;
   std::vector<Complex> from_impact_;
   std::vector<Complex> force_of_incident_;
   std::vector<Complex> force_of_rest_;

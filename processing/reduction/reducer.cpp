@@ -103,7 +103,7 @@ struct Tables {
   DampedTransform transform;
   BandLimit band;
   CarryingKernels kernels;
-  std::vector<double> input_strain, output_strain, incident_strain, history;
+  std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
   Tables(TableKey k, const Shot& shot, const Material& m, const Station& in, const Station& out)
@@ -118,6 +118,7 @@ struct Tables {
         output_strain(shot.samples()),
         incident_strain(shot.samples()),
         history(shot.samples() + delay),
+        scratch(shot.samples() + delay),
         incident(transform.bins()),
         rest(transform.bins()),
         output_spectrum(transform.bins()),
@@ -203,22 +204,22 @@ class Pass {
     const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
     const double round_trip_s = 2.0 * front_time_s(t_.input, in_.gauge_to_specimen_m);
     const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
-    read_station(shot_, in_, 0, t_.input_strain);
+    read_raw_station(shot_, in_, t_.input_strain);
     const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
     if (!rise) {
       return false;
     }
-    sense_ = rise->sense;
-    const auto half = rise->index;
-    double foot = rough_foot(half, reach);
+    double foot = rough_foot(*rise, reach);
     if (options_.arrival_s) {
       foot = *options_.arrival_s * rate_Hz_;
     }
     const auto clearance = kFootClearance_s * rate_Hz_;
     quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
-    // Once more, now that it is known how long the gauges are unstrained.
+    // Only now is it known how long the gauges are unstrained, which the bridges' equations start
+    // from.
     read_station(shot_, in_, quiet_, t_.input_strain);
     read_station(shot_, out_, quiet_, t_.output_strain);
+    sense_ = t_.input_strain[rise->index + 1] < 0.0 ? -1.0 : 1.0;
     input_noise_ = quiet_before(t_.input_strain, quiet_).noise_rms;
     output_noise_ = quiet_before(t_.output_strain, quiet_).noise_rms;
     gauge_foot_ = foot;
@@ -227,12 +228,13 @@ class Pass {
   }
 
   /// Foot at the gauge itself, from the unfiltered record.
-  double rough_foot(std::size_t half, std::size_t reach) {
+  double rough_foot(const Rise& rise, std::size_t reach) {
+    const std::size_t half = rise.index;
     const double baseline = quiet_before(t_.input_strain, std::min<std::size_t>(half, 32)).baseline;
     const std::size_t end = std::min(t_.input_strain.size(), half + reach);
-    auto& shifted = t_.history;
+    auto& shifted = t_.scratch;
     for (std::size_t n = 0; n < end; ++n) {
-      shifted[n] = sense_ * (t_.input_strain[n] - baseline);
+      shifted[n] = rise.sense * (t_.input_strain[n] - baseline);
     }
     const double peak = *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(half),
                                           shifted.begin() + static_cast<std::ptrdiff_t>(end));
@@ -297,9 +299,9 @@ class Pass {
     const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
     const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
     for (std::size_t n = 0; n < end; ++n) {
-      t_.history[n] *= sense_;
+      t_.scratch[n] = sense_ * t_.history[n];
     }
-    const std::span<const double> pulse(t_.history.data(), end);
+    const std::span<const double> pulse(t_.scratch.data(), end);
     const auto peak =
         std::max_element(pulse.begin() + static_cast<std::ptrdiff_t>(begin), pulse.end());
     auto half = static_cast<std::size_t>(peak - pulse.begin());
@@ -346,14 +348,20 @@ class Pass {
   std::vector<double> history(Kernel kernel) {
     (t_.kernels.*kernel)(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
+    return window();
+  }
+
+  /// What t_.history holds, within the window.
+  std::vector<double> window() const {
     const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.delay);
     return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
   }
 
+  /// @pre t_.history still holds the right-going wave at interface A
   void fill_histories() {
+    reduction_.incident = window();
     reduction_.force_front_N = history(&CarryingKernels::force_front);
     reduction_.force_back_N = history(&CarryingKernels::force_back);
-    reduction_.incident = history(&CarryingKernels::right_going_front);
     reduction_.reflected = history(&CarryingKernels::left_going_front);
     reduction_.transmitted = history(&CarryingKernels::right_going_back);
     reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
