@@ -16,7 +16,8 @@ struct Stretches {
   Stretches(const BarWaves& bar, const BarMode& mode, Complex s) {
     const Complex gamma = mode.gamma;
     to_specimen = std::exp(-gamma * bar.gauge_to_specimen_m);
-    round_trip = std::exp(-2.0 * gamma * bar.gauge_to_far_end_m);
+    round_trip =
+        bar.far_end == FarEnd::free ? std::exp(-2.0 * gamma * bar.gauge_to_far_end_m) : 0.0;
     separation = 1.0 / (1.0 - round_trip);
     mean = mode.mean_over_surface;
     velocity = mean * s / gamma;

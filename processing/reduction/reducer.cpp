@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/band_limit.hpp"
@@ -32,6 +33,7 @@ struct BarModel {
               bar.density_kg_m3,
               station.gauge_to_specimen_m,
               station.gauge_to_far_end_m,
+              bar.far_end,
               front_speed_m_per_s,
               {}} {}
 };
@@ -72,7 +74,7 @@ TableKey key_of(const Shot& shot, const Material& m, WaveTheory theory, const St
            b.output->area_m2(), b.output->density_kg_m3,
            b.output->youngs_modulus_Pa.value_or(Measured{}), in.gauge_to_specimen_m,
            in.gauge_to_far_end_m, out.gauge_to_specimen_m, out.gauge_to_far_end_m,
-           b.specimen->length_m}};
+           static_cast<double>(b.output->far_end), b.specimen->length_m}};
 }
 
 /// Seconds a front needs over a distance.
@@ -326,7 +328,7 @@ class Pass {
     const double arrival = reduction_.arrival_s * rate_Hz_;
     first_ = static_cast<std::size_t>(std::ceil(arrival));
     const double first_return_s = 2.0 * std::min(front_time_s(t_.input, bench.input.length_m),
-                                                 front_time_s(t_.output, bench.output->length_m));
+                                                 far_end_time_s(bench.output->length_m));
     const double duration_s = options_.duration_s.value_or(first_return_s);
     const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const double last = std::min(arrival + duration_s * rate_Hz_,
@@ -337,6 +339,13 @@ class Pass {
     }
     count_ = static_cast<std::size_t>(last) - first_;
     return true;
+  }
+
+  /// Seconds a front needs over a stretch of the output bar that ends at its far end, if anything
+  /// comes back from there.
+  double far_end_time_s(double distance_m) const {
+    return t_.output.waves.far_end == FarEnd::free ? front_time_s(t_.output, distance_m)
+                                                   : std::numeric_limits<double>::infinity();
   }
 
   CarryingKernels::Inputs inputs() const { return {t_.incident, t_.rest, t_.output_spectrum}; }
@@ -410,6 +419,9 @@ class Pass {
     q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
     q.output_noise_rms = output_noise_;
     q.push_left_share = push_left_share_;
+    q.returns_from_s = 2.0 * std::min(front_time_s(t_.input, in_.gauge_to_far_end_m),
+                                      far_end_time_s(out_.gauge_to_far_end_m));
+    q.may_shorten = !options_.duration_s;
     q.quiet_samples = quiet_;
     reduction_.quality.reducible = true;
     judge(q, reduction_);
