@@ -36,7 +36,7 @@ std::size_t cell_end(std::string_view line, Separator separator) {
 }
 
 std::optional<double> number_of(std::string_view digits) {
-  if (digits.starts_with('+')) {
+  if (digits.starts_with('+') && !digits.starts_with("+-")) {
     digits.remove_prefix(1);
   }
   double value = 0.0;
