@@ -1,28 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include "processing/trigger/incident_trigger.hpp"
+#include "tests/unit/trigger/counted_allocations.hpp"
 #include "tests/unit/trigger/signals.hpp"
-
-namespace {
-std::atomic<long> allocations{0};  // NOLINT: what the replaced operator counts with
-}
-
-void* operator new(std::size_t size) {
-  allocations.fetch_add(1);
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace kolsky {
 namespace {
@@ -46,7 +28,7 @@ TEST(IncidentTrigger, AllocatesNothingAfterConstruction) {
   options.hold_off_samples = 2000;
   IncidentTrigger trigger(options);
 
-  const long before = allocations.load();
+  const long before = counted_allocations();
   int fired = 0;
   const auto play = [&](const auto& codes) {
     const std::span all(codes);
@@ -59,14 +41,14 @@ TEST(IncidentTrigger, AllocatesNothingAfterConstruction) {
   };
   play(narrow);
   play(wide);
-  EXPECT_EQ(allocations.load(), before);
+  EXPECT_EQ(counted_allocations(), before);
   EXPECT_EQ(fired, 10);
 }
 
 TEST(IncidentTrigger, AllocatesDuringConstruction) {
-  const long before = allocations.load();
+  const long before = counted_allocations();
   const IncidentTrigger trigger{TriggerOptions{}};
-  EXPECT_GT(allocations.load(), before) << "the counter counts nothing";
+  EXPECT_GT(counted_allocations(), before) << "the counter counts nothing";
 }
 
 }  // namespace
