@@ -18,7 +18,7 @@ class IioRig final : public Rig {
 
   std::unique_ptr<Digitiser> open_with_hole() override { return open(1.0); }
 
-  /// Longer than the kernel buffers last (65 ms).
+  /// Longer than the kernel buffers last (131 ms).
   void make_hole() override { std::this_thread::sleep_for(std::chrono::milliseconds(300)); }
   [[nodiscard]] bool announces_holes() const override { return true; }
 

@@ -282,7 +282,7 @@ TEST(IioTraps, KernelBuffersAndChannelsAreSetBeforeTheBufferIsMade) {
   };
   ASSERT_NE(line("OPEN"), lines.end());
   EXPECT_EQ(*line("OPEN"), "OPEN iio:device0 1024 00000003");
-  EXPECT_LT(line("SET iio:device0 BUFFERS_COUNT 64"), line("OPEN"));
+  EXPECT_LT(line("SET iio:device0 BUFFERS_COUNT 128"), line("OPEN"));
 }
 
 TEST(IioTraps, SecondBufferOfADeviceIsRefusedInWords) {
