@@ -19,14 +19,19 @@ void SharedJournal::open() {
 template <typename Append>
 void SharedJournal::append(const Append& write) {
   const std::lock_guard lock(mutex_);
-  if (!journal_) {
-    open();
-  }
-  try {
-    write(*journal_);
-  } catch (...) {
-    journal_.reset();
-    throw;
+  for (int attempt = 0;; ++attempt) {
+    try {
+      if (!journal_) {
+        open();
+      }
+      write(*journal_);
+      return;
+    } catch (...) {
+      journal_.reset();
+      if (attempt == 1) {
+        throw;
+      }
+    }
   }
 }
 
