@@ -78,11 +78,11 @@ TriggerConfig read_trigger(const TomlTable& table) {
       integer_within(table, "post_samples", trigger.post_samples, 16, kLongestWindow);
   trigger.hold_off_samples =
       integer_within(table, "hold_off_samples", trigger.post_samples, 0, kLongestWindow);
-  trigger.learn_samples = integer_within(table, "learn_samples", trigger.learn_samples, 16, 1 << 20);
+  trigger.learn_samples =
+      integer_within(table, "learn_samples", trigger.learn_samples, 16, 1 << 20);
   trigger.minimum_width_s =
       number_within(table, "minimum_width_s", trigger.minimum_width_s, 0.0, 1.0);
-  trigger.maximum_rise_s =
-      number_within(table, "maximum_rise_s", trigger.maximum_rise_s, 0.0, 1.0);
+  trigger.maximum_rise_s = number_within(table, "maximum_rise_s", trigger.maximum_rise_s, 0.0, 1.0);
   return trigger;
 }
 
@@ -153,9 +153,10 @@ std::size_t find_trigger_channel(const DaemonConfig& config, const Bench& bench)
     }
     known += (known.empty() ? "" : ", ") + bench.gauges[i].name;
   }
-  throw InputError(config.file.string() + ": trigger.channel",
-                   fmt::format("{} has no gauge '{}'", config.bench.string(), config.trigger.channel),
-                   "name one of " + known);
+  throw InputError(
+      config.file.string() + ": trigger.channel",
+      fmt::format("{} has no gauge '{}'", config.bench.string(), config.trigger.channel),
+      "name one of " + known);
 }
 
 std::size_t whole_samples(double duration_s, double sample_rate_Hz, std::size_t least) {
@@ -205,10 +206,10 @@ Apparatus read_apparatus(const DaemonConfig& config) {
   const std::size_t asked = config.digitiser.channels.size();
   const std::size_t gauges = apparatus.bench.gauges.size();
   if (asked != 0 && asked != gauges) {
-    throw InputError(config.file.string() + ": digitiser.channels",
-                     fmt::format("names {} channels, {} has {} gauges", asked,
-                                 config.bench.string(), gauges),
-                     "name one channel for each gauge, in the bench's order");
+    throw InputError(
+        config.file.string() + ": digitiser.channels",
+        fmt::format("names {} channels, {} has {} gauges", asked, config.bench.string(), gauges),
+        "name one channel for each gauge, in the bench's order");
   }
   check_gauges(config, apparatus.bench);
   apparatus.trigger_channel = find_trigger_channel(config, apparatus.bench);

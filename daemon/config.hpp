@@ -21,7 +21,8 @@ struct TriggerConfig {
   double hysteresis_share = 0.5;
   std::int64_t pre_samples = 400;
   std::int64_t post_samples = 3600;
-  std::int64_t hold_off_samples = 3600;  ///< default: post_samples, so echoes stay in their own window
+  std::int64_t hold_off_samples =
+      3600;  ///< default: post_samples, so echoes stay in their own window
   std::int64_t learn_samples = 256;
   double minimum_width_s = 8e-6;
   double maximum_rise_s = 64e-6;
@@ -47,8 +48,8 @@ struct EndpointConfig {
   friend bool operator==(const EndpointConfig&, const EndpointConfig&) = default;
 };
 
-/// What KOLSKYD.toml says. Paths are absolute or relative to where the daemon runs; in the file they are
-/// relative to the file.
+/// What KOLSKYD.toml says. Paths are absolute or relative to where the daemon runs; in the file
+/// they are relative to the file.
 struct DaemonConfig {
   std::filesystem::path file;
   std::filesystem::path bench;
@@ -57,8 +58,9 @@ struct DaemonConfig {
   DigitiserConfig digitiser;
   TriggerConfig trigger;
   EndpointConfig endpoints;
-  std::optional<double> ring_s;  ///< how far back the ring reaches; none: what the window needs and more
-  bool auto_arm = false;         ///< arm by itself as soon as the preflight passes
+  std::optional<double>
+      ring_s;             ///< how far back the ring reaches; none: what the window needs and more
+  bool auto_arm = false;  ///< arm by itself as soon as the preflight passes
   std::map<std::string, std::string> meta;  ///< goes with every shot
 };
 
@@ -73,8 +75,9 @@ struct Apparatus {
   std::size_t trigger_channel = 0;  ///< index in bench.gauges
 };
 
-/// Reads the bench and the bar's material, and checks what only both files together can show: the trigger
-/// channel is a gauge, as many digitiser channels as gauges, every gauge converts to strain.
+/// Reads the bench and the bar's material, and checks what only both files together can show: the
+/// trigger channel is a gauge, as many digitiser channels as gauges, every gauge converts to
+/// strain.
 /// @throws InputError
 [[nodiscard]] Apparatus read_apparatus(const DaemonConfig& config);
 
@@ -83,8 +86,8 @@ struct Apparatus {
 
 [[nodiscard]] DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench);
 
-/// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded so that a
-/// fast scope does not take the memory; always several windows and blocks.
+/// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded
+/// so that a fast scope does not take the memory; always several windows and blocks.
 [[nodiscard]] std::size_t ring_samples(const DaemonConfig& config, double sample_rate_Hz,
                                        std::size_t max_block_samples);
 

@@ -118,7 +118,8 @@ void Acquirer::run() {
 void Acquirer::go_real_time() {
   pthread_setname_np(pthread_self(), "kolsky-acquire");
   if (stream_.ends) {
-    return;  // a replay takes what the processor gives; ahead of its own consumers it would only wait
+    return;  // a replay takes what the processor gives; ahead of its own consumers it would only
+             // wait
   }
   sched_param parameters{};
   parameters.sched_priority = kPriority;
@@ -195,9 +196,8 @@ void Acquirer::watch(const Block& block) {
   if (block.mark) {
     take_mark(block, *block.mark);
   }
-  const std::optional<TriggerEvent> event = stream_.format == SampleFormat::int16
-                                                ? feed<std::int16_t>(block)
-                                                : feed<std::int32_t>(block);
+  const std::optional<TriggerEvent> event =
+      stream_.format == SampleFormat::int16 ? feed<std::int16_t>(block) : feed<std::int32_t>(block);
   if (event && armed() && !capture_marked_) {
     trigger_at(*event);
   }
@@ -265,10 +265,11 @@ void Acquirer::settle_long_mark(const Block& block) {
 
 void Acquirer::trigger_at(const TriggerEvent& trigger) {
   triggers_.fetch_add(1, std::memory_order_relaxed);
-  const Window window{.trigger = trigger,
-                      .first_tick = std::max(capture_start_, trigger.tick - watch_.plan.pre_samples),
-                      .end_tick = trigger.tick + watch_.plan.post_samples,
-                      .trigger_monotonic_ns = monotonic_at(trigger.tick)};
+  const Window window{
+      .trigger = trigger,
+      .first_tick = std::max(capture_start_, trigger.tick - watch_.plan.pre_samples),
+      .end_tick = trigger.tick + watch_.plan.post_samples,
+      .trigger_monotonic_ns = monotonic_at(trigger.tick)};
   AcquisitionEvent event;
   event.kind = AcquisitionEvent::Kind::triggered;
   event.tick = trigger.tick;

@@ -11,8 +11,9 @@
 
 namespace kolsky {
 
-/// The journal of one run, for the recorder (shots) and the archivist (what became of them). A failed
-/// write is tried once more, in a new file: what a reader finds behind a torn record is not to be trusted.
+/// The journal of one run, for the recorder (shots) and the archivist (what became of them). A
+/// failed write is tried once more, in a new file: what a reader finds behind a torn record is not
+/// to be trusted.
 class SharedJournal {
  public:
   /// @throws InputError where the store cannot be written
