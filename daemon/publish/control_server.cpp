@@ -270,7 +270,7 @@ bool ControlServer::State::may_change(const v1::ControlRequest& request, v1::Con
     return true;
   }
   refuse(v1::LEASE_HELD,
-         InputError(command, "\"" + lease.holder(now) + "\" is the operator",
+         InputError(command, lease.holder(now) + " is the operator",
                     "wait until that client releases the lease or has been silent for " +
                         std::to_string(options.lease.count() / 1000) + " s"),
          reply);
