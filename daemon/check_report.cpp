@@ -37,6 +37,7 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
   const TriggerConfig& trigger = config.trigger;
   const auto block = static_cast<std::size_t>(config.digitiser.block_samples);
   const std::size_t ring = ring_samples(config, rate_Hz, block);
+  const TriggerOptions options = trigger_options(trigger, rate_Hz);
   const auto milliseconds = [&](auto samples) {
     return 1e3 * static_cast<double>(samples) / rate_Hz;
   };
@@ -55,8 +56,8 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
       "endpoints  results {}, preview {}, control {}\n",
       config.bench.string(), name_of(apparatus.bench.kind), rate_Hz * 1e-6, model,
       gauges_line(config, apparatus), config.digitiser.uri, block, milliseconds(block),
-      trigger.channel, trigger.level_sigma, trigger.minimum_width_s * 1e6,
-      milliseconds(trigger.hold_off_samples), trigger.pre_samples, trigger.post_samples,
+      trigger.channel, trigger.level_sigma, 1e3 * milliseconds(options.minimum_width_samples),
+      milliseconds(options.hold_off_samples), trigger.pre_samples, trigger.post_samples,
       milliseconds(trigger.pre_samples), milliseconds(trigger.post_samples), ring,
       1e-3 * milliseconds(ring), config.store.string(), config.endpoints.results,
       config.endpoints.preview, config.endpoints.control);

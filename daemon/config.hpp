@@ -14,20 +14,19 @@
 
 namespace kolsky {
 
-/// What `[trigger]` asks for, in the units a person sets it in.
+/// What `[trigger]` asks for, in the units a person sets it in. What is not given follows from the rate, as
+/// in TriggerOptions::for_rate.
 struct TriggerConfig {
   std::string channel;  ///< gauge whose record is watched
   double level_sigma = 8.0;
-  double hysteresis_share = 0.5;
   std::int64_t pre_samples = 400;
   std::int64_t post_samples = 3600;
-  std::int64_t hold_off_samples =
-      3600;  ///< default: post_samples, so echoes stay in their own window
-  std::int64_t learn_samples = 256;
-  double minimum_width_s = 8e-6;
-  double maximum_rise_s = 64e-6;
-
-  friend bool operator==(const TriggerConfig&, const TriggerConfig&) = default;
+  std::optional<double> hysteresis_share;
+  std::optional<double> minimum_width_s;
+  std::optional<double> maximum_rise_s;
+  std::optional<std::int64_t> hold_off_samples;  ///< else at least post_samples, so that echoes stay in
+                                                 ///< the window of their shot
+  std::optional<std::int64_t> learn_samples;
 };
 
 struct DigitiserConfig {

@@ -71,6 +71,7 @@ class Acquirer {
     double baseline_codes = 0.0;
     double noise_codes = 0.0;
     double level_codes = 0.0;  ///< 0 on channels that do not trigger
+    std::int64_t constant_samples = 0;  ///< for how long the code has not changed
     bool ready = false;        ///< enough quiet samples were seen
   };
   [[nodiscard]] Level level(std::size_t channel) const noexcept;
@@ -94,7 +95,9 @@ class Acquirer {
     std::atomic<double> baseline{0.0};
     std::atomic<double> noise{0.0};
     std::atomic<double> level{0.0};
+    std::atomic<std::int64_t> constant{0};
     std::atomic<bool> ready{false};
+    std::int32_t last_code = 0;  ///< of the thread alone
   };
 
   void run();
@@ -124,6 +127,7 @@ class Acquirer {
   [[nodiscard]] bool same_stream() const;
   void pause(std::int64_t milliseconds) const;
   void show_levels();
+  static void follow_constant(AtomicLevel& level, const RunStatistics& run);
   [[nodiscard]] std::int64_t monotonic_at(Tick tick) const noexcept;
 
   Digitiser& digitiser_;

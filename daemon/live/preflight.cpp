@@ -17,6 +17,7 @@ constexpr std::uint64_t kShotsOfRoom = 100;
 constexpr std::uint64_t kLeastFree_bytes = 64ull << 20;
 constexpr double kBalancedShare =
     0.25;                               // of the converter's range that must be free on either side
+constexpr std::int64_t kDeadSamples = 50'000;
 constexpr double kLoudestShare = 0.05;  // of the range, as rms
 constexpr double kLeastFullScale = 20e-6;  // strain; the smallest pulses are ten times this
 constexpr double kCoarsestStep = 1e-3;     // strain
@@ -77,8 +78,10 @@ PreflightItem noise(const ChannelRecord& channel, const ChannelCondition& condit
   }
   const double range = static_cast<double>(channel.code_max) - channel.code_min;
   const double rms = condition.noise_codes * std::abs(channel.scale);
-  if (condition.noise_codes <= 0.0) {
-    return {name, false, "none at all: the input is dead or not connected"};
+  if (condition.constant_samples >= kDeadSamples) {
+    return {name, false,
+            fmt::format("none at all, the same code for {} samples: the input is dead",
+                        condition.constant_samples)};
   }
   const bool ok = condition.noise_codes <= kLoudestShare * range;
   return {name, ok,
