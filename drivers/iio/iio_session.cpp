@@ -11,9 +11,6 @@
 namespace kolsky {
 namespace {
 
-/// libiio asks the server to give up after half of this, so a read comes to nothing in half a
-/// second, and a silent network is known after one.
-constexpr unsigned int kTimeout_ms = 1000;
 constexpr double kLongestBlock_s = 0.2;
 constexpr double kKernelBuffers_s = 0.1;
 constexpr double kFewestBuffers = 4;
@@ -27,18 +24,6 @@ std::size_t block_samples(const DigitiserOptions& options, double rate_Hz) {
 unsigned int kernel_buffers_for(double rate_Hz, std::size_t block) {
   const double wanted = std::ceil(kKernelBuffers_s * rate_Hz / static_cast<double>(block));
   return static_cast<unsigned int>(std::clamp(wanted, kFewestBuffers, kMostBuffers));
-}
-
-ContextHandle connect(const std::string& uri) {
-  check_uri(uri);
-  ContextHandle context = open_context(uri);
-  const SigpipeBlocked guard;
-  const int error = iio_context_set_timeout(context.get(), kTimeout_ms);
-  if (error < 0 && error != -ENOSYS) {
-    throw Unreachable(uri, "does not take a time-out (" + error_text(error) + ")",
-                      "check the connection with iio_info -u");
-  }
-  return context;
 }
 
 SampleFormat narrowest(const std::vector<ScanChannel>& channels) {
@@ -64,7 +49,7 @@ SampleFormat narrowest(const std::vector<ScanChannel>& channels) {
 }  // namespace
 
 IioSession::IioSession(const std::string& uri, const DigitiserOptions& options)
-    : context_(connect(uri)) {
+    : context_(open_context(uri)) {
   const SigpipeBlocked guard;
   try {
     choose(options);

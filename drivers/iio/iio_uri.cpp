@@ -8,6 +8,10 @@
 namespace kolsky {
 namespace {
 
+/// libiio asks the server to give up after half of this, so a read comes to nothing in half a second, and
+/// a silent network is known after one. A server has one time-out for all its clients: each must ask alike.
+constexpr unsigned int kTimeout_ms = 1000;
+
 constexpr const char* kForms =
     "give ip:HOST[:PORT], usb:BUS.ADDRESS.INTERFACE, local: or replay:PATH";
 
@@ -80,6 +84,11 @@ ContextHandle open_context(const std::string& uri) {
   if (!context) {
     throw Unreachable(uri, "no IIO device answers (" + error_text(-errno) + ")",
                       "check that it is on and that iio_info -u shows it");
+  }
+  const int error = iio_context_set_timeout(context.get(), kTimeout_ms);
+  if (error < 0 && error != -ENOSYS) {
+    throw Unreachable(uri, "does not take a time-out (" + error_text(error) + ")",
+                      "check the connection with iio_info -u");
   }
   return context;
 }

@@ -21,7 +21,7 @@ void check_uri(const std::string& uri);
 
 /// A context from a private, writable copy of the URI: libiio 0.24 cuts the port off in place, in
 /// the caller's memory. A second context to the same device comes from the URI again, never from
-/// iio_context_clone, which forgets the port. @pre check_uri(uri)
+/// iio_context_clone, which forgets the port. Its time-outs are short. @pre check_uri(uri)
 /// @throws Unreachable
 [[nodiscard]] ContextHandle open_context(const std::string& uri);
 

@@ -47,8 +47,10 @@ StreamInfo describe(const std::string& uri, const ReplaySource& source,
                      std::to_string(source.total_samples()) + " samples";
   info.rate = source.rate();
   info.channels = source.channels();
-  const bool narrow = std::all_of(info.channels.begin(), info.channels.end(),
-                                  [](const ChannelInfo& channel) { return channel.bits <= 16; });
+  const auto narrow_channel = [](const ChannelInfo& channel) {
+    return channel.bits <= 16 && channel.code_min >= INT16_MIN && channel.code_max <= INT16_MAX;
+  };
+  const bool narrow = std::all_of(info.channels.begin(), info.channels.end(), narrow_channel);
   info.format = narrow ? SampleFormat::int16 : SampleFormat::int32;
   info.max_block_samples = std::max<std::size_t>(options.block_samples, 1);
   info.ends = true;
