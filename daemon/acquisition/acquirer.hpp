@@ -70,9 +70,9 @@ class Acquirer {
   struct Level {
     double baseline_codes = 0.0;
     double noise_codes = 0.0;
-    double level_codes = 0.0;  ///< 0 on channels that do not trigger
+    double level_codes = 0.0;           ///< 0 on channels that do not trigger
     std::int64_t constant_samples = 0;  ///< for how long the code has not changed
-    bool learned = false;  ///< enough quiet samples were seen
+    bool learned = false;               ///< enough quiet samples were seen
   };
   [[nodiscard]] Level level(std::size_t channel) const noexcept;
 

@@ -2,40 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <fstream>
 
 #include "daemon/check_report.hpp"
 #include "processing/base/error.hpp"
+#include "tests/unit/daemon/strain_bench.hpp"
 
 namespace kolsky {
 namespace {
-
-constexpr const char* kBench = R"(kind = "shpb"
-sampling_frequency_Hz = 1.0e6
-[bars.input]
-length_m = 0.7
-diameter_m = 0.015
-density_kg_m3 = 1180.0
-poisson_ratio = 0.36
-[bars.output]
-length_m = 0.7
-diameter_m = 0.015
-density_kg_m3 = 1180.0
-poisson_ratio = 0.36
-[[gauges]]
-name = "g1"
-bar = "input"
-position_m = 0.4
-unit = "strain"
-[[gauges]]
-name = "g2"
-bar = "output"
-position_m = 0.05
-unit = "strain"
-[specimen]
-length_m = 0.004
-diameter_m = 0.012
-)";
 
 constexpr const char* kLeast = R"(bench = "bench.toml"
 [digitiser]
@@ -53,7 +29,7 @@ class ConfigTest : public testing::Test {
               ("kolsky-config-" + std::to_string(::getpid()) + "-" +
                testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_);
-    write("bench.toml", kBench);
+    write("bench.toml", kStrainBench);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 

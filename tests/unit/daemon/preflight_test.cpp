@@ -6,37 +6,10 @@
 #include <functional>
 
 #include "drivers/files/bench_file.hpp"
+#include "tests/unit/daemon/strain_bench.hpp"
 
 namespace kolsky {
 namespace {
-
-constexpr const char* kBench = R"(kind = "shpb"
-sampling_frequency_Hz = 1.0e6
-[bars.input]
-length_m = 0.7
-diameter_m = 0.015
-density_kg_m3 = 1180.0
-poisson_ratio = 0.36
-[bars.output]
-length_m = 0.7
-diameter_m = 0.015
-density_kg_m3 = 1180.0
-poisson_ratio = 0.36
-[[gauges]]
-name = "g1"
-bar = "input"
-position_m = 0.4
-unit = "V"
-strain_per_V = 4e-4
-[[gauges]]
-name = "g2"
-bar = "output"
-position_m = 0.05
-unit = "strain"
-[specimen]
-length_m = 0.004
-diameter_m = 0.012
-)";
 
 /// All is well: 1 mV and 0.1 microstrain per code.
 struct Case {
@@ -44,7 +17,9 @@ struct Case {
   Shot blank;
 
   Case() {
-    blank.bench = parse_bench(kBench, "bench.toml");
+    blank.bench = parse_bench(kStrainBench, "bench.toml");
+    blank.bench.gauges[0].unit = "V";
+    blank.bench.gauges[0].strain_per_V = Measured{4e-4};
     blank.channels.resize(2);
     blank.channels[0].gauge = "g1";
     blank.channels[0].unit = "V";
@@ -111,8 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"noise g1", "not known yet", [](Case& c) { c.facts.channels[0].learned = false; }},
         Fault{"noise g2", "the input is dead",
               [](Case& c) { c.facts.channels[1].constant_samples = 1'000'000; }},
-        Fault{"noise g2", "too loud",
-              [](Case& c) { c.facts.channels[1].noise_codes = 10'000.0; }},
+        Fault{"noise g2", "too loud", [](Case& c) { c.facts.channels[1].noise_codes = 10'000.0; }},
         Fault{"calibration g1", "check gauge factor",
               [](Case& c) { c.blank.channels[0].scale = 1e-9; }},
         Fault{"calibration g2", "check gauge factor",

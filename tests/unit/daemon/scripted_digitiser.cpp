@@ -48,8 +48,7 @@ std::uint64_t allocations_while_reading() {
   return allocations.load();
 }
 
-ScriptedDigitiser::ScriptedDigitiser()
-    : codes_(kChannels, std::vector<std::int16_t>(kBlock)) {
+ScriptedDigitiser::ScriptedDigitiser() : codes_(kChannels, std::vector<std::int16_t>(kBlock)) {
   info_.uri = "scripted:";
   info_.rate = {1'000'000, 1};
   info_.channels = {{.name = "voltage0", .unit = "strain", .scale = 1e-7},

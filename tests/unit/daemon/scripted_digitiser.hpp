@@ -16,9 +16,9 @@ class ScriptedDigitiser final : public Digitiser {
   struct Step {
     ReadStatus status = ReadStatus::samples;
     std::size_t samples = 0;
-    Missing missing;
+    Missing missing{};
     bool starts_capture = false;
-    std::optional<TriggerEvent> mark;
+    std::optional<TriggerEvent> mark{};
   };
 
   static constexpr std::size_t kBlock = 256;

@@ -10,8 +10,10 @@
 #include "daemon/shots/shot_id.hpp"
 #include "daemon/shots/store_lock.hpp"
 #include "daemon/shots/summary.hpp"
+#include "drivers/files/bench_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "tests/unit/daemon/strain_bench.hpp"
 
 namespace kolsky {
 namespace {
@@ -88,28 +90,18 @@ TEST(StoreLock, NamesAFolderItCannotWrite) {
   EXPECT_THROW(StoreLock lock("/nowhere/at/all"), InputError);
 }
 
-DaemonConfig config_for(const Bench& bench) {
+DaemonConfig some_config() {
   DaemonConfig config;
   config.file = "kolskyd.toml";
   config.bench = "bench.toml";
   config.meta["specimen"] = "a";
-  static_cast<void>(bench);
   return config;
 }
 
 Apparatus pmma_bench() {
   Apparatus apparatus;
-  Bench& bench = apparatus.bench;
-  bench.kind = BenchKind::shpb;
-  bench.sampling_frequency_Hz = 1e6;
-  bench.input.length_m = {0.7};
-  bench.input.diameter_m = {0.015};
-  bench.input.density_kg_m3 = {1180.0};
-  bench.input.poisson_ratio = {0.36};
-  bench.output = bench.input;
-  bench.gauges = {{.name = "g1", .bar = "input", .position_m = {0.4}, .unit = "strain"},
-                  {.name = "g2", .bar = "output", .position_m = {0.05}, .unit = "strain"}};
-  bench.specimen = Specimen{.length_m = {0.004}, .diameter_m = {0.012}};
+  apparatus.bench_toml = kStrainBench;
+  apparatus.bench = parse_bench(kStrainBench, "bench.toml");
   return apparatus;
 }
 
@@ -124,7 +116,7 @@ StreamInfo strain_stream() {
 
 TEST(BlankShot, JoinsBenchAndStream) {
   const Apparatus apparatus = pmma_bench();
-  const Shot blank = blank_shot(config_for(apparatus.bench), apparatus, strain_stream());
+  const Shot blank = blank_shot(some_config(), apparatus, strain_stream());
   ASSERT_EQ(blank.channels.size(), 2U);
   EXPECT_EQ(blank.channels[0].gauge, "g1");
   EXPECT_EQ(blank.channels[0].scale, 1e-7);
@@ -136,7 +128,7 @@ TEST(BlankShot, JoinsBenchAndStream) {
 
 TEST(BlankShot, RefusesAStreamThatIsNotTheBenchs) {
   const Apparatus apparatus = pmma_bench();
-  const DaemonConfig config = config_for(apparatus.bench);
+  const DaemonConfig config = some_config();
   StreamInfo volts = strain_stream();
   volts.channels[1].unit = "V";
   EXPECT_THROW(static_cast<void>(blank_shot(config, apparatus, volts)), InputError);
@@ -147,7 +139,7 @@ TEST(BlankShot, RefusesAStreamThatIsNotTheBenchs) {
 
 TEST(RehearsalShot, TakesTheWayOfARealOne) {
   const Apparatus apparatus = pmma_bench();
-  const Shot blank = blank_shot(config_for(apparatus.bench), apparatus, strain_stream());
+  const Shot blank = blank_shot(some_config(), apparatus, strain_stream());
   const Shot shot = rehearsal_shot(blank, 400, 3600);
   EXPECT_EQ(shot.samples(), 4000U);
   for (const ChannelRecord& channel : shot.channels) {
@@ -163,8 +155,7 @@ TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
   const StoreLayout store{folder.path()};
   store.create();
   const Apparatus apparatus = pmma_bench();
-  Shot shot = rehearsal_shot(
-      blank_shot(config_for(apparatus.bench), apparatus, strain_stream()), 400, 3600);
+  Shot shot = rehearsal_shot(blank_shot(some_config(), apparatus, strain_stream()), 400, 3600);
   shot.id = "one";
   SharedJournal journal(store, 0x12);
   journal.append_shot(shot);

@@ -10,8 +10,9 @@ using std::chrono::milliseconds;
 class ThreadWatchTest : public testing::Test {
  protected:
   ThreadWatchTest() {
-    watch_.add("worker", milliseconds(100),
-               [this] { return ThreadWatch::Pulse{progress_, has_work_}; });
+    watch_.add("worker", milliseconds(100), [this] {
+      return ThreadWatch::Pulse{progress_, has_work_};
+    });
   }
   [[nodiscard]] std::string stuck_after(int milliseconds_later) {
     now_ += milliseconds(milliseconds_later);
