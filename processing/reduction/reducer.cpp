@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/band_limit.hpp"
@@ -32,6 +33,8 @@ struct BarModel {
               bar.density_kg_m3,
               station.gauge_to_specimen_m,
               station.gauge_to_far_end_m,
+              bar.far_end,
+              front_speed_m_per_s,
               {}} {}
 };
 
@@ -71,7 +74,7 @@ TableKey key_of(const Shot& shot, const Material& m, WaveTheory theory, const St
            b.output->area_m2(), b.output->density_kg_m3,
            b.output->youngs_modulus_Pa.value_or(Measured{}), in.gauge_to_specimen_m,
            in.gauge_to_far_end_m, out.gauge_to_specimen_m, out.gauge_to_far_end_m,
-           b.specimen->length_m}};
+           static_cast<double>(b.output->far_end), b.specimen->length_m}};
 }
 
 /// Seconds a front needs over a distance.
@@ -85,36 +88,47 @@ std::size_t longest_pulse(const Shot& shot, const BarModel& bar) {
   return static_cast<std::size_t>((round_trip_s + kFootClearance_s) * shot.rate.Hz()) + 2;
 }
 
+/// Samples that a front needs from a gauge to the specimen, on the bar where it needs more.
+std::size_t longest_travel(const Shot& shot, const BarModel& input, const BarModel& output) {
+  const double travel_s = std::max(front_time_s(input, input.waves.gauge_to_specimen_m),
+                                   front_time_s(output, output.waves.gauge_to_specimen_m));
+  return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
+}
+
 /// Plans, kernels and work space for shots of one bench and length.
 struct Tables {
   TableKey key;
   BarModel input;
   BarModel output;
+  std::size_t delay;  ///< samples by which histories come out late, so that nothing looks ahead
   double highest_Hz = 0.0;  ///< where surface gauges go blind
   DampedTransform transform;
   BandLimit band;
   CarryingKernels kernels;
-  std::vector<double> input_strain, output_strain, incident_strain, history;
+  std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
   Tables(TableKey k, const Shot& shot, const Material& m, const Station& in, const Station& out)
       : key(std::move(k)),
         input(shot.bench.input, in, m),
         output(*shot.bench.output, out, m),
-        transform(shot.samples(), shot.rate.period_s()),
+        delay(longest_travel(shot, input, output)),
+        transform(shot.samples() + delay, shot.rate.period_s()),
         band(transform, longest_pulse(shot, input)),
-        kernels(make_kernels(shot.bench)),
+        kernels(make_kernels(shot)),
         input_strain(shot.samples()),
         output_strain(shot.samples()),
         incident_strain(shot.samples()),
-        history(shot.samples()),
+        history(shot.samples() + delay),
+        scratch(shot.samples() + delay),
         incident(transform.bins()),
         rest(transform.bins()),
         output_spectrum(transform.bins()),
         work(transform.bins()) {}
 
  private:
-  CarryingKernels make_kernels(const Bench& bench) {
+  CarryingKernels make_kernels(const Shot& shot) {
+    const Bench& bench = shot.bench;
     std::vector<Complex> path(transform.bins());
     for (std::size_t k = 0; k < path.size(); ++k) {
       path[k] = transform.s(k);
@@ -123,7 +137,8 @@ struct Tables {
     output.waves.modes = bar_modes(key.theory, *bench.output, *output.compliance, path);
     highest_Hz =
         std::min(blind_from_Hz(input.waves.modes, path), blind_from_Hz(output.waves.modes, path));
-    return {transform, input.waves, output.waves, bench.specimen->length_m};
+    const double delay_s = static_cast<double>(delay) * shot.rate.period_s();
+    return {transform, input.waves, output.waves, bench.specimen->length_m, delay_s};
   }
 };
 
@@ -191,22 +206,22 @@ class Pass {
     const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
     const double round_trip_s = 2.0 * front_time_s(t_.input, in_.gauge_to_specimen_m);
     const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
-    read_station(shot_, in_, 0, t_.input_strain);
+    read_raw_station(shot_, in_, t_.input_strain);
     const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
     if (!rise) {
       return false;
     }
-    sense_ = rise->sense;
-    const auto half = rise->index;
-    double foot = rough_foot(half, reach);
+    double foot = rough_foot(*rise, reach);
     if (options_.arrival_s) {
       foot = *options_.arrival_s * rate_Hz_;
     }
     const auto clearance = kFootClearance_s * rate_Hz_;
     quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
-    // Once more, now that it is known how long the gauges are unstrained.
+    // Only now is it known how long the gauges are unstrained, which the bridges' equations start
+    // from.
     read_station(shot_, in_, quiet_, t_.input_strain);
     read_station(shot_, out_, quiet_, t_.output_strain);
+    sense_ = t_.input_strain[rise->index + 1] < 0.0 ? -1.0 : 1.0;
     input_noise_ = quiet_before(t_.input_strain, quiet_).noise_rms;
     output_noise_ = quiet_before(t_.output_strain, quiet_).noise_rms;
     gauge_foot_ = foot;
@@ -215,12 +230,13 @@ class Pass {
   }
 
   /// Foot at the gauge itself, from the unfiltered record.
-  double rough_foot(std::size_t half, std::size_t reach) {
+  double rough_foot(const Rise& rise, std::size_t reach) {
+    const std::size_t half = rise.index;
     const double baseline = quiet_before(t_.input_strain, std::min<std::size_t>(half, 32)).baseline;
     const std::size_t end = std::min(t_.input_strain.size(), half + reach);
-    auto& shifted = t_.history;
+    auto& shifted = t_.scratch;
     for (std::size_t n = 0; n < end; ++n) {
-      shifted[n] = sense_ * (t_.input_strain[n] - baseline);
+      shifted[n] = rise.sense * (t_.input_strain[n] - baseline);
     }
     const double peak = *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(half),
                                           shifted.begin() + static_cast<std::ptrdiff_t>(end));
@@ -238,8 +254,9 @@ class Pass {
                                : std::min(t_.band.from_noise(pulse, input_noise_), t_.highest_Hz);
     t_.transform.forward(t_.input_strain, t_.rest);
     t_.transform.forward(t_.output_strain, t_.output_spectrum);
-    for (auto* spectrum : {&t_.incident, &t_.rest, &t_.output_spectrum}) {
-      t_.band.apply(reduction_.band_limit_Hz, *spectrum);
+    for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
+      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
+      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
     }
     complete_incident();
     for (std::size_t k = 0; k < t_.rest.size(); ++k) {
@@ -250,16 +267,17 @@ class Pass {
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there.
   void complete_incident() {
+    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
     t_.kernels.push_from_incident(t_.incident);
     t_.transform.inverse(t_.incident, t_.history);
-    const double hidden_s = front_time_s(t_.input, in_.gauge_to_far_end_m) +
-                            BandLimit::smear_s(reduction_.band_limit_Hz);
-    const double known = static_cast<double>(split_) - hidden_s * rate_Hz_;
+    const double known =
+        static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const auto end = static_cast<std::size_t>(std::max(0.0, known));
     judge_push(end);
     std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
     t_.transform.forward(t_.history, t_.incident);
     t_.kernels.incident_from_push(t_.incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
   }
 
   /// How much of the push is left at the end of what is known of it, averaged over a few samples so
@@ -279,13 +297,13 @@ class Pass {
     t_.kernels.right_going_front(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
     const double travel = front_time_s(t_.input, in_.gauge_to_specimen_m) * rate_Hz_;
-    const auto begin = static_cast<std::size_t>(std::max(0.0, gauge_foot_ + travel * 0.5));
-    const auto end =
-        std::min(t_.history.size(), static_cast<std::size_t>(static_cast<double>(split_) + travel));
+    const double late = travel + static_cast<double>(t_.delay);
+    const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
+    const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
     for (std::size_t n = 0; n < end; ++n) {
-      t_.history[n] *= sense_;
+      t_.scratch[n] = sense_ * t_.history[n];
     }
-    const std::span<const double> pulse(t_.history.data(), end);
+    const std::span<const double> pulse(t_.scratch.data(), end);
     const auto peak =
         std::max_element(pulse.begin() + static_cast<std::ptrdiff_t>(begin), pulse.end());
     auto half = static_cast<std::size_t>(peak - pulse.begin());
@@ -294,6 +312,7 @@ class Pass {
     }
     const double noise = input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz);
     Foot foot = foot_of(pulse, half, *peak, noise);
+    foot.index -= static_cast<double>(t_.delay);
     if (options_.arrival_s) {
       foot.index = gauge_foot_ + travel;
       foot.sigma = 0.0;
@@ -309,19 +328,24 @@ class Pass {
     const double arrival = reduction_.arrival_s * rate_Hz_;
     first_ = static_cast<std::size_t>(std::ceil(arrival));
     const double first_return_s = 2.0 * std::min(front_time_s(t_.input, bench.input.length_m),
-                                                 front_time_s(t_.output, bench.output->length_m));
+                                                 far_end_time_s(bench.output->length_m));
     const double duration_s = options_.duration_s.value_or(first_return_s);
-    const double ahead_s = std::max(front_time_s(t_.input, in_.gauge_to_specimen_m),
-                                    front_time_s(t_.output, out_.gauge_to_specimen_m)) +
-                           4.0 * BandLimit::smear_s(reduction_.band_limit_Hz);
+    const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const double last = std::min(arrival + duration_s * rate_Hz_,
-                                 static_cast<double>(shot_.samples()) - ahead_s * rate_Hz_);
+                                 static_cast<double>(shot_.samples() - t_.delay) - smear);
     constexpr double kFewestSamples = 8.0;
     if (last < arrival + kFewestSamples) {
       return false;
     }
     count_ = static_cast<std::size_t>(last) - first_;
     return true;
+  }
+
+  /// Seconds a front needs over a stretch of the output bar that ends at its far end, if anything
+  /// comes back from there.
+  double far_end_time_s(double distance_m) const {
+    return t_.output.waves.far_end == FarEnd::free ? front_time_s(t_.output, distance_m)
+                                                   : std::numeric_limits<double>::infinity();
   }
 
   CarryingKernels::Inputs inputs() const { return {t_.incident, t_.rest, t_.output_spectrum}; }
@@ -333,14 +357,20 @@ class Pass {
   std::vector<double> history(Kernel kernel) {
     (t_.kernels.*kernel)(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
-    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_);
+    return window();
+  }
+
+  /// What t_.history holds, within the window.
+  std::vector<double> window() const {
+    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.delay);
     return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
   }
 
+  /// @pre t_.history still holds the right-going wave at interface A
   void fill_histories() {
+    reduction_.incident = window();
     reduction_.force_front_N = history(&CarryingKernels::force_front);
     reduction_.force_back_N = history(&CarryingKernels::force_back);
-    reduction_.incident = history(&CarryingKernels::right_going_front);
     reduction_.reflected = history(&CarryingKernels::left_going_front);
     reduction_.transmitted = history(&CarryingKernels::right_going_back);
     reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
@@ -365,10 +395,10 @@ class Pass {
   /// The rate integrated over what the low-pass has smeared before the arrival; t_.history still
   /// holds it.
   double strain_before_window() {
-    const double lead = 4.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+    const double lead = 2.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const auto begin = static_cast<std::size_t>(std::max(0.0, static_cast<double>(first_) - lead));
     double strain = 0.0;
-    for (std::size_t n = begin; n < first_; ++n) {
+    for (std::size_t n = begin + t_.delay; n < first_ + t_.delay; ++n) {
       strain += period_s_ * (t_.history[n] + t_.history[n + 1]) / 2.0;
     }
     return strain;
@@ -389,6 +419,9 @@ class Pass {
     q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
     q.output_noise_rms = output_noise_;
     q.push_left_share = push_left_share_;
+    q.returns_from_s = 2.0 * std::min(front_time_s(t_.input, in_.gauge_to_far_end_m),
+                                      far_end_time_s(out_.gauge_to_far_end_m));
+    q.may_shorten = !options_.duration_s;
     q.quiet_samples = quiet_;
     reduction_.quality.reducible = true;
     judge(q, reduction_);
