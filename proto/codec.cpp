@@ -1,0 +1,391 @@
+#include "proto/codec.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kolsky/v1/kolsky.pb.h"
+#include "processing/base/error.hpp"
+#include "proto/protocol.hpp"
+#include "proto/waveform.hpp"
+
+namespace kolsky::wire {
+namespace {
+
+constexpr int kMaxChannels = 256;
+
+std::string indexed(const std::string& list, int index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
+/// Value and wire name of an enumerator, in one table per enumeration for both ways.
+template <class Domain, class Wire>
+struct EnumPair {
+  Domain domain;
+  Wire wire;
+};
+
+constexpr EnumPair<TriggerKind, v1::TriggerInfo::Kind> kTriggerKinds[] = {
+    {TriggerKind::incident, v1::TriggerInfo::INCIDENT},
+    {TriggerKind::forced, v1::TriggerInfo::FORCED},
+    {TriggerKind::marked, v1::TriggerInfo::MARKED},
+};
+
+constexpr EnumPair<Verdict, v1::Quality::Verdict> kVerdicts[] = {
+    {Verdict::pass, v1::Quality::PASS},
+    {Verdict::warn, v1::Quality::WARN},
+    {Verdict::fail, v1::Quality::FAIL},
+};
+
+template <class Domain, class Wire, std::size_t N>
+Wire to_wire(Domain value, const EnumPair<Domain, Wire> (&pairs)[N]) {
+  for (const auto& pair : pairs) {
+    if (pair.domain == value) {
+      return pair.wire;
+    }
+  }
+  return Wire{};
+}
+
+template <class Domain, class Wire, std::size_t N>
+Domain from_wire(Wire value, const EnumPair<Domain, Wire> (&pairs)[N], const std::string& place) {
+  for (const auto& pair : pairs) {
+    if (pair.wire == value) {
+      return pair.domain;
+    }
+  }
+  throw InputError(
+      place, std::to_string(static_cast<int>(value)) + " is not one of its values",
+      "use a value that version " + std::to_string(kSchemaVersion) + " of the schema has, not 0");
+}
+
+void encode(const Measured& measured, v1::Measured& message) {
+  message.set_value(measured.value);
+  message.set_sd(measured.sd);
+}
+
+Measured decode(const v1::Measured& message) {
+  return {message.value(), message.sd()};
+}
+
+void encode(const Material& material, v1::Material& message) {
+  encode(material.density_kg_m3, *message.mutable_density_kg_m3());
+  encode(material.poisson_ratio, *message.mutable_poisson_ratio());
+  encode(material.E1_Pa, *message.mutable_e1_pa());
+  encode(material.E2_Pa, *message.mutable_e2_pa());
+  encode(material.eta2_Pa_s, *message.mutable_eta2_pa_s());
+  message.set_source(material.source);
+}
+
+Material decode(const v1::Material& message) {
+  Material material;
+  material.density_kg_m3 = decode(message.density_kg_m3());
+  material.poisson_ratio = decode(message.poisson_ratio());
+  material.E1_Pa = decode(message.e1_pa());
+  material.E2_Pa = decode(message.e2_pa());
+  material.eta2_Pa_s = decode(message.eta2_pa_s());
+  material.source = message.source();
+  return material;
+}
+
+SampleRate decode_rate(const v1::Tick& first, const std::string& place) {
+  if (first.rate_numerator() <= 0 || first.rate_denominator() <= 0) {
+    throw InputError(place + ".rate_numerator",
+                     std::to_string(first.rate_numerator()) + " samples in " +
+                         std::to_string(first.rate_denominator()) + " s is no rate",
+                     "give both above 0");
+  }
+  return {first.rate_numerator(), first.rate_denominator()};
+}
+
+std::vector<ChannelRecord> decode_channels(const v1::Shot& message) {
+  if (message.channels_size() > kMaxChannels) {
+    throw InputError("channels",
+                     std::to_string(message.channels_size()) + " are more than a shot can have",
+                     "send at most " + std::to_string(kMaxChannels));
+  }
+  std::vector<ChannelRecord> channels;
+  channels.reserve(message.channels_size());
+  for (int i = 0; i < message.channels_size(); ++i) {
+    const std::string place = indexed("channels", i);
+    channels.push_back(unpack_codes(message.channels(i), place));
+    if (channels.back().codes.size() != channels.front().codes.size()) {
+      throw InputError(place,
+                       "it has " + std::to_string(channels.back().codes.size()) +
+                           " samples and channels[0] " +
+                           std::to_string(channels.front().codes.size()),
+                       "send the same window of every channel");
+    }
+  }
+  return channels;
+}
+
+/// Runs a part of a decoding; its errors are seen from `place`.
+template <class Part>
+auto within(const std::string& place, const Part& part) {
+  try {
+    return part();
+  } catch (const InputError& error) {
+    throw error.inside(place);
+  }
+}
+
+/// How a Reduction's arrays are named on the wire.
+struct History {
+  const char* name;
+  const char* unit;
+  std::vector<double> Reduction::*values;
+};
+
+constexpr History kHistories[] = {
+    {"time_s", "s", &Reduction::time_s},
+    {"stress_Pa", "Pa", &Reduction::stress_Pa},
+    {"strain", "1", &Reduction::strain},
+    {"strain_rate_per_s", "1/s", &Reduction::strain_rate_per_s},
+    {"force_front_N", "N", &Reduction::force_front_N},
+    {"force_back_N", "N", &Reduction::force_back_N},
+};
+
+constexpr History kWaves[] = {
+    {"incident", "1", &Reduction::incident},
+    {"reflected", "1", &Reduction::reflected},
+    {"transmitted", "1", &Reduction::transmitted},
+};
+
+using Waveforms = google::protobuf::RepeatedPtrField<v1::Waveform>;
+
+template <std::size_t N>
+void pack_all(const Reduction& reduction, const History (&histories)[N], Waveforms& waveforms) {
+  const std::vector<double>& time = reduction.time_s;
+  const double start_s = time.empty() ? 0.0 : time.front();
+  const double step_s = time.size() < 2 ? 0.0 : time[1] - time[0];
+  for (const History& history : histories) {
+    v1::Waveform& waveform = *waveforms.Add();
+    pack_values(history.name, history.unit, reduction.*history.values, waveform);
+    waveform.set_start_s(start_s);
+    waveform.set_step_s(step_s);
+  }
+}
+
+/// Fills the arrays that are there by name; names this version does not know are a later version's.
+template <std::size_t N>
+void unpack_all(const Waveforms& waveforms, const std::string& list, const History (&histories)[N],
+                Reduction& reduction) {
+  for (const History& history : histories) {
+    int found = -1;
+    for (int i = 0; i < waveforms.size(); ++i) {
+      if (waveforms[i].name() != history.name) {
+        continue;
+      }
+      if (found >= 0) {
+        throw InputError(indexed(list, i) + ".name",
+                         std::string("\"") + history.name + "\" is there already",
+                         "send each once");
+      }
+      found = i;
+    }
+    if (found >= 0) {
+      reduction.*history.values = unpack_values(waveforms[found], indexed(list, found));
+    }
+  }
+}
+
+/// All arrays of a list have the length of `time_s`.
+template <std::size_t N>
+void check_lengths(const Reduction& reduction, const std::string& list,
+                   const History (&histories)[N]) {
+  for (const History& history : histories) {
+    const std::size_t length = (reduction.*history.values).size();
+    if (length != reduction.time_s.size()) {
+      throw InputError(list + " \"" + history.name + "\"",
+                       std::to_string(length) + " values beside " +
+                           std::to_string(reduction.time_s.size()) + " of time_s",
+                       "send every history over the same times");
+    }
+  }
+}
+
+v1::Quality::Verdict overall(const Quality& quality) {
+  Verdict worst = quality.reducible ? Verdict::pass : Verdict::fail;
+  for (const Check& check : quality.checks) {
+    worst = std::max(worst, check.verdict);
+  }
+  return to_wire(worst, kVerdicts);
+}
+
+}  // namespace
+
+void encode(const Gap& gap, v1::GapInfo& message) {
+  message.set_first_tick(gap.first_tick);
+  message.set_samples(gap.samples);
+  message.set_known(gap.known);
+}
+
+Gap decode(const v1::GapInfo& message) {
+  if (message.samples() < 0) {
+    throw InputError("samples", "it is " + std::to_string(message.samples()),
+                     "give how many samples are missing, 0 where nobody knows");
+  }
+  return {message.first_tick(), message.samples(), message.known()};
+}
+
+void encode(const TriggerEvent& trigger, v1::TriggerInfo& message) {
+  message.set_kind(to_wire(trigger.kind, kTriggerKinds));
+  message.set_tick(trigger.tick);
+  message.set_fraction(trigger.fraction);
+  message.set_sigma_samples(trigger.sigma_samples);
+}
+
+TriggerEvent decode(const v1::TriggerInfo& message) {
+  TriggerEvent trigger;
+  trigger.kind = from_wire(message.kind(), kTriggerKinds, "trigger.kind");
+  trigger.tick = message.tick();
+  trigger.fraction = message.fraction();
+  trigger.sigma_samples = message.sigma_samples();
+  if (!(trigger.fraction >= 0.0 && trigger.fraction < 1.0)) {
+    throw InputError("trigger.fraction", "it is " + std::to_string(trigger.fraction),
+                     "give the part of a sample past the tick, from 0 to below 1");
+  }
+  if (!(trigger.sigma_samples >= 0.0) || std::isinf(trigger.sigma_samples)) {
+    throw InputError("trigger.sigma_samples", "it is " + std::to_string(trigger.sigma_samples),
+                     "give a finite standard deviation");
+  }
+  return trigger;
+}
+
+void encode(const Shot& shot, const std::string& capture, v1::Shot& message) {
+  message.Clear();
+  message.set_id(shot.id);
+  message.set_utc_ns(shot.utc_ns);
+  message.set_monotonic_ns(shot.monotonic_ns);
+  v1::Tick& first = *message.mutable_first();
+  first.set_tick(shot.first_tick);
+  first.set_rate_numerator(shot.rate.numerator);
+  first.set_rate_denominator(shot.rate.denominator);
+  if (shot.trigger) {
+    encode(*shot.trigger, *message.mutable_trigger());
+  }
+  for (const ChannelRecord& channel : shot.channels) {
+    v1::Waveform& waveform = *message.add_channels();
+    pack_codes(channel, waveform);
+    waveform.set_step_s(shot.rate.period_s());
+  }
+  for (const Gap& gap : shot.gaps) {
+    encode(gap, *message.add_gaps());
+  }
+  message.mutable_meta()->insert(shot.meta.begin(), shot.meta.end());
+  message.set_capture(capture);
+  message.set_bench_toml(shot.bench_toml);
+  if (shot.bar_model) {
+    encode(*shot.bar_model, *message.mutable_bar_model());
+  }
+  message.set_software_version(shot.software_version);
+}
+
+Shot decode(const v1::Shot& message) {
+  Shot shot;
+  shot.id = message.id();
+  shot.utc_ns = message.utc_ns();
+  shot.monotonic_ns = message.monotonic_ns();
+  shot.first_tick = message.first().tick();
+  within("shot", [&] {
+    shot.rate = decode_rate(message.first(), "first");
+    if (message.has_trigger()) {
+      shot.trigger = decode(message.trigger());
+    }
+    shot.channels = decode_channels(message);
+    for (int i = 0; i < message.gaps_size(); ++i) {
+      shot.gaps.push_back(within(indexed("gaps", i), [&] { return decode(message.gaps(i)); }));
+    }
+  });
+  shot.meta.insert(message.meta().begin(), message.meta().end());
+  shot.bench_toml = message.bench_toml();
+  if (message.has_bar_model()) {
+    shot.bar_model = decode(message.bar_model());
+  }
+  shot.software_version = message.software_version();
+  return shot;
+}
+
+void encode(const Quality& quality, v1::Quality& message) {
+  message.Clear();
+  message.set_reducible(quality.reducible);
+  message.set_reason(quality.reason);
+  message.set_verdict(overall(quality));
+  for (const Check& check : quality.checks) {
+    v1::Check& judged = *message.add_checks();
+    judged.set_name(check.name);
+    judged.set_value(check.value);
+    judged.set_limit(check.limit);
+    judged.set_unit(check.unit);
+    judged.set_verdict(to_wire(check.verdict, kVerdicts));
+    judged.set_text(check.text);
+  }
+}
+
+Quality decode(const v1::Quality& message) {
+  Quality quality;
+  quality.reducible = message.reducible();
+  quality.reason = message.reason();
+  static_cast<void>(from_wire(message.verdict(), kVerdicts, "quality.verdict"));
+  for (int i = 0; i < message.checks_size(); ++i) {
+    const v1::Check& judged = message.checks(i);
+    const Verdict verdict =
+        from_wire(judged.verdict(), kVerdicts, indexed("quality.checks", i) + ".verdict");
+    quality.checks.push_back(
+        {judged.name(), judged.value(), judged.limit(), judged.unit(), verdict, judged.text()});
+  }
+  return quality;
+}
+
+void encode(const Reduction& reduction, const std::string& shot_id, v1::Result& message) {
+  message.Clear();
+  message.set_shot_id(shot_id);
+  encode(reduction.quality, *message.mutable_quality());
+  pack_all(reduction, kHistories, *message.mutable_histories());
+  pack_all(reduction, kWaves, *message.mutable_waves());
+  message.set_bar_model(reduction.bar_model);
+  message.set_arrival_s(reduction.arrival_s);
+  message.set_arrival_sigma_s(reduction.arrival_sigma_s);
+  message.set_band_limit_hz(reduction.band_limit_Hz);
+}
+
+Reduction decode(const v1::Result& message) {
+  Reduction reduction;
+  within("result", [&] {
+    reduction.quality = decode(message.quality());
+    unpack_all(message.histories(), "histories", kHistories, reduction);
+    unpack_all(message.waves(), "waves", kWaves, reduction);
+    check_lengths(reduction, "histories", kHistories);
+    check_lengths(reduction, "waves", kWaves);
+  });
+  reduction.bar_model = message.bar_model();
+  reduction.arrival_s = message.arrival_s();
+  reduction.arrival_sigma_s = message.arrival_sigma_s();
+  reduction.band_limit_Hz = message.band_limit_hz();
+  return reduction;
+}
+
+void parse(std::string_view bytes, const std::string& place,
+           google::protobuf::MessageLite& message) {
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
+      !message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    throw InputError(place, "these bytes are no " + message.GetTypeName(),
+                     "send what version 1 of kolsky.proto says");
+  }
+}
+
+bool changes_state(const v1::ControlRequest& request) {
+  switch (request.command_case()) {
+    case v1::ControlRequest::kStatus:
+    case v1::ControlRequest::kListShots:
+    case v1::ControlRequest::kGetShot:
+    case v1::ControlRequest::kSnapshot:
+    case v1::ControlRequest::COMMAND_NOT_SET:
+      return false;
+    default:
+      return true;
+  }
+}
+
+}  // namespace kolsky::wire
