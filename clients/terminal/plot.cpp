@@ -106,14 +106,13 @@ std::size_t widest(const std::vector<std::string>& labels) {
 
 }  // namespace
 
-std::string plot_text(const Panel& panel, PlotSize size, bool colour, std::optional<Range> x) {
+std::string plot_text(const Panel& panel, PlotSize size, bool colour) {
   const int rows = std::max(size.rows, 2);
   const AxisLayout y_axis = lay_out(panel.y, y_range(panel), mark_count(rows, kRowsPerMark));
   const std::vector<std::string> labels = row_labels(y_axis, rows);
   const std::size_t margin = widest(labels) + 1;
   const int columns = std::max(10, size.columns - static_cast<int>(margin) - 2);
-  const AxisLayout x_axis =
-      lay_out(panel.x, x.value_or(x_range(panel)), mark_count(columns, kColumnsPerMark));
+  const AxisLayout x_axis = lay_out(panel.x, x_range(panel), mark_count(columns, kColumnsPerMark));
 
   BrailleCanvas canvas(columns, rows);
   for (std::size_t i = 0; i < panel.series.size(); ++i) {

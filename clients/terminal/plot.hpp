@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 
@@ -17,9 +16,7 @@ struct PlotSize {
 
 /// A panel as text: title and legend, braille lines between axes with marks and units. Ends with a
 /// newline. Without colour the second and third line are dashed, so that they can be told apart.
-/// @param x  fixes the horizontal range, for a plot that is drawn while it grows
-[[nodiscard]] std::string plot_text(const Panel& panel, PlotSize size, bool colour,
-                                    std::optional<Range> x = {});
+[[nodiscard]] std::string plot_text(const Panel& panel, PlotSize size, bool colour);
 
 /// The band between two traces as rows of braille, newest at the right: what a scope shows of a
 /// stream.
