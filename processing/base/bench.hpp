@@ -19,69 +19,70 @@ enum class Section { round, square };
 /// One bar. Square bars keep their side in `side_m`; force uses the equal area and dispersion the
 /// radius b/sqrt(3), b half the side.
 struct Bar {
-  Measured length_m;
-  Measured diameter_m;  ///< of a square bar: the diameter of equal area
-  Measured density_kg_m3;
-  Measured poisson_ratio;
-  std::optional<Measured> youngs_modulus_Pa;  ///< elastic bars only
+  Measured length_m{};
+  Measured diameter_m{};  ///< of a square bar: the diameter of equal area
+  Measured density_kg_m3{};
+  Measured poisson_ratio{};
+  std::optional<Measured> youngs_modulus_Pa{};  ///< elastic bars only
   Section section = Section::round;
-  std::optional<Measured> side_m;  ///< square bars only
+  std::optional<Measured> side_m{};  ///< square bars only
 
   [[nodiscard]] double area_m2() const;
   [[nodiscard]] double dispersion_radius_m() const;
 };
 
-/// How a gauge's bridge is wired. `quarter`: one active arm. `half`: two axial gauges in opposite arms.
-/// `half_poisson`: one axial and one transverse gauge in adjacent arms. `full_poisson`: two of those.
+/// How a gauge's bridge is wired. `quarter`: one active arm. `half`: two axial gauges in opposite
+/// arms. `half_poisson`: one axial and one transverse gauge in adjacent arms. `full_poisson`: two
+/// of those.
 enum class BridgeWiring { quarter, half, half_poisson, full_poisson };
 
 /// What turns a gauge's volts into strain when the samples are the bridge amplifier's output.
 struct Bridge {
   BridgeWiring wiring = BridgeWiring::quarter;
-  Measured gauge_factor;
-  Measured excitation_V;
+  Measured gauge_factor{};
+  Measured excitation_V{};
   Measured gain{1.0, 0.0};
   double gauge_resistance_ohm = 0.0;  ///< of one gauge; 0 where no lead or shunt needs it
   double lead_resistance_ohm = 0.0;   ///< of one wire in series with the active arm
-  int lead_wires = 2;                 ///< 2: both wires in the arm, 3: one of them in each of two arms
-  int gauges_in_series = 1;           ///< 2: a diametrically opposite pair in one arm, cancels bending
-  std::optional<double> shunt_resistance_ohm;  ///< resistor put across the active arm
-  std::optional<double> shunt_reading_V;       ///< the step it gave; replaces `gain`
+  int lead_wires = 2;        ///< 2: both wires in the arm, 3: one of them in each of two arms
+  int gauges_in_series = 1;  ///< 2: a diametrically opposite pair in one arm, cancels bending
+  std::optional<double> shunt_resistance_ohm{};  ///< resistor put across the active arm
+  std::optional<double> shunt_reading_V{};       ///< the step it gave; replaces `gain`
 };
 
 /// One strain-gauge station, in the order of the capture's channels.
 struct Gauge {
-  std::string name;
-  std::string bar;      ///< "input" or "output"
-  Measured position_m;  ///< input: from the impacted end; output: from the specimen's end
-  std::string unit;     ///< "strain" or "V"
-  std::optional<Measured> length_m;
-  std::optional<Bridge> bridge;           ///< unit "V": either this ...
-  std::optional<Measured> strain_per_V;   ///< ... or a plain factor
+  std::string name{};
+  std::string bar{};      ///< "input" or "output"
+  Measured position_m{};  ///< input: from the impacted end; output: from the specimen's end
+  std::string unit{};     ///< "strain" or "V"
+  std::optional<Measured> length_m{};
+  std::optional<Bridge> bridge{};          ///< unit "V": either this ...
+  std::optional<Measured> strain_per_V{};  ///< ... or a plain factor
 };
 
 /// Round specimen; a square one is filed by its diameter of equal area.
 struct Specimen {
-  Measured length_m;
-  Measured diameter_m;
-  std::optional<Measured> density_kg_m3;
-  std::optional<Measured> poisson_ratio;
+  Measured length_m{};
+  Measured diameter_m{};
+  std::optional<Measured> density_kg_m3{};
+  std::optional<Measured> poisson_ratio{};
 
   [[nodiscard]] double area_m2() const;
 };
 
 struct Ball {
-  Measured outer_diameter_m;
-  Measured core_diameter_m;
-  std::optional<Measured> mass_kg;
+  Measured outer_diameter_m{};
+  Measured core_diameter_m{};
+  std::optional<Measured> mass_kg{};
   bool scale_density = false;
 };
 
 struct Striker {
-  std::optional<Measured> length_m;
-  std::optional<Measured> diameter_m;
-  std::optional<Measured> density_kg_m3;
-  std::optional<Measured> speed_m_per_s;
+  std::optional<Measured> length_m{};
+  std::optional<Measured> diameter_m{};
+  std::optional<Measured> density_kg_m3{};
+  std::optional<Measured> speed_m_per_s{};
 };
 
 /// The apparatus as the bench file states it.
@@ -89,22 +90,23 @@ struct Bench {
   BenchKind kind = BenchKind::shpb;
   double sampling_frequency_Hz = 0.0;
   PositiveSense positive = PositiveSense::compression;
-  Bar input;
-  std::optional<Bar> output;  ///< shpb only
-  std::vector<Gauge> gauges;
-  std::optional<Specimen> specimen;  ///< shpb only
-  std::optional<Ball> ball;          ///< impact only
-  std::optional<Striker> striker;
-  std::optional<Measured> temperature_K;
+  Bar input{};
+  std::optional<Bar> output{};  ///< shpb only
+  std::vector<Gauge> gauges{};
+  std::optional<Specimen> specimen{};  ///< shpb only
+  std::optional<Ball> ball{};          ///< impact only
+  std::optional<Striker> striker{};
+  std::optional<Measured> temperature_K{};
 
   /// The bar a gauge sits on. @pre the gauge is of this bench
   [[nodiscard]] const Bar& bar_of(const Gauge& gauge) const;
-  /// Distance from a gauge to the specimen's face. Input bar: length - position; output bar: position.
+  /// Distance from a gauge to the specimen's face. Input bar: length - position; output bar:
+  /// position.
   [[nodiscard]] double distance_to_specimen_m(const Gauge& gauge) const;
 };
 
-/// Checks what a single number cannot show: ranges that catch unit mistakes (a 15 m bar, a density of
-/// 1.18), gauges off their bar, parts that the kind needs or does not have, names used twice.
+/// Checks what a single number cannot show: ranges that catch unit mistakes (a 15 m bar, a density
+/// of 1.18), gauges off their bar, parts that the kind needs or does not have, names used twice.
 /// @throws InputError whose place is the key inside the bench file, as "bars.input.length_m"
 void check(const Bench& bench);
 

@@ -10,14 +10,19 @@
 namespace kolsky {
 
 struct ReductionOptions {
-  std::optional<Material> bar_model;   ///< of viscoelastic bars; else the shot's own, else the paper's PMMA
-  std::optional<double> arrival_s;     ///< manual override: incident foot at gauge 1, from the first sample
-  std::optional<double> band_limit_Hz; ///< manual override of the limit that follows from the noise
+  std::optional<Material>
+      bar_model;  ///< of viscoelastic bars; else the shot's own, else the paper's PMMA
+  std::optional<double>
+      arrival_s;  ///< manual override: incident foot at gauge 1, from the first sample
+  std::optional<double>
+      band_limit_Hz;                 ///< manual override of the limit that follows from the noise
+  std::optional<double> duration_s;  ///< of the histories; else until the first wave comes back to
+                                     ///< the specimen from a bar's far end, 2 length / front speed
 };
 
-/// Reduces shots of one bench, keeping transform plans and propagation tables between shots of the same
-/// length. Not to be used by two threads at once. The same shot gives the same bits each time, whatever
-/// was reduced before.
+/// Reduces shots of one bench, keeping transform plans and propagation tables between shots of the
+/// same length. Not to be used by two threads at once. The same shot gives the same bits each time,
+/// whatever was reduced before.
 class Reducer {
  public:
   explicit Reducer(ReductionOptions options = {});
@@ -25,8 +30,9 @@ class Reducer {
   Reducer(Reducer&&) noexcept;
   Reducer& operator=(Reducer&&) noexcept;
 
-  /// Three-wave reduction (paper, eqs 10 to 24 with their errata). A shot that cannot be reduced (gap,
-  /// clipped codes, no pulse, a bench without a specimen) gives empty histories and the reason in `quality`.
+  /// Three-wave reduction (paper, eqs 10 to 24 with their errata). A shot that cannot be reduced
+  /// (gap, clipped codes, no pulse, a bench without a specimen) gives empty histories and the
+  /// reason in `quality`.
   /// @throws InputError where the bench itself does not suit (no gauge on a bar, no modulus)
   [[nodiscard]] Reduction reduce(const Shot& shot);
 

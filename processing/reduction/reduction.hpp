@@ -7,27 +7,29 @@ namespace kolsky {
 
 enum class Verdict { pass, warn, fail };
 
-/// One judged number: what it is, what it came to, what it is held against, and a sentence for people.
+/// One judged number: what it is, what it came to, what it is held against, and a sentence for
+/// people.
 struct Check {
-  std::string name;   ///< as "equilibrium", "signal_to_noise", "window_overlap", "clipping", "loop_closure"
+  std::string name{};  ///< as "equilibrium", "signal_to_noise", "window_overlap", "clipping",
+                       ///< "loop_closure"
   double value = 0.0;
   double limit = 0.0;
-  std::string unit;   ///< "1", "dB", "s", ...
+  std::string unit{};  ///< "1", "dB", "s", ...
   Verdict verdict = Verdict::pass;
-  std::string text;
+  std::string text{};
 };
 
 struct Quality {
   bool reducible = false;
-  std::string reason;  ///< why it is not
+  std::string reason{};  ///< why it is not
   std::vector<Check> checks;
 
   /// The worst of the checks; fail when not reducible.
   [[nodiscard]] Verdict verdict() const;
 };
 
-/// A specimen's histories, engineering, compression positive, equally spaced; t = 0 when the pulse arrives
-/// at interface A (the input bar's end). All arrays have the same length.
+/// A specimen's histories, engineering, compression positive, equally spaced; t = 0 when the pulse
+/// arrives at interface A (the input bar's end). All arrays have the same length.
 struct Reduction {
   std::vector<double> time_s;
   std::vector<double> stress_Pa;
@@ -39,10 +41,10 @@ struct Reduction {
   std::vector<double> incident;
   std::vector<double> reflected;
   std::vector<double> transmitted;
-  double arrival_s = 0.0;         ///< of the incident pulse at interface A, from the shot's first sample
+  double arrival_s = 0.0;  ///< of the incident pulse at interface A, from the shot's first sample
   double arrival_sigma_s = 0.0;
   double band_limit_Hz = 0.0;
-  std::string bar_model;          ///< what the bars were taken to be, for people
+  std::string bar_model{};  ///< what the bars were taken to be, for people
   Quality quality;
 };
 

@@ -1,0 +1,97 @@
+#include "processing/reduction/band_limit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kolsky {
+
+namespace {
+
+constexpr std::size_t kBins = 24;  // averaged to judge the power at a frequency: noise alone then
+constexpr double kPowerOverNoise = 2.0;   // passes twice its mean once in some 10^5 places
+constexpr double kStepsPerOctave = 12.0;  // limits are of a grid, so that filters can be kept
+constexpr std::size_t kMostFilters = 64;
+
+/// w_c of exp(-(w / w_c)^4) that passes half at the limit.
+double corner_per_s(double limit_Hz) {
+  return 2.0 * std::numbers::pi * limit_Hz / std::pow(std::numbers::ln2, 0.25);
+}
+
+}  // namespace
+
+BandLimit::BandLimit(const DampedTransform& transform, std::size_t pulse_samples)
+    : sampling_frequency_Hz_(transform.bin_width_Hz() * static_cast<double>(transform.length())),
+      pulse_transform_(pulse_samples, 1.0 / sampling_frequency_Hz_, 1.0),
+      pulse_spectrum_(pulse_transform_.bins()) {
+  s_.reserve(transform.bins());
+  for (std::size_t k = 0; k < transform.bins(); ++k) {
+    s_.push_back(transform.s(k));
+  }
+}
+
+double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
+  const double highest_Hz = sampling_frequency_Hz_ / 4.0;
+  if (noise_rms <= 0.0) {
+    return highest_Hz;
+  }
+  pulse_transform_.forward(pulse, pulse_spectrum_);
+  const double bin_Hz = pulse_transform_.bin_width_Hz();
+  const double threshold = kPowerOverNoise * noise_rms * noise_rms *
+                           static_cast<double>(pulse.size()) * static_cast<double>(kBins);
+  const auto top =
+      std::min(static_cast<std::size_t>(highest_Hz / bin_Hz), pulse_spectrum_.size() - 1);
+  if (top <= kBins) {
+    return highest_Hz;
+  }
+  std::size_t low = top - kBins;
+  double power = 0.0;
+  for (std::size_t k = low; k < top; ++k) {
+    power += std::norm(pulse_spectrum_[k]);
+  }
+  while (power < threshold && low > 0) {
+    --low;
+    power += std::norm(pulse_spectrum_[low]) - std::norm(pulse_spectrum_[low + kBins]);
+  }
+  const double limit_Hz = (static_cast<double>(low) + kBins / 2.0) * bin_Hz;
+  const double steps = std::ceil(kStepsPerOctave * std::log2(highest_Hz / limit_Hz));
+  return highest_Hz * std::exp2(-std::max(0.0, steps) / kStepsPerOctave);
+}
+
+const std::vector<Complex>& BandLimit::filter(double limit_Hz) {
+  const auto known = filters_.find(limit_Hz);
+  if (known != filters_.end()) {
+    return known->second;
+  }
+  if (filters_.size() >= kMostFilters) {
+    filters_.clear();
+  }
+  const double wc = corner_per_s(limit_Hz);
+  std::vector<Complex> filter(s_.size());
+  for (std::size_t k = 0; k < s_.size(); ++k) {
+    const Complex square = s_[k] * s_[k] / (wc * wc);
+    filter[k] = std::exp(-square * square);
+  }
+  return filters_.emplace(limit_Hz, std::move(filter)).first->second;
+}
+
+void BandLimit::apply(double limit_Hz, std::span<Complex> spectrum) {
+  const std::vector<Complex>& gain = filter(limit_Hz);
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    spectrum[k] *= gain[k];
+  }
+}
+
+double BandLimit::noise_share(double limit_Hz) const {
+  // Integral of |H|^2 over frequency: Gamma(5/4) 2^(-1/4) of the corner.
+  constexpr double kBandwidthOfCorner = 0.9064024770554771 * 0.8408964152537145;
+  const double bandwidth_Hz =
+      kBandwidthOfCorner * corner_per_s(limit_Hz) / (2.0 * std::numbers::pi);
+  return std::sqrt(std::min(1.0, 2.0 * bandwidth_Hz / sampling_frequency_Hz_));
+}
+
+double BandLimit::smear_s(double limit_Hz) {
+  return 2.0 / corner_per_s(limit_Hz);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// The band in which a pulse stands above the noise, and the low-pass that keeps it.
+///
+/// Carrying a wave back multiplies its spectrum by exp(+alpha l), which grows with frequency: what
+/// holds only noise must go first. The filter is exp(-(s/wc)^4), on the imaginary axis
+/// exp(-(w/wc)^4): flat where the pulse is, hardly any ringing, no shift in time, and exact off the
+/// axis too. It passes half at the limit.
+class BandLimit {
+ public:
+  /// @param transform      whose spectra are filtered
+  /// @param pulse_samples  longest pulse that is judged
+  BandLimit(const DampedTransform& transform, std::size_t pulse_samples);
+
+  /// The highest frequency [Hz] at which the pulse's power, averaged over neighbouring bins, is
+  /// twice that of white noise, so that pulse and noise are alike; at most a quarter of the
+  /// sampling rate. Of a noiseless pulse: that quarter.
+  /// @param pulse      the samples that hold it, and little else; no more than `pulse_samples`
+  /// @param noise_rms  of its samples
+  [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms);
+
+  /// Multiplies a spectrum by the filter with this limit.
+  void apply(double limit_Hz, std::span<Complex> spectrum);
+
+  /// Share of white noise's rms that the filter lets through.
+  [[nodiscard]] double noise_share(double limit_Hz) const;
+
+  /// How far the filter's kernel reaches to each side, in seconds (where it has fallen to a tenth).
+  [[nodiscard]] static double smear_s(double limit_Hz);
+
+ private:
+  const std::vector<Complex>& filter(double limit_Hz);
+
+  std::vector<Complex> s_;
+  double sampling_frequency_Hz_;
+  DampedTransform pulse_transform_;
+  std::vector<Complex> pulse_spectrum_;
+  std::map<double, std::vector<Complex>> filters_;
+};
+
+}  // namespace kolsky

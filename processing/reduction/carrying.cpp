@@ -1,0 +1,99 @@
+#include "processing/reduction/carrying.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// exp(-gamma x) over the stretches of one bar, at one s.
+struct Stretches {
+  Complex to_specimen;  // exp(-gamma l)
+  Complex round_trip;   // exp(-2 gamma x), gauge to far end and back
+  Complex separation;   // 1 / (1 - round_trip)
+  Complex force;        // A / J
+  Complex velocity;     // s / gamma
+
+  Stretches(const BarWaves& bar, Complex s) {
+    const Complex gamma = bar.propagation->gamma(s);
+    to_specimen = std::exp(-gamma * bar.gauge_to_specimen_m);
+    round_trip = std::exp(-2.0 * gamma * bar.gauge_to_far_end_m);
+    separation = 1.0 / (1.0 - round_trip);
+    force = bar.area_m2 / bar.propagation->J(s);
+    velocity = s / gamma;
+  }
+};
+
+void multiply(const std::vector<Complex>& kernel, const std::vector<Complex>& in,
+              std::vector<Complex>& out) {
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] = kernel[k] * in[k];
+  }
+}
+
+void multiply_add(const std::vector<Complex>& kernel, const std::vector<Complex>& in,
+                  std::vector<Complex>& out) {
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] += kernel[k] * in[k];
+  }
+}
+
+}  // namespace
+
+CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWaves& input,
+                                 const BarWaves& output, double specimen_length_m) {
+  const std::size_t bins = transform.bins();
+  for (auto* kernel : {&force_of_incident_, &force_of_rest_, &force_of_output_, &rate_of_incident_,
+                       &rate_of_rest_, &rate_of_output_, &right_of_incident_, &right_of_rest_,
+                       &left_of_rest_, &right_of_output_}) {
+    kernel->resize(bins);
+  }
+  for (std::size_t k = 0; k < bins; ++k) {
+    const Complex s = transform.s(k);
+    const Stretches a(input, s);
+    const Complex right_rest = -a.round_trip * a.separation * a.to_specimen;
+    const Complex left_rest = a.separation / a.to_specimen;
+    right_of_incident_[k] = a.to_specimen;
+    right_of_rest_[k] = right_rest;
+    left_of_rest_[k] = left_rest;
+    force_of_incident_[k] = a.force * a.to_specimen;
+    force_of_rest_[k] = a.force * (right_rest + left_rest);
+    rate_of_incident_[k] = a.velocity * a.to_specimen / specimen_length_m;
+    rate_of_rest_[k] = a.velocity * (right_rest - left_rest) / specimen_length_m;
+
+    const Stretches b(output, s);
+    const Complex right_out = b.separation / b.to_specimen;
+    const Complex left_out = -b.separation * b.round_trip * b.to_specimen;
+    right_of_output_[k] = right_out;
+    force_of_output_[k] = b.force * (right_out + left_out);
+    rate_of_output_[k] = -b.velocity * (right_out - left_out) / specimen_length_m;
+  }
+}
+
+void CarryingKernels::force_front(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(force_of_incident_, in.incident, out);
+  multiply_add(force_of_rest_, in.rest, out);
+}
+
+void CarryingKernels::force_back(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(force_of_output_, in.output, out);
+}
+
+void CarryingKernels::strain_rate(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(rate_of_incident_, in.incident, out);
+  multiply_add(rate_of_rest_, in.rest, out);
+  multiply_add(rate_of_output_, in.output, out);
+}
+
+void CarryingKernels::right_going_front(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(right_of_incident_, in.incident, out);
+  multiply_add(right_of_rest_, in.rest, out);
+}
+
+void CarryingKernels::left_going_front(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(left_of_rest_, in.rest, out);
+}
+
+void CarryingKernels::right_going_back(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(right_of_output_, in.output, out);
+}
+
+}  // namespace kolsky

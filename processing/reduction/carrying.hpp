@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "processing/base/shot.hpp"
+#include "processing/waves/propagation.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// One bar as the reduction sees it.
+struct BarWaves {
+  double area_m2 = 0.0;
+  double gauge_to_specimen_m = 0.0;
+  double gauge_to_far_end_m =
+      0.0;  ///< the impacted end of the input bar, the free end of the output bar
+  const ElementaryPropagation* propagation = nullptr;
+};
+
+/// What turns the spectra of the gauge records into those of the histories at the specimen.
+/// Everything at s = eta + i w, for one bench and one length of record.
+///
+/// Input bar. The incident pulse I is known at the gauge until the specimen's answer arrives there;
+/// from then on the record holds the left-going wave L and what the free impacted end has sent back
+/// of it:
+///     e1 = I + L - L exp(-2 gamma x1),    D = e1 - I,    L = D / (1 - exp(-2 gamma x1)),
+/// x1 from the gauge to the impacted end. At the specimen
+///     right-going (I - L exp(-2 gamma x1)) exp(-gamma l1),   left-going L exp(+gamma l1).
+/// Output bar, free at distance x2 behind the gauge: e2 = T - T exp(-2 gamma x2), and at the
+/// specimen
+///     right-going T exp(+gamma l2),   left-going -T exp(-gamma (2 x2 + l2)).
+/// Stress is strain over J, particle velocity s/gamma times (right-going - left-going). With only
+/// first passages these are the paper's eqs (10) to (18) with their errata, bars unequal or not.
+class CarryingKernels {
+ public:
+  CarryingKernels(const DampedTransform& transform, const BarWaves& input, const BarWaves& output,
+                  double specimen_length_m);
+
+  /// Spectra of the histories, from those of the incident pulse I, the rest D of the input gauge,
+  /// and the output gauge E2. One Complex per bin each.
+  struct Inputs {
+    const std::vector<Complex>& incident;
+    const std::vector<Complex>& rest;
+    const std::vector<Complex>& output;
+  };
+  void force_front(const Inputs& in, std::vector<Complex>& out) const;
+  void force_back(const Inputs& in, std::vector<Complex>& out) const;
+  void strain_rate(const Inputs& in, std::vector<Complex>& out) const;
+  void right_going_front(const Inputs& in, std::vector<Complex>& out) const;
+  void left_going_front(const Inputs& in, std::vector<Complex>& out) const;
+  void right_going_back(const Inputs& in, std::vector<Complex>& out) const;
+
+ private:
+  std::vector<Complex> force_of_incident_;
+  std::vector<Complex> force_of_rest_;
+  std::vector<Complex> force_of_output_;
+  std::vector<Complex> rate_of_incident_;
+  std::vector<Complex> rate_of_rest_;
+  std::vector<Complex> rate_of_output_;
+  std::vector<Complex> right_of_incident_;
+  std::vector<Complex> right_of_rest_;
+  std::vector<Complex> left_of_rest_;
+  std::vector<Complex> right_of_output_;
+};
+
+}  // namespace kolsky

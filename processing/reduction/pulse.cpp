@@ -1,0 +1,119 @@
+#include "processing/reduction/pulse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kolsky {
+
+namespace {
+
+/// The record's beginning, taken as quiet until the pulse has been found.
+constexpr std::size_t kFirstLook = 32;
+
+double largest_excursion(std::span<const double> record, double baseline) {
+  double largest = 0.0;
+  for (const double value : record) {
+    largest = std::max(largest, std::abs(value - baseline));
+  }
+  return largest;
+}
+
+/// Time of the upward passage of `level` that is nearest before `from`, and the slope there per
+/// sample.
+struct Crossing {
+  double index;
+  double slope;
+};
+
+Crossing crossing_before(std::span<const double> record, std::size_t from, double level) {
+  std::size_t n = from;
+  while (n > 0 && record[n] >= level) {
+    --n;
+  }
+  const double rise = record[n + 1] - record[n];
+  const double share = rise > 0.0 ? std::clamp((level - record[n]) / rise, 0.0, 1.0) : 0.5;
+  return {static_cast<double>(n) + share, rise};
+}
+
+}  // namespace
+
+Quiet quiet_before(std::span<const double> record, std::size_t end) {
+  Quiet quiet;
+  quiet.samples = std::min(end, record.size());
+  if (quiet.samples == 0) {
+    return quiet;
+  }
+  // Deviations from the first sample: a large offset must not cost the noise its digits.
+  const double reference = record[0];
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t n = 0; n < quiet.samples; ++n) {
+    const double deviation = record[n] - reference;
+    sum += deviation;
+    squares += deviation * deviation;
+  }
+  const auto count = static_cast<double>(quiet.samples);
+  const double mean = sum / count;
+  quiet.baseline = reference + mean;
+  quiet.noise_rms = std::sqrt(std::max(0.0, squares / count - mean * mean));
+  return quiet;
+}
+
+std::optional<Rise> find_first_pulse(std::span<const double> record, std::size_t width,
+                                     std::size_t reach) {
+  if (record.size() < kFirstLook + width) {
+    return std::nullopt;
+  }
+  const Quiet start = quiet_before(record, std::max(kFirstLook, record.size() / 100));
+  const double level =
+      std::max(6.0 * start.noise_rms, 0.1 * largest_excursion(record, start.baseline));
+  if (level <= 0.0) {
+    return std::nullopt;
+  }
+  std::size_t run = 0;
+  std::size_t n = 0;
+  double sense = 1.0;
+  for (; n < record.size() && run < width; ++n) {
+    const double deviation = record[n] - start.baseline;
+    const bool outside = std::abs(deviation) > level;
+    if (outside && run == 0) {
+      sense = deviation > 0.0 ? 1.0 : -1.0;
+    }
+    run = outside && deviation * sense > 0.0 ? run + 1 : 0;
+  }
+  if (run < width) {
+    return std::nullopt;
+  }
+  const std::size_t first = n - run;
+  const std::size_t end = std::min(record.size(), first + reach);
+  double peak = 0.0;
+  for (std::size_t i = first; i < end; ++i) {
+    peak = std::max(peak, (record[i] - start.baseline) * sense);
+  }
+  std::size_t half = first;
+  while (half + 1 < end && (record[half] - start.baseline) * sense < peak / 2.0) {
+    ++half;
+  }
+  return Rise{half == 0 ? 0 : half - 1, sense};
+}
+
+Foot foot_of(std::span<const double> record, std::size_t half, double peak, double noise_rms) {
+  const Crossing at40 = crossing_before(record, half, 0.4 * peak);
+  const Crossing at20 = crossing_before(record, static_cast<std::size_t>(at40.index), 0.2 * peak);
+  const Crossing at10 = crossing_before(record, static_cast<std::size_t>(at20.index), 0.1 * peak);
+  const double lower = at20.index - at10.index;
+  const double upper = at40.index - at20.index;
+  // Distances from the foot grow by q = 2^(1/p) from level to level.
+  const double q_of_cube = std::pow(2.0, 1.0 / 3.0);
+  const double q = std::clamp(lower > 0.0 ? upper / lower : 2.0, q_of_cube, 2.0);
+  Foot foot;
+  foot.index = std::max(0.0, at10.index - lower / (q - 1.0));
+  const double lever = 1.0 / (q - 1.0);
+  const double sigma10 = noise_rms / std::max(std::abs(at10.slope), 1e-300);
+  const double sigma20 = noise_rms / std::max(std::abs(at20.slope), 1e-300);
+  foot.sigma = std::hypot((1.0 + lever) * sigma10, lever * sigma20);
+  return foot;
+}
+
+}  // namespace kolsky

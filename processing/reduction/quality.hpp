@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "processing/base/shot.hpp"
+#include "processing/reduction/reduction.hpp"
+
+namespace kolsky {
+
+/// Why a shot's samples cannot be reduced, whatever the bench: a gap in its window or clipped
+/// codes. Empty when they can.
+[[nodiscard]] std::string unusable_because(const Shot& shot);
+
+/// What the checks need besides the histories.
+struct QualityInputs {
+  double input_peak = 0.0;       ///< of the incident pulse at its gauge, strain
+  double input_noise_rms = 0.0;  ///< strain
+  double output_peak = 0.0;      ///< at the output gauge within the histories' time
+  double output_noise_rms = 0.0;
+  double incident_left_share = 0.0;  ///< of its peak, when the specimen's answer reaches the gauge
+  std::size_t quiet_samples = 0;     ///< before the pulse
+  double specimen_transit_s = 0.0;   ///< 0 where the specimen's density and stiffness are not known
+};
+
+/// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the
+/// lag between front and back. Limits and their reasons: docs/quality.md.
+void judge(const QualityInputs& inputs, Reduction& reduction);
+
+}  // namespace kolsky

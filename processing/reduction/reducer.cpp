@@ -1,0 +1,406 @@
+#include "processing/reduction/reducer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/reduction/band_limit.hpp"
+#include "processing/reduction/carrying.hpp"
+#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/quality.hpp"
+#include "processing/reduction/stations.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// A run above the level shorter than this is a spike, not a pulse.
+constexpr double kShortestPulse_s = 5e-6;
+/// The quiet part ends this many filter widths and this much time before the foot.
+constexpr double kFootClearance_s = 10e-6;
+
+struct BarModel {
+  std::unique_ptr<const Compliance> compliance;
+  ElementaryPropagation propagation;
+
+  BarModel(const Bar& bar, const Material& viscoelastic)
+      : compliance(compliance_of(bar, viscoelastic)), propagation(bar.density_kg_m3, *compliance) {}
+};
+
+std::string describe(const Bench& bench, const Material& viscoelastic, bool assumed) {
+  const bool elastic_input = bench.input.youngs_modulus_Pa.has_value();
+  const bool elastic_output = bench.output->youngs_modulus_Pa.has_value();
+  if (elastic_input && elastic_output) {
+    return "elastic bars, moduli from the bench";
+  }
+  std::string text = viscoelastic.source.empty() ? "the bar model given" : viscoelastic.source;
+  if (assumed) {
+    text += ", assumed because no bar model was given";
+  }
+  return text;
+}
+
+/// What decides the tables: two shots that agree in it are reduced with the same ones.
+struct TableKey {
+  std::size_t samples;
+  SampleRate rate;
+  std::string bench_toml;
+  std::vector<double> numbers;
+  bool operator==(const TableKey&) const = default;
+};
+
+TableKey key_of(const Shot& shot, const Material& m, const Station& in, const Station& out) {
+  const Bench& b = shot.bench;
+  return {shot.samples(),
+          shot.rate,
+          shot.bench_toml,
+          {m.E1_Pa, m.E2_Pa, m.eta2_Pa_s, b.input.area_m2(), b.input.density_kg_m3,
+           b.input.youngs_modulus_Pa.value_or(Measured{}), b.output->area_m2(),
+           b.output->density_kg_m3, b.output->youngs_modulus_Pa.value_or(Measured{}),
+           in.gauge_to_specimen_m, in.gauge_to_far_end_m, out.gauge_to_specimen_m,
+           out.gauge_to_far_end_m, b.specimen->length_m}};
+}
+
+/// Seconds a front needs over a distance.
+double front_time_s(const BarModel& bar, double distance_m) {
+  return distance_m / bar.propagation.front_speed_m_per_s();
+}
+
+/// Samples from just before the incident pulse to the specimen's answer at the gauge.
+std::size_t longest_pulse(const Shot& shot, const BarModel& bar, const Station& station) {
+  const double round_trip_s = 2.0 * front_time_s(bar, station.gauge_to_specimen_m);
+  return static_cast<std::size_t>((round_trip_s + kFootClearance_s) * shot.rate.Hz()) + 2;
+}
+
+/// Plans, kernels and work space for shots of one bench and length.
+struct Tables {
+  TableKey key;
+  BarModel input;
+  BarModel output;
+  DampedTransform transform;
+  CarryingKernels kernels;
+  BandLimit band;
+  std::vector<double> input_strain, output_strain, incident_strain, history;
+  std::vector<Complex> incident, rest, output_spectrum, work;
+
+  Tables(TableKey k, const Shot& shot, const Material& m, const Station& in, const Station& out)
+      : key(std::move(k)),
+        input(shot.bench.input, m),
+        output(*shot.bench.output, m),
+        transform(shot.samples(), shot.rate.period_s()),
+        kernels(transform,
+                {shot.bench.input.area_m2(), in.gauge_to_specimen_m, in.gauge_to_far_end_m,
+                 &input.propagation},
+                {shot.bench.output->area_m2(), out.gauge_to_specimen_m, out.gauge_to_far_end_m,
+                 &output.propagation},
+                shot.bench.specimen->length_m),
+        band(transform, longest_pulse(shot, input, in)),
+        input_strain(shot.samples()),
+        output_strain(shot.samples()),
+        incident_strain(shot.samples()),
+        history(shot.samples()),
+        incident(transform.bins()),
+        rest(transform.bins()),
+        output_spectrum(transform.bins()),
+        work(transform.bins()) {}
+};
+
+Reduction not_reducible(std::string reason) {
+  Reduction reduction;
+  reduction.quality.reason = std::move(reason);
+  return reduction;
+}
+
+void require_reducible_bench(const Shot& shot) {
+  if (shot.bench.kind != BenchKind::shpb || !shot.bench.output || !shot.bench.specimen) {
+    throw InputError("kind", "is not \"shpb\", so there is no specimen to reduce",
+                     "use a bench file of kind \"shpb\" with bars.output and specimen");
+  }
+  if (shot.channels.size() != shot.bench.gauges.size()) {
+    throw InputError("gauges",
+                     std::to_string(shot.bench.gauges.size()) + " are filed but the shot has " +
+                         std::to_string(shot.channels.size()) + " channels",
+                     "file one gauge per channel, in their order");
+  }
+}
+
+double largest(std::span<const double> values) {
+  double most = 0.0;
+  for (const double value : values) {
+    most = std::max(most, std::abs(value));
+  }
+  return most;
+}
+
+/// One reduction in progress: what is found on the way from the records to the histories.
+class Pass {
+ public:
+  Pass(const Shot& shot, const Station& in, const Station& out, const ReductionOptions& options,
+       Tables& tables)
+      : shot_(shot),
+        in_(in),
+        out_(out),
+        options_(options),
+        t_(tables),
+        rate_Hz_(shot.rate.Hz()),
+        period_s_(shot.rate.period_s()) {}
+
+  Reduction run() {
+    if (!find_incident()) {
+      return not_reducible("no incident pulse stands out of the noise on " +
+                           shot_.channels[in_.channels.front()].gauge);
+    }
+    if (split_ >= shot_.samples()) {
+      return not_reducible("the record ends before the specimen's answer reaches " +
+                           shot_.channels[in_.channels.front()].gauge);
+    }
+    transform_records();
+    locate_arrival();
+    if (!choose_window()) {
+      return not_reducible("the record ends before the pulse has loaded the specimen");
+    }
+    fill_histories();
+    judge_quality();
+    return std::move(reduction_);
+  }
+
+ private:
+  bool find_incident() {
+    const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
+    const double round_trip_s = 2.0 * front_time_s(t_.input, in_.gauge_to_specimen_m);
+    const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
+    read_station(shot_, in_, 0, t_.input_strain);
+    const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
+    if (!rise) {
+      return false;
+    }
+    sense_ = rise->sense;
+    const auto half = rise->index;
+    double foot = rough_foot(half, reach);
+    if (options_.arrival_s) {
+      foot = *options_.arrival_s * rate_Hz_;
+    }
+    const auto clearance = kFootClearance_s * rate_Hz_;
+    quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
+    // Once more, now that it is known how long the gauges are unstrained.
+    read_station(shot_, in_, quiet_, t_.input_strain);
+    read_station(shot_, out_, quiet_, t_.output_strain);
+    input_noise_ = quiet_before(t_.input_strain, quiet_).noise_rms;
+    output_noise_ = quiet_before(t_.output_strain, quiet_).noise_rms;
+    gauge_foot_ = foot;
+    split_ = static_cast<std::size_t>(std::max(0.0, foot + round_trip_s * rate_Hz_));
+    return true;
+  }
+
+  /// Foot at the gauge itself, from the unfiltered record.
+  double rough_foot(std::size_t half, std::size_t reach) {
+    const double baseline = quiet_before(t_.input_strain, std::min<std::size_t>(half, 32)).baseline;
+    const std::size_t end = std::min(t_.input_strain.size(), half + reach);
+    auto& shifted = t_.history;
+    for (std::size_t n = 0; n < end; ++n) {
+      shifted[n] = sense_ * (t_.input_strain[n] - baseline);
+    }
+    const double peak = *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(half),
+                                          shifted.begin() + static_cast<std::ptrdiff_t>(end));
+    return foot_of(shifted, half, peak, 0.0).index;
+  }
+
+  void transform_records() {
+    std::copy_n(t_.input_strain.begin(), split_, t_.incident_strain.begin());
+    std::fill(t_.incident_strain.begin() + static_cast<std::ptrdiff_t>(split_),
+              t_.incident_strain.end(), 0.0);
+    t_.transform.forward(t_.incident_strain, t_.incident);
+    const auto pulse = std::span<const double>(t_.incident_strain).subspan(quiet_, split_ - quiet_);
+    reduction_.band_limit_Hz =
+        options_.band_limit_Hz ? *options_.band_limit_Hz : t_.band.from_noise(pulse, input_noise_);
+    t_.transform.forward(t_.input_strain, t_.rest);
+    for (std::size_t k = 0; k < t_.rest.size(); ++k) {
+      t_.rest[k] -= t_.incident[k];
+    }
+    t_.transform.forward(t_.output_strain, t_.output_spectrum);
+    for (auto* spectrum : {&t_.incident, &t_.rest, &t_.output_spectrum}) {
+      t_.band.apply(reduction_.band_limit_Hz, *spectrum);
+    }
+  }
+
+  /// t = 0: the foot of the incident pulse after it has been carried to interface A.
+  void locate_arrival() {
+    t_.kernels.right_going_front(inputs(), t_.work);
+    t_.transform.inverse(t_.work, t_.history);
+    const double travel = front_time_s(t_.input, in_.gauge_to_specimen_m) * rate_Hz_;
+    const auto begin = static_cast<std::size_t>(std::max(0.0, gauge_foot_ + travel * 0.5));
+    const auto end =
+        std::min(t_.history.size(), static_cast<std::size_t>(static_cast<double>(split_) + travel));
+    for (std::size_t n = 0; n < end; ++n) {
+      t_.history[n] *= sense_;
+    }
+    const std::span<const double> pulse(t_.history.data(), end);
+    const auto peak =
+        std::max_element(pulse.begin() + static_cast<std::ptrdiff_t>(begin), pulse.end());
+    auto half = static_cast<std::size_t>(peak - pulse.begin());
+    while (half > 0 && pulse[half] > *peak / 2.0) {
+      --half;
+    }
+    const double noise = input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz);
+    Foot foot = foot_of(pulse, half, *peak, noise);
+    if (options_.arrival_s) {
+      foot.index = gauge_foot_ + travel;
+      foot.sigma = 0.0;
+    }
+    reduction_.arrival_s = foot.index * period_s_;
+    reduction_.arrival_sigma_s = foot.sigma * period_s_;
+  }
+
+  /// From the arrival until the first wave is back from a far end, as far as the record allows: the
+  /// waves at the specimen are known up to a front's travel before the record's end.
+  bool choose_window() {
+    const Bench& bench = shot_.bench;
+    const double arrival = reduction_.arrival_s * rate_Hz_;
+    first_ = static_cast<std::size_t>(std::ceil(arrival));
+    const double first_return_s = 2.0 * std::min(front_time_s(t_.input, bench.input.length_m),
+                                                 front_time_s(t_.output, bench.output->length_m));
+    const double duration_s = options_.duration_s.value_or(first_return_s);
+    const double ahead_s = std::max(front_time_s(t_.input, in_.gauge_to_specimen_m),
+                                    front_time_s(t_.output, out_.gauge_to_specimen_m)) +
+                           4.0 * BandLimit::smear_s(reduction_.band_limit_Hz);
+    const double last = std::min(arrival + duration_s * rate_Hz_,
+                                 static_cast<double>(shot_.samples()) - ahead_s * rate_Hz_);
+    constexpr double kFewestSamples = 8.0;
+    if (last < arrival + kFewestSamples) {
+      return false;
+    }
+    count_ = static_cast<std::size_t>(last) - first_;
+    return true;
+  }
+
+  CarryingKernels::Inputs inputs() const { return {t_.incident, t_.rest, t_.output_spectrum}; }
+
+  using Kernel = void (CarryingKernels::*)(const CarryingKernels::Inputs&,
+                                           std::vector<Complex>&) const;
+
+  /// The history behind a kernel, cut to the window.
+  std::vector<double> history(Kernel kernel) {
+    (t_.kernels.*kernel)(inputs(), t_.work);
+    t_.transform.inverse(t_.work, t_.history);
+    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_);
+    return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
+  }
+
+  void fill_histories() {
+    reduction_.force_front_N = history(&CarryingKernels::force_front);
+    reduction_.force_back_N = history(&CarryingKernels::force_back);
+    reduction_.incident = history(&CarryingKernels::right_going_front);
+    reduction_.reflected = history(&CarryingKernels::left_going_front);
+    reduction_.transmitted = history(&CarryingKernels::right_going_back);
+    reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
+
+    const double half_area_m2 = 2.0 * shot_.bench.specimen->area_m2();
+    reduction_.time_s.resize(count_);
+    reduction_.stress_Pa.resize(count_);
+    reduction_.strain.resize(count_);
+    double strain = strain_before_window();
+    for (std::size_t n = 0; n < count_; ++n) {
+      reduction_.time_s[n] = static_cast<double>(first_ + n) * period_s_ - reduction_.arrival_s;
+      reduction_.stress_Pa[n] =
+          (reduction_.force_front_N[n] + reduction_.force_back_N[n]) / half_area_m2;
+      reduction_.strain[n] = strain;
+      if (n + 1 < count_) {
+        strain += period_s_ *
+                  (reduction_.strain_rate_per_s[n] + reduction_.strain_rate_per_s[n + 1]) / 2.0;
+      }
+    }
+  }
+
+  /// The rate integrated over what the low-pass has smeared before the arrival; t_.history still
+  /// holds it.
+  double strain_before_window() {
+    const double lead = 4.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+    const auto begin = static_cast<std::size_t>(std::max(0.0, static_cast<double>(first_) - lead));
+    double strain = 0.0;
+    for (std::size_t n = begin; n < first_; ++n) {
+      strain += period_s_ * (t_.history[n] + t_.history[n + 1]) / 2.0;
+    }
+    return strain;
+  }
+
+  void judge_quality() {
+    QualityInputs q;
+    const auto split = static_cast<std::ptrdiff_t>(split_);
+    const auto incident = std::span<const double>(t_.incident_strain).first(split_);
+    q.input_peak = largest(incident);
+    q.input_noise_rms = input_noise_;
+    const auto travel =
+        static_cast<std::size_t>((front_time_s(t_.input, in_.gauge_to_specimen_m) +
+                                  front_time_s(t_.output, out_.gauge_to_specimen_m)) *
+                                 rate_Hz_);
+    const std::size_t begin =
+        std::min(static_cast<std::size_t>(gauge_foot_) + travel, shot_.samples());
+    const std::size_t end = std::min(begin + count_, shot_.samples());
+    q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
+    q.output_noise_rms = output_noise_;
+    // Averaged over a few samples, so that it is the pulse that is judged and not its noise.
+    const auto few = std::min<std::size_t>(split_, static_cast<std::size_t>(4e-6 * rate_Hz_) + 1);
+    double tail = 0.0;
+    for (auto n = split - static_cast<std::ptrdiff_t>(few); n < split; ++n) {
+      tail += t_.incident_strain[static_cast<std::size_t>(n)] / static_cast<double>(few);
+    }
+    q.incident_left_share = q.input_peak > 0.0 ? std::abs(tail) / q.input_peak : 1.0;
+    q.quiet_samples = quiet_;
+    reduction_.quality.reducible = true;
+    judge(q, reduction_);
+  }
+
+  const Shot& shot_;
+  const Station& in_;
+  const Station& out_;
+  const ReductionOptions& options_;
+  Tables& t_;
+  double rate_Hz_;
+  double period_s_;
+  double sense_ = 1.0;
+  double gauge_foot_ = 0.0;
+  double input_noise_ = 0.0;
+  double output_noise_ = 0.0;
+  std::size_t quiet_ = 0;
+  std::size_t split_ = 0;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  Reduction reduction_;
+};
+
+}  // namespace
+
+struct Reducer::State {
+  ReductionOptions options;
+  std::unique_ptr<Tables> tables;
+};
+
+Reducer::Reducer(ReductionOptions options)
+    : state_(std::make_unique<State>(State{std::move(options), nullptr})) {}
+Reducer::~Reducer() = default;
+Reducer::Reducer(Reducer&&) noexcept = default;
+Reducer& Reducer::operator=(Reducer&&) noexcept = default;
+
+Reduction Reducer::reduce(const Shot& shot) {
+  require_reducible_bench(shot);
+  const std::string unusable = unusable_because(shot);
+  if (!unusable.empty()) {
+    return not_reducible(unusable);
+  }
+  const ReductionOptions& options = state_->options;
+  const bool assumed = !options.bar_model && !shot.bar_model;
+  const Material material = options.bar_model ? *options.bar_model
+                            : shot.bar_model  ? *shot.bar_model
+                                              : paper_pmma();
+  const Station in = station_on(shot.bench, "input");
+  const Station out = station_on(shot.bench, "output");
+  TableKey key = key_of(shot, material, in, out);
+  if (!state_->tables || !(state_->tables->key == key)) {
+    state_->tables = std::make_unique<Tables>(std::move(key), shot, material, in, out);
+  }
+  Reduction reduction = Pass(shot, in, out, options, *state_->tables).run();
+  reduction.bar_model = describe(shot.bench, material, assumed);
+  return reduction;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,64 @@
+#include "processing/reduction/stations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/bridge/bridge.hpp"
+
+namespace kolsky {
+
+namespace {
+
+double unstrained_reading(const ChannelRecord& channel, std::size_t quiet) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < quiet; ++n) {
+    sum += channel.codes[n];
+  }
+  const double mean = quiet > 0 ? sum / static_cast<double>(quiet) : 0.0;
+  return (mean + channel.offset) * channel.scale;
+}
+
+}  // namespace
+
+Station station_on(const Bench& bench, const std::string& bar) {
+  Station station;
+  const Gauge* first = nullptr;
+  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
+    const Gauge& gauge = bench.gauges[i];
+    if (gauge.bar != bar) {
+      continue;
+    }
+    if (first == nullptr) {
+      first = &gauge;
+    }
+    if (std::abs(gauge.position_m - first->position_m) <= bench.bar_of(gauge).diameter_m) {
+      station.channels.push_back(i);
+      station.gauge_to_specimen_m += bench.distance_to_specimen_m(gauge);
+    }
+  }
+  if (first == nullptr) {
+    throw InputError("gauges", "none is on the " + bar + " bar",
+                     "add one with bar = \"" + bar + "\"");
+  }
+  station.gauge_to_specimen_m /= static_cast<double>(station.channels.size());
+  station.gauge_to_far_end_m = bench.bar_of(*first).length_m - station.gauge_to_specimen_m;
+  return station;
+}
+
+void read_station(const Shot& shot, const Station& station, std::size_t quiet,
+                  std::vector<double>& strains) {
+  std::fill(strains.begin(), strains.end(), 0.0);
+  const double share = 1.0 / static_cast<double>(station.channels.size());
+  for (const std::size_t index : station.channels) {
+    const ChannelRecord& channel = shot.channels[index];
+    const Gauge& gauge = shot.bench.gauges[index];
+    const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
+    const double unstrained = unstrained_reading(channel, quiet);
+    for (std::size_t n = 0; n < strains.size(); ++n) {
+      strains[n] += share * bridge.strain(channel.value(channel.codes[n]) - unstrained);
+    }
+  }
+}
+
+}  // namespace kolsky

@@ -1,0 +1,137 @@
+#include "processing/waves/transform.hpp"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <new>
+#include <numbers>
+
+namespace kolsky {
+
+namespace {
+
+/// FFTW's planner, unlike its execution, must not run in two threads at once.
+std::mutex& planner_lock() {
+  static std::mutex lock;
+  return lock;
+}
+
+bool has_small_factors(std::size_t n) {
+  for (const std::size_t factor : {2U, 3U, 5U}) {
+    while (n % factor == 0) {
+      n /= factor;
+    }
+  }
+  return n == 1;
+}
+
+std::size_t transform_length(std::size_t samples) {
+  std::size_t n = std::max<std::size_t>(samples, 16);
+  n += n % 2;
+  while (!has_small_factors(n)) {
+    n += 2;
+  }
+  return n;
+}
+
+struct FftwFree {
+  void operator()(void* memory) const { fftw_free(memory); }
+};
+
+}  // namespace
+
+struct DampedTransform::State {
+  std::size_t length;
+  double bin_width_Hz;
+  double eta_per_s;
+  std::unique_ptr<double[], FftwFree> time;
+  std::unique_ptr<fftw_complex[], FftwFree> frequency;
+  fftw_plan to_frequency;
+  fftw_plan to_time;
+  std::vector<double> damping;    // exp(-eta t)
+  std::vector<double> undamping;  // exp(+eta t) / length
+
+  State(std::size_t samples, double period_s, double wrap_damping)
+      : length(transform_length(samples)),
+        bin_width_Hz(1.0 / (static_cast<double>(length) * period_s)),
+        eta_per_s(-std::log(wrap_damping) * bin_width_Hz),
+        time(fftw_alloc_real(length)),
+        frequency(fftw_alloc_complex(length / 2 + 1)),
+        damping(length),
+        undamping(length) {
+    if (!time || !frequency) {
+      throw std::bad_alloc();
+    }
+    for (std::size_t n = 0; n < length; ++n) {
+      const double exponent = eta_per_s * period_s * static_cast<double>(n);
+      damping[n] = std::exp(-exponent);
+      undamping[n] = std::exp(exponent) / static_cast<double>(length);
+    }
+    const std::scoped_lock lock(planner_lock());
+    const int n = static_cast<int>(length);
+    to_frequency = fftw_plan_dft_r2c_1d(n, time.get(), frequency.get(), FFTW_ESTIMATE);
+    to_time = fftw_plan_dft_c2r_1d(n, frequency.get(), time.get(), FFTW_ESTIMATE);
+  }
+  ~State() {
+    const std::scoped_lock lock(planner_lock());
+    fftw_destroy_plan(to_frequency);
+    fftw_destroy_plan(to_time);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+};
+
+DampedTransform::DampedTransform(std::size_t samples, double period_s, double wrap_damping)
+    : state_(std::make_unique<State>(samples, period_s, wrap_damping)) {}
+DampedTransform::~DampedTransform() = default;
+DampedTransform::DampedTransform(DampedTransform&&) noexcept = default;
+DampedTransform& DampedTransform::operator=(DampedTransform&&) noexcept = default;
+
+std::size_t DampedTransform::length() const {
+  return state_->length;
+}
+
+std::size_t DampedTransform::bins() const {
+  return state_->length / 2 + 1;
+}
+
+double DampedTransform::bin_width_Hz() const {
+  return state_->bin_width_Hz;
+}
+
+Complex DampedTransform::s(std::size_t bin) const {
+  return {state_->eta_per_s,
+          2.0 * std::numbers::pi * state_->bin_width_Hz * static_cast<double>(bin)};
+}
+
+void DampedTransform::forward(std::span<const double> record, std::span<Complex> spectrum) {
+  double* time = state_->time.get();
+  const double* damping = state_->damping.data();
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    time[n] = record[n] * damping[n];
+  }
+  std::fill(time + record.size(), time + state_->length, 0.0);
+  fftw_execute(state_->to_frequency);
+  const fftw_complex* frequency = state_->frequency.get();
+  for (std::size_t k = 0; k < bins(); ++k) {
+    spectrum[k] = {frequency[k][0], frequency[k][1]};
+  }
+}
+
+void DampedTransform::inverse(std::span<const Complex> spectrum, std::span<double> record) {
+  fftw_complex* frequency = state_->frequency.get();
+  for (std::size_t k = 0; k < bins(); ++k) {
+    frequency[k][0] = spectrum[k].real();
+    frequency[k][1] = spectrum[k].imag();
+  }
+  fftw_execute(state_->to_time);
+  const double* time = state_->time.get();
+  const double* undamping = state_->undamping.data();
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    record[n] = time[n] * undamping[n];
+  }
+}
+
+}  // namespace kolsky

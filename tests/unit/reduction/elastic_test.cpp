@@ -1,0 +1,253 @@
+// Against a time-domain solution of elastic bars with a massless linear spring between them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/reduction/reducer.hpp"
+#include "tests/generators/elastic_shpb.hpp"
+
+namespace kolsky {
+namespace {
+
+using testing::ElasticShpb;
+
+/// Largest difference between a reduced history and the truth, as a share of the truth's largest
+/// value, on the record's own clock (how well the arrival was found is another question).
+double worst(const Reduction& r, const std::vector<double>& reduced,
+             const ElasticShpb::Truth& truth, const std::vector<double>& exact) {
+  double largest = 0.0;
+  double difference = 0.0;
+  for (std::size_t n = 0; n < reduced.size(); ++n) {
+    const double t = r.time_s[n] + r.arrival_s - truth.arrival_s;
+    const double expected = t < 0.0 ? 0.0 : truth.at(exact, t);
+    largest = std::max(largest, std::abs(expected));
+    difference = std::max(difference, std::abs(reduced[n] - expected));
+  }
+  return difference / largest;
+}
+
+const Check& check_of(const Reduction& r, const std::string& name) {
+  for (const Check& check : r.quality.checks) {
+    if (check.name == name) {
+      return check;
+    }
+  }
+  throw std::out_of_range(name);
+}
+
+Shot noiseless(const ElasticShpb& model, const ElasticShpb::Records& records) {
+  return model.shot(records, 0.0, 24, 0.01, 1);
+}
+
+void expect_truth(const Reduction& r, const ElasticShpb::Truth& truth, double share) {
+  ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
+  EXPECT_LT(worst(r, r.force_front_N, truth, truth.force_N), share);
+  EXPECT_LT(worst(r, r.force_back_N, truth, truth.force_N), share);
+  EXPECT_LT(worst(r, r.strain, truth, truth.strain), share);
+  // The rate has a corner where the pulse's edge ends; sampling at 1 MHz rounds it.
+  EXPECT_LT(worst(r, r.strain_rate_per_s, truth, truth.strain_rate_per_s), 3 * share);
+}
+
+TEST(ElasticReduction, FirstLoadingIsTheTimeDomainSolution) {
+  const ElasticShpb model;
+  const auto records = model.solve();
+  const Reduction r = Reducer().reduce(noiseless(model, records));
+  expect_truth(r, records.truth, 5e-4);
+  EXPECT_NEAR(r.time_s.back(), 2.0 * 1.0 / std::sqrt(206e9 / 7850.0), 2e-6);
+}
+
+TEST(ElasticReduction, StressIsForceOverTheSpecimen) {
+  const ElasticShpb model;
+  const Reduction r = Reducer().reduce(noiseless(model, model.solve()));
+  const double area_m2 = 0.25 * 3.14159265358979 * 0.008 * 0.008;
+  const std::size_t n = r.time_s.size() / 4;
+  EXPECT_NEAR(r.stress_Pa[n], (r.force_front_N[n] + r.force_back_N[n]) / 2 / area_m2,
+              1e-9 * std::abs(r.stress_Pa[n]));
+  // A spring: stress over strain is its modulus, whatever the bars did.
+  EXPECT_NEAR(r.stress_Pa[n] / r.strain[n], 2e9, 2e6);
+}
+
+TEST(ElasticReduction, LaterLoadingsAreFollowedThroughTheReturnsFromTheFarEnds) {
+  ElasticShpb model;
+  model.sampling_frequency_Hz = 4e6;  // every return rounds the pulse's corners once more
+  const auto records = model.solve();
+  ReductionOptions options;
+  options.duration_s = 1e-3;  // the second and third return at 390 and 780 us
+  const Reduction r = Reducer(options).reduce(noiseless(model, records));
+  expect_truth(r, records.truth, 1e-3);
+  EXPECT_GT(r.time_s.back(), 0.99e-3);
+}
+
+TEST(ElasticReduction, BarsOfDifferentLengthAndAnyGaugePosition) {
+  ElasticShpb model;
+  model.length_in_m = 1.3;
+  model.length_out_m = 0.8;
+  model.gauge_to_A_m = 0.613;
+  model.gauge_to_B_m = 0.1217;
+  const auto records = model.solve();
+  expect_truth(Reducer().reduce(noiseless(model, records)), records.truth, 5e-4);
+}
+
+TEST(ElasticReduction, TensionIsCompressionWithTheSignTurned) {
+  ElasticShpb model;
+  const auto compressed = Reducer().reduce(noiseless(model, model.solve()));
+  model.pulse_strain = -model.pulse_strain;
+  const auto records = model.solve();
+  const auto stretched = Reducer().reduce(noiseless(model, records));
+  expect_truth(stretched, records.truth, 5e-4);
+  EXPECT_LT(*std::min_element(stretched.strain.begin(), stretched.strain.end()), -0.01);
+  EXPECT_NEAR(stretched.arrival_s, compressed.arrival_s, 1e-9);
+}
+
+TEST(ElasticReduction, ABenchThatCountsTensionPositiveGivesTheSameCompression) {
+  const ElasticShpb model;
+  Shot shot = noiseless(model, model.solve());
+  const Reduction plain = Reducer().reduce(shot);
+  shot.bench.positive = PositiveSense::tension;
+  for (ChannelRecord& channel : shot.channels) {
+    for (std::int32_t& code : channel.codes) {
+      code = -code;
+    }
+  }
+  const Reduction turned = Reducer().reduce(shot);
+  ASSERT_EQ(turned.stress_Pa.size(), plain.stress_Pa.size());
+  EXPECT_EQ(turned.stress_Pa, plain.stress_Pa);
+}
+
+TEST(ElasticReduction, NoiseCostsWhatItMust) {
+  const ElasticShpb model;
+  const auto records = model.solve();
+  double squares = 0.0;
+  std::size_t count = 0;
+  Reducer reducer;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Reduction r = reducer.reduce(model.shot(records, 4e-6, 16, 0.01, seed));
+    ASSERT_TRUE(r.quality.reducible);
+    for (std::size_t n = 0; n < r.time_s.size(); ++n) {
+      const double t = std::max(0.0, r.time_s[n] + r.arrival_s - records.truth.arrival_s);
+      const double error = r.force_back_N[n] - records.truth.at(records.truth.force_N, t);
+      squares += error * error;
+      ++count;
+    }
+  }
+  // One gauge's noise as force is E A 4e-6. Within the window the wave that comes back from the far
+  // end adds another, independent one for part of the time: sqrt(2) at most. The filter takes some
+  // away.
+  const double one_gauge_N = 206e9 * 0.25 * 3.14159265358979 * 0.020 * 0.020 * 4e-6;
+  const double rms_N = std::sqrt(squares / static_cast<double>(count));
+  EXPECT_LT(rms_N, std::sqrt(2.0) * one_gauge_N);
+  EXPECT_GT(rms_N, 0.3 * one_gauge_N);
+}
+
+TEST(ElasticReduction, ArrivalScattersAsItsSigmaSays) {
+  const ElasticShpb model;
+  const auto records = model.solve();
+  const double noiseless_s = Reducer().reduce(noiseless(model, records)).arrival_s;
+  double squares = 0.0;
+  double stated = 0.0;
+  constexpr int kShots = 60;
+  Reducer reducer;
+  for (unsigned seed = 1; seed <= kShots; ++seed) {
+    const Reduction r = reducer.reduce(model.shot(records, 4e-6, 16, 0.01, seed));
+    squares += std::pow(r.arrival_s - noiseless_s, 2);
+    stated += r.arrival_sigma_s;
+  }
+  const double scatter_s = std::sqrt(squares / kShots);
+  EXPECT_LT(scatter_s, 3.0 * stated / kShots);
+  EXPECT_GT(scatter_s, stated / kShots / 3.0);
+  // A raised-cosine edge of 20 us: the foot is found within 5 % of the edge.
+  EXPECT_NEAR(noiseless_s, records.truth.arrival_s, 1e-6);
+}
+
+TEST(ElasticReduction, TheSameShotGivesTheSameBitsWhateverCameBefore) {
+  const ElasticShpb model;
+  const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 7);
+  const Reduction alone = Reducer().reduce(shot);
+  ElasticShpb other;
+  other.duration_s = 1.2e-3;
+  other.gauge_to_A_m = 0.4;
+  Reducer busy;
+  (void)busy.reduce(other.shot(other.solve(), 20e-6, 12, 0.01, 3));
+  const Reduction after = busy.reduce(shot);
+  EXPECT_EQ(alone.stress_Pa, after.stress_Pa);
+  EXPECT_EQ(alone.strain, after.strain);
+  EXPECT_EQ(alone.time_s, after.time_s);
+  EXPECT_EQ(alone.strain_rate_per_s, after.strain_rate_per_s);
+}
+
+TEST(ElasticReduction, AShotWithAHoleIsNotReduced) {
+  const ElasticShpb model;
+  Shot shot = noiseless(model, model.solve());
+  shot.gaps.push_back({.first_tick = 700, .samples = 12, .known = true});
+  const Reduction r = Reducer().reduce(shot);
+  EXPECT_FALSE(r.quality.reducible);
+  EXPECT_EQ(r.quality.verdict(), Verdict::fail);
+  EXPECT_NE(r.quality.reason.find("12 samples are missing"), std::string::npos) << r.quality.reason;
+  EXPECT_TRUE(r.stress_Pa.empty());
+}
+
+TEST(ElasticReduction, AClippedShotIsNotReduced) {
+  const ElasticShpb model;
+  const Shot shot = model.shot(model.solve(), 0.0, 16, 0.0009, 1);
+  const Reduction r = Reducer().reduce(shot);
+  EXPECT_FALSE(r.quality.reducible);
+  EXPECT_NE(r.quality.reason.find("codes of g1"), std::string::npos) << r.quality.reason;
+}
+
+TEST(ElasticReduction, NoiseAloneHoldsNoPulse) {
+  ElasticShpb model;
+  model.pulse_strain = 0.0;
+  const auto records = model.solve();
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Reduction r = Reducer().reduce(model.shot(records, 4e-6, 16, 0.01, seed));
+    EXPECT_FALSE(r.quality.reducible) << seed;
+    EXPECT_NE(r.quality.reason.find("no incident pulse"), std::string::npos) << r.quality.reason;
+  }
+}
+
+TEST(ElasticReduction, ARecordThatEndsTooEarlySaysSo) {
+  ElasticShpb model;
+  model.duration_s = 450e-6;
+  const Reduction r = Reducer().reduce(noiseless(model, model.solve()));
+  EXPECT_FALSE(r.quality.reducible);
+  EXPECT_NE(r.quality.reason.find("ends before"), std::string::npos) << r.quality.reason;
+}
+
+TEST(ElasticReduction, APulseLongerThanTheGaugeAllowsIsNamed) {
+  ElasticShpb model;
+  model.pulse_s = 230e-6;  // the specimen answers after 195 us
+  const Reduction r = Reducer().reduce(noiseless(model, model.solve()));
+  EXPECT_EQ(check_of(r, "window_overlap").verdict, Verdict::fail);
+  EXPECT_EQ(
+      check_of(Reducer().reduce(noiseless({}, ElasticShpb{}.solve())), "window_overlap").verdict,
+      Verdict::pass);
+}
+
+TEST(ElasticReduction, AGaugeFiledInTheWrongPlaceShowsInTheLag) {
+  const ElasticShpb model;
+  Shot shot = noiseless(model, model.solve());
+  EXPECT_EQ(check_of(Reducer().reduce(shot), "front_back_lag").verdict, Verdict::pass);
+  shot.bench.gauges[1].position_m = {0.340};  // 0.300 in truth: 7.8 us
+  const Check lag = check_of(Reducer().reduce(shot), "front_back_lag");
+  EXPECT_EQ(lag.verdict, Verdict::warn);
+  EXPECT_NEAR(lag.value, -0.040 / std::sqrt(206e9 / 7850.0), 1e-6);
+}
+
+TEST(ElasticReduction, BenchesThatCannotBeReducedAreRefusedWithTheMend) {
+  const ElasticShpb model;
+  Shot shot = noiseless(model, model.solve());
+  Shot no_output_gauge = shot;
+  no_output_gauge.bench.gauges[1].bar = "input";
+  EXPECT_THROW((void)Reducer().reduce(no_output_gauge), InputError);
+  Shot bar = shot;
+  bar.bench.kind = BenchKind::bar;
+  EXPECT_THROW((void)Reducer().reduce(bar), InputError);
+  Shot too_few = shot;
+  too_few.channels.pop_back();
+  EXPECT_THROW((void)Reducer().reduce(too_few), InputError);
+}
+
+}  // namespace
+}  // namespace kolsky
