@@ -3,32 +3,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "processing/base/time.hpp"
+#include "processing/base/shot.hpp"
 #include "proto/forward.hpp"
 
 namespace kolsky {
-
-/// One previewed channel; value = (code + offset) * scale, as in ChannelRecord.
-struct PreviewChannel {
-  std::string gauge;
-  std::string unit;
-  double scale = 1.0;
-  double offset = 0.0;
-  int bits = 16;
-  std::int32_t code_min = -32768;
-  std::int32_t code_max = 32767;
-};
 
 /// Reduces what streams in to one minimum and one maximum per step and channel. Pure; `feed`
 /// allocates nothing. Ticks may jump: the message under way is then cut short and the samples
 /// between are counted.
 class PreviewDecimator {
  public:
+  /// @param channels  what the codes mean; their own codes are not looked at
   /// @param samples_per_step, steps_per_message  at least 1 each
-  PreviewDecimator(std::vector<PreviewChannel> channels, SampleRate rate,
+  PreviewDecimator(std::vector<ChannelRecord> channels, SampleRate rate,
                    std::size_t samples_per_step, std::size_t steps_per_message);
 
   /// Takes samples until a message is complete. @param codes  one span per channel, all equally
@@ -46,7 +35,7 @@ class PreviewDecimator {
   void begin(Tick first_tick) noexcept;
   void add(std::size_t channel, std::span<const std::int32_t> codes) noexcept;
 
-  std::vector<PreviewChannel> channels_;
+  std::vector<ChannelRecord> channels_;
   SampleRate rate_;
   std::size_t samples_per_step_;
   std::size_t steps_per_message_;
