@@ -11,7 +11,7 @@ namespace kolsky {
 [[nodiscard]] Material read_material(const std::filesystem::path& path);
 [[nodiscard]] Material parse_material(const std::string& text, const std::string& name);
 
-/// TOML with 17 digits, so that reading it again gives the same bits.
+/// TOML with as many digits as it takes for the same bits to be read back.
 [[nodiscard]] std::string format_material(const Material& material);
 
 }  // namespace kolsky

@@ -180,6 +180,20 @@ std::optional<std::string> TomlTable::optional_text(const std::string& key) cons
   return has(key) ? std::optional(text(key)) : std::nullopt;
 }
 
+std::size_t TomlTable::choice(const std::string& key,
+                              std::initializer_list<std::string_view> names) const {
+  const std::string chosen = text(key);
+  const auto* const found = std::find(names.begin(), names.end(), chosen);
+  if (found == names.end()) {
+    std::string all;
+    for (const std::string_view name : names) {
+      all += (all.empty() ? "\"" : ", \"") + std::string(name) + "\"";
+    }
+    throw error(key, "is \"" + chosen + "\"", "give one of " + all);
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
 bool TomlTable::flag(const std::string& key) const {
   const TomlNode& node = need(key);
   if (node.kind != TomlNode::Kind::boolean) {

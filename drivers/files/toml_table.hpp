@@ -43,6 +43,9 @@ class TomlTable {
   [[nodiscard]] std::optional<std::int64_t> optional_integer(const std::string& key) const;
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] std::optional<std::string> optional_text(const std::string& key) const;
+  /// The text, which must be one of `names`: its index there.
+  [[nodiscard]] std::size_t choice(const std::string& key,
+                                   std::initializer_list<std::string_view> names) const;
   [[nodiscard]] bool flag(const std::string& key) const;
   [[nodiscard]] std::optional<bool> optional_flag(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;

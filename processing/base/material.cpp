@@ -1,6 +1,17 @@
 #include "processing/base/material.hpp"
 
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
+
 namespace kolsky {
+
+namespace {
+
+constexpr Range kModulus{1e5, 1e15, "Pa", "give pascals: 5.66 GPa is 5.66e9"};
+constexpr Range kViscosity{1e-2, 1e15, "Pa s", "give pascal seconds: 1.81 MPa s is 1.81e6"};
+constexpr Range kRetardation{1e-7, 10.0, "s", ""};
+
+}  // namespace
 
 Material paper_pmma() {
   Material pmma;
@@ -11,6 +22,23 @@ Material paper_pmma() {
   pmma.eta2_Pa_s = {1.81e6, 0.0};
   pmma.source = "the paper's PMMA (Table 4, row 1)";
   return pmma;
+}
+
+void check(const Material& material) {
+  require_in_range("density_kg_m3", material.density_kg_m3, ranges::kDensity);
+  require_in_range("poisson_ratio", material.poisson_ratio, ranges::kPoissonRatio);
+  require_in_range("E1_Pa", material.E1_Pa, kModulus);
+  require_in_range("E2_Pa", material.E2_Pa, kModulus);
+  require_in_range("eta2_Pa_s", material.eta2_Pa_s, kViscosity);
+  const double retardation_s = material.eta2_Pa_s / material.E2_Pa;
+  if (retardation_s < kRetardation.least || retardation_s > kRetardation.most) {
+    throw InputError("eta2_Pa_s",
+                     "makes a retardation time eta2/E2 of " +
+                         in_words(retardation_s, kRetardation.unit) + ", outside " +
+                         in_words(kRetardation.least, "") + " to " +
+                         in_words(kRetardation.most, kRetardation.unit),
+                     "check its unit: 2.86 kPa s is 2860, 1.81 MPa s is 1.81e6");
+  }
 }
 
 }  // namespace kolsky

@@ -6,8 +6,8 @@
 
 namespace kolsky {
 
-/// A three-element solid, J = 1/E1 + 1/(E2 + i w eta2): a spring in series with a spring and a dashpot in
-/// parallel (paper, eq. A3).
+/// A three-element solid, J = 1/E1 + 1/(E2 + i w eta2): a spring in series with a spring and a
+/// dashpot in parallel (paper, eq. A3).
 struct Material {
   Measured density_kg_m3;
   Measured poisson_ratio;
