@@ -123,7 +123,7 @@ class CommandLine {
   void refuse_not_finite() const {
     for (const Argument& argument : command_.arguments) {
       const auto* const* number = std::get_if<std::optional<double>*>(&argument.target);
-      if (number != nullptr && (*number)->has_value() && !std::isfinite(**number)) {
+      if (number != nullptr && (*number)->has_value() && !std::isfinite(***number)) {
         throw InputError(place_of(command_) + ": " + argument.name, "not a finite number",
                          "give " + argument.help);
       }

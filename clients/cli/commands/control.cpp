@@ -76,10 +76,14 @@ std::string wait_for_result(ControlClient& client, const std::string& previous, 
 
 using Action = std::function<void(ControlClient&)>;
 
+void print(Context& context, const JsonValue& object, const std::string& line) {
+  context.out << (context.json ? to_text(object) : line) << "\n";
+}
+
 int act(const Action& action, const std::string& done, Context& context) {
   ControlClient client = connect_patiently(context.endpoint);
   action(client);
-  context.out << (context.json ? to_text(JsonObject{{"done", done}}) : done) << "\n";
+  print(context, JsonObject{{"done", done}}, done);
   return kDone;
 }
 
@@ -92,9 +96,7 @@ int act_and_wait(const Action& action, const std::string& done, std::optional<do
   const std::string previous = client.status().last_shot_id();
   action(client);
   const std::string id = wait_for_result(client, previous, *patience_s);
-  context.out << (context.json ? to_text(JsonObject{{"done", done}, {"shot", id}})
-                               : done + ": shot " + id)
-              << "\n";
+  print(context, JsonObject{{"done", done}, {"shot", id}}, done + ": shot " + id);
   return kDone;
 }
 

@@ -81,6 +81,18 @@ Subscriber subscribe(const std::string& endpoint, std::vector<std::string> topic
   return Subscriber(options);
 }
 
+// "tcp://0.0.0.0:5600" with the host of "tcp://lab:5602" is "tcp://lab:5600"; other transports and
+// addresses stay as they are.
+std::string with_host_of(const std::string& bound, const std::string& control) {
+  const std::size_t port = bound.rfind(':');
+  for (const std::string_view anywhere : {"tcp://*", "tcp://0.0.0.0", "tcp://[::]"}) {
+    if (bound.substr(0, port) == anywhere && control.starts_with("tcp://")) {
+      return control.substr(0, control.rfind(':')) + bound.substr(port);
+    }
+  }
+  return bound;
+}
+
 class Watch {
  public:
   Watch(const Settings& settings, Context& context)
@@ -88,8 +100,10 @@ class Watch {
         context_(context),
         control_(connect(context.endpoint)),
         told_(control_.status()),
-        results_(subscribe(told_.results_endpoint(), SubscriberOptions{}.topics)),
-        preview_(subscribe(told_.preview_endpoint(), {wire::kPreviewTopic})) {
+        results_(subscribe(reachable(told_.results_endpoint(), wire::kDefaultResultsEndpoint),
+                           SubscriberOptions{}.topics)),
+        preview_(subscribe(reachable(told_.preview_endpoint(), wire::kDefaultPreviewEndpoint),
+                           {wire::kPreviewTopic})) {
     const v1::Snapshot snapshot = results_.join(control_, kJoinPatience);
     view_.begin(snapshot, control_.list_shots(kListedShots));
   }
@@ -115,6 +129,12 @@ class Watch {
   [[nodiscard]] const LiveView& view() const { return view_; }
 
  private:
+  // What the daemon binds, as it is reached from here: by the host that control was reached by.
+  [[nodiscard]] std::string reachable(const std::string& bound,
+                                      const std::string& otherwise) const {
+    return bound.empty() ? otherwise : with_host_of(bound, context_.endpoint);
+  }
+
   [[nodiscard]] bool over(Clock::time_point begin) const {
     if (settings_.count.has_value() && view_.results() >= *settings_.count) {
       return true;
