@@ -1,0 +1,16 @@
+#include "clients/connection/endpoint.hpp"
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+void connect_socket(zmq::socket_t& socket, const std::string& endpoint) {
+  try {
+    socket.connect(endpoint);
+  } catch (const zmq::error_t& error) {
+    throw InputError("endpoint \"" + endpoint + "\"", error.what(),
+                     "write tcp://HOST:PORT, as tcp://127.0.0.1:5602");
+  }
+}
+
+}  // namespace kolsky
