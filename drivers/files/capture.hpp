@@ -8,9 +8,9 @@
 
 namespace kolsky {
 
-/// Writes a shot once: temporary file in the same folder, fsync, rename, fsync of the folder, read-only.
-/// NeXus: NXentry with an NXdata of the gauges over time, so that h5web, silx and nexpy plot it; raw codes
-/// with their SHA-256 beside it. See docs/capture-format.md.
+/// Writes a shot once: temporary file in the same folder, fsync, rename, fsync of the folder,
+/// read-only. NeXus: NXentry with an NXdata of the gauges over time, so that h5web, silx and nexpy
+/// plot it; raw codes with their SHA-256 beside it. See docs/capture-format.md.
 /// @throws InputError if the file exists (nothing stored is overwritten) or cannot be written
 void write_capture(const Shot& shot, const std::filesystem::path& path);
 

@@ -13,8 +13,8 @@ namespace kolsky {
 struct CatalogueEntry {
   std::string id;
   std::int64_t utc_ns = 0;
-  std::string capture;       ///< file name inside store/shots
-  std::string verdict;       ///< "pass", "warn", "fail"; empty until judged
+  std::string capture;  ///< file name inside store/shots
+  std::string verdict;  ///< "pass", "warn", "fail"; empty until judged
   bool reducible = false;
   std::string reason;
   double peak_stress_Pa = 0.0;
@@ -24,11 +24,22 @@ struct CatalogueEntry {
 /// Derived data, `store/catalogue.sqlite`; lost or broken, it is made again from the captures.
 class Catalogue {
  public:
+  /// Opens it, or makes it. A file that is no catalogue of this version, or a broken one, is
+  /// replaced.
+  /// @throws InputError if the folder cannot be written
   explicit Catalogue(const std::filesystem::path& path);
   ~Catalogue();
   Catalogue(const Catalogue&) = delete;
   Catalogue& operator=(const Catalogue&) = delete;
 
+  /// Whether opening found no catalogue to go on with: fill it from the captures, with
+  /// `replace_all`.
+  [[nodiscard]] bool is_new() const;
+  /// Makes these the only entries, all at once.
+  void replace_all(const std::vector<CatalogueEntry>& entries);
+
+  /// Adds an entry, or replaces the one with its id. From any thread, as the rest.
+  /// @throws std::runtime_error where the database refuses (a full disk)
   void put(const CatalogueEntry& entry);
   /// Newest first. @param most 0: all
   [[nodiscard]] std::vector<CatalogueEntry> newest(std::size_t most = 0) const;

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -11,29 +12,54 @@
 namespace kolsky {
 
 /// The truth about a shot until its capture is durable: an append-only file of checksummed records,
-/// `store/journal/<boot>.kj`. A record is whole or it is not there; whatever a crash leaves at the end is
-/// ignored. Little endian: magic "KJR1", kind u32, payload bytes u64, XXH3-64 of header fields and
-/// payload, payload.
+/// `store/journal/<boot>.kj`. A record is whole or it is not there; whatever a crash leaves at the
+/// end is ignored. See docs/capture-format.md. Two threads may append: one the shots, one what was
+/// stored.
 class Journal {
  public:
-  /// Makes a new file. @throws InputError if it exists or the folder cannot be written
+  /// Makes a new file, durable under its name, with room ahead.
+  /// @throws InputError if it exists or the folder cannot be written
   explicit Journal(const std::filesystem::path& path);
+  /// Gives the room left over back.
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// Appends the shot and returns when it is durable. @throws std::runtime_error on a write error
+  /// Appends the shot and returns when it is durable: one write and one fdatasync.
+  /// @throws InputError if it could never become a capture (see check_storable), nothing is written
+  /// then
+  /// @throws std::runtime_error on a write error; after one of fdatasync this journal takes no
+  /// more, since
+  ///   what the disk holds is unknown: go on with a new one
   void append_shot(const Shot& shot);
 
-  /// Says that the capture of this shot is durable at `capture`.
+  /// Says that the capture of this shot is durable at `capture`. Lost in a crash it harms nothing,
+  /// so it does not wait for the disk; it tops up the room ahead while nobody waits.
+  /// @throws std::runtime_error on a write error
   void append_stored(const std::string& shot_id, const std::filesystem::path& capture);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
+  void append();
+  void sync();
+  void make_room(std::uint64_t end);
+  void fill_ahead(std::uint64_t end);
+
   std::filesystem::path path_;
   int file_ = -1;
+  std::mutex append_mutex_;  ///< guards the two that follow
   std::vector<std::byte> buffer_;
+  std::uint64_t end_ = 0;
+  std::mutex room_mutex_;                ///< held while the file grows
+  std::atomic<std::uint64_t> room_ = 0;  ///< bytes the file has, used or not
+  std::atomic<bool> failed_ = false;
+};
+
+/// Damage inside a journal.
+struct JournalProblem {
+  std::uint64_t offset = 0;
+  std::string text;
 };
 
 /// What a journal file holds.
@@ -46,6 +72,8 @@ struct JournalContents {
   std::vector<Stored> stored;
   std::uint64_t whole_records = 0;
   std::uint64_t bytes_ignored = 0;  ///< after the last whole record: a write that a crash cut short
+  std::vector<JournalProblem>
+      problems;  ///< records that changed after they were written: not in `shots`
 };
 
 /// @throws InputError if the file is not a journal

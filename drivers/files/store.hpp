@@ -28,17 +28,22 @@ struct StoreReport {
   std::size_t journals = 0;
   std::size_t journaled_shots = 0;
   std::size_t captures = 0;
-  std::uint64_t bytes_ignored = 0;     ///< torn ends of journals: harmless, counted
+  std::uint64_t bytes_ignored = 0;  ///< torn ends of journals: harmless, counted
+  std::size_t temporary_files =
+      0;  ///< removed by recovery: what a crash left of captures being written
   std::vector<std::string> recovered;  ///< ids whose capture was written from the journal
   std::vector<Problem> problems;
 };
 
-/// Checks every journal record and every capture against its checksums, and that every journaled shot has a
-/// capture with the same codes. Changes nothing.
+/// Checks every journal record and every capture against its checksums, and that every journaled
+/// shot has a capture that says the same. Changes nothing.
+/// @throws InputError if the folder is not a store
 [[nodiscard]] StoreReport verify_store(const StoreLayout& store);
 
-/// Writes the capture of every whole journaled shot that has none, and removes temporary files a crash
-/// left.
+/// Writes the capture of every whole journaled shot that has none, and removes temporary files a
+/// crash left. Nothing stored is overwritten: a capture that differs from the journal is a problem
+/// to report.
+/// @throws InputError if the folders cannot be made
 [[nodiscard]] StoreReport recover_store(const StoreLayout& store);
 
 }  // namespace kolsky

@@ -1,0 +1,110 @@
+#include <matio.h>
+
+#include <cctype>
+#include <memory>
+#include <set>
+
+#include "drivers/files/export_table.hpp"
+#include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr mode_t kMode = 0644;
+constexpr std::size_t kLongestName = 63;  // MATLAB's namelengthmax
+
+using MatFile = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
+using MatVariable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+
+/// A name MATLAB takes, near to `wanted` and not used before.
+std::string variable_name(const std::string& wanted, std::set<std::string>& used) {
+  std::string name;
+  for (const char c : wanted) {
+    const bool good = c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0;
+    name += good ? c : '_';
+  }
+  if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) {
+    name.insert(0, "x");
+  }
+  name.resize(std::min(name.size(), kLongestName - 4));
+  std::string unique = name;
+  for (int i = 2; !used.insert(unique).second; ++i) {
+    unique = name + "_" + std::to_string(i);
+  }
+  return unique;
+}
+
+class MatWriter {
+ public:
+  MatWriter(const std::filesystem::path& temporary, std::filesystem::path path)
+      : path_(std::move(path)),
+        file_(Mat_CreateVer(temporary.c_str(), "MATLAB 5.0 MAT-file, exported by Kolsky",
+                            MAT_FT_MAT5),
+              &Mat_Close) {
+    if (file_ == nullptr) {
+      fail("the file");
+    }
+  }
+
+  void put(const std::string& wanted, const std::vector<double>& values) {
+    std::size_t extents[2] = {values.size(), 1};
+    put(wanted, MAT_C_DOUBLE, MAT_T_DOUBLE, extents, values.data());
+  }
+  void put(const std::string& wanted, const std::string& text) {
+    std::size_t extents[2] = {text.empty() ? 0U : 1U, text.size()};
+    put(wanted, MAT_C_CHAR, MAT_T_UTF8, extents, text.data());
+  }
+  /// Hands what is buffered to the file.
+  void finish() {
+    if (Mat_Close(file_.release()) != 0) {
+      fail("the file");
+    }
+  }
+
+ private:
+  void put(const std::string& wanted, matio_classes kind, matio_types type, std::size_t* extents,
+           const void* data) {
+    const std::string name = variable_name(wanted, used_);
+    // matio copies the data and leaves this alone, its signature only does not say so.
+    const MatVariable variable(
+        Mat_VarCreate(name.c_str(), kind, type, 2, extents, const_cast<void*>(data), 0),
+        &Mat_VarFree);
+    if (variable == nullptr ||
+        Mat_VarWrite(file_.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) {
+      fail(name);
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(path_.string() + ": " + what, "cannot be written",
+                     "check the folder and the space on the disk");
+  }
+
+  std::filesystem::path path_;
+  MatFile file_;
+  std::set<std::string> used_;
+};
+
+}  // namespace
+
+void export_mat(const Shot& shot, const Reduction& reduction, const std::filesystem::path& path) {
+  NewFile file(path);
+  MatWriter writer(file.temporary(), path);
+  for (const ExportColumn& column : history_table(reduction)) {
+    writer.put(column.name, column.values);
+  }
+  const ExportTable gauges = gauge_table(shot);
+  writer.put("gauge_time_s", gauges.front().values);
+  for (auto column = gauges.begin() + 1; column != gauges.end(); ++column) {
+    writer.put(column->name, column->values);
+  }
+  writer.put("shot_id", shot.id);
+  writer.put("bench_toml", shot.bench_toml);
+  writer.put("reason", reduction.quality.reason);
+  writer.finish();
+  file.publish(kMode);
+}
+
+}  // namespace kolsky

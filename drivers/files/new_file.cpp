@@ -1,0 +1,145 @@
+#include "drivers/files/new_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr std::string_view kSuffix = ".part";
+
+std::string reason(int error) {
+  return std::system_category().message(error);
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+InputError taken(const std::filesystem::path& path) {
+  return {path.string(), "exists already", "give another name: nothing stored is overwritten"};
+}
+
+InputError unwritable(const std::filesystem::path& path, int error) {
+  return {path.string(), "cannot be written (" + reason(error) + ")",
+          "check the folder, its permissions and the space on the disk"};
+}
+
+/// 0, or what renaming failed with. File systems without an exclusive rename get link and unlink.
+int rename_without_overwriting(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) {
+    return 0;
+  }
+  if (errno != EINVAL && errno != ENOSYS) {
+    return errno;
+  }
+  if (::link(from.c_str(), to.c_str()) != 0) {
+    return errno;
+  }
+  ::unlink(from.c_str());
+  return 0;
+}
+
+bool is_abandoned_name(const std::string& name) {
+  return name.size() > kSuffix.size() && name.front() == '.' && name.ends_with(kSuffix);
+}
+
+}  // namespace
+
+NewFile::NewFile(std::filesystem::path path) : path_(std::move(path)) {
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(path_, ignored))) {
+    throw taken(path_);
+  }
+  std::string name = (folder_of(path_) / ("." + path_.filename().string() + ".XXXXXX")).string();
+  name += kSuffix;
+  file_ = ::mkostemps(name.data(), static_cast<int>(kSuffix.size()), O_CLOEXEC);
+  if (file_ < 0) {
+    throw unwritable(path_, errno);
+  }
+  temporary_ = name;
+  ::flock(file_, LOCK_EX | LOCK_NB);  // says that it is not abandoned
+}
+
+NewFile::~NewFile() {
+  if (!temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+  }
+  if (file_ >= 0) {
+    ::close(file_);
+  }
+}
+
+void NewFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written < 0) {
+      throw unwritable(path_, errno);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void NewFile::write(const std::string& text) {
+  write(std::as_bytes(std::span(text)));
+}
+
+void NewFile::publish(mode_t mode) {
+  if (::fchmod(file_, mode) != 0 || ::fsync(file_) != 0) {
+    throw unwritable(path_, errno);
+  }
+  if (const int error = rename_without_overwriting(temporary_, path_); error != 0) {
+    throw error == EEXIST ? taken(path_) : unwritable(path_, error);
+  }
+  temporary_.clear();
+  sync_folder(folder_of(path_));
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) {
+    ::close(descriptor);
+  }
+  if (!synced) {
+    throw unwritable(folder, error);
+  }
+}
+
+std::size_t remove_abandoned_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> candidates;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (is_abandoned_name(entry.path().filename().string()) && entry.is_regular_file()) {
+      candidates.push_back(entry.path());
+    }
+  }
+  std::size_t removed = 0;
+  for (const auto& path : candidates) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) {
+      continue;
+    }
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) == 0) {
+      ++removed;
+    }
+    ::close(descriptor);
+  }
+  return removed;
+}
+
+}  // namespace kolsky

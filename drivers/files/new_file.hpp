@@ -1,0 +1,48 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace kolsky {
+
+/// A file that appears under its name whole or not at all, and never in the place of another: it
+/// grows under a temporary name in the same folder, and `publish` makes it durable and gives it its
+/// name. Dropped without `publish`, it leaves nothing.
+class NewFile {
+ public:
+  /// @throws InputError if the name is taken or the folder cannot be written
+  explicit NewFile(std::filesystem::path path);
+  ~NewFile();
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  /// Where the content goes until then; for libraries that open files by name.
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+
+  /// Appends. @throws InputError, as on a full disk
+  void write(std::span<const std::byte> bytes);
+  void write(const std::string& text);
+
+  /// fsync, rename without overwriting, fsync of the folder. @throws InputError if the name is
+  /// taken by now
+  void publish(mode_t mode);
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  int file_ = -1;
+};
+
+/// Makes a folder's entries durable. @throws InputError
+void sync_folder(const std::filesystem::path& folder);
+
+/// Removes what a crash left of `NewFile`s in a folder; those that a living process is writing
+/// stay.
+/// @return how many were removed
+std::size_t remove_abandoned_files(const std::filesystem::path& folder);
+
+}  // namespace kolsky

@@ -1,0 +1,179 @@
+#include "drivers/files/store.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "drivers/files/capture.hpp"
+#include "drivers/files/journal_scan.hpp"
+#include "drivers/files/new_file.hpp"
+#include "drivers/files/sha256.hpp"
+#include "drivers/files/shot_codec.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// What two copies of a shot are compared by.
+struct Fingerprint {
+  std::string metadata;
+  std::string everything;
+  friend bool operator==(const Fingerprint&, const Fingerprint&) = default;
+};
+
+Fingerprint fingerprint_of(const Shot& shot) {
+  std::vector<std::byte> bytes;
+  encode_shot(shot, bytes);
+  return {sha256_hex(encode_metadata(shot)), sha256_hex(bytes)};
+}
+
+struct JournaledShot {
+  Fingerprint fingerprint;
+  std::string journal;
+};
+
+using JournaledShots = std::map<std::string, JournaledShot>;
+
+void add_problem(StoreReport& report, const InputError& error) {
+  report.problems.push_back({error.place(), error.problem() + "; " + error.mend()});
+}
+
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
+                                            const std::string& extension) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& item : std::filesystem::directory_iterator(folder, error)) {
+    if (item.path().extension() == extension && item.path().filename().string().front() != '.') {
+      files.push_back(item.path());
+    }
+  }
+  if (error) {
+    throw InputError(folder.string(), "cannot be read (" + error.message() + ")",
+                     "name a store: a folder with journal/ and shots/ in it");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Hands on every whole shot of every journal; a shot journaled twice the same counts once.
+template <typename Visit>
+JournaledShots visit_journals(const StoreLayout& store, StoreReport& report, const Visit& visit) {
+  JournaledShots shots;
+  for (const auto& path : files_in(store.journals(), ".kj")) {
+    ++report.journals;
+    try {
+      const auto scan = scan_journal(path, [&](const JournalRecord& record) {
+        if (record.kind != journal_record::Kind::shot) {
+          return;
+        }
+        const Shot shot = journaled_shot(record);
+        const Fingerprint fingerprint = fingerprint_of(shot);
+        const auto [known, first] =
+            shots.try_emplace(shot.id, JournaledShot{fingerprint, path.string()});
+        if (first) {
+          ++report.journaled_shots;
+          visit(shot, known->second);
+        } else if (known->second.fingerprint != fingerprint) {
+          report.problems.push_back(
+              {path.string(), "holds a second, different shot " + shot.id + " (the first is in " +
+                                  known->second.journal + "); it stays in the journal only"});
+        }
+      });
+      report.bytes_ignored += scan.bytes_ignored;
+      for (const JournalProblem& problem : scan.problems) {
+        report.problems.push_back(
+            {path.string(), "byte " + std::to_string(problem.offset) + ": " + problem.text});
+      }
+    } catch (const InputError& error) {
+      add_problem(report, error);
+    }
+  }
+  return shots;
+}
+
+void compare(const std::filesystem::path& capture, const Fingerprint& stored,
+             const JournaledShot& journaled, StoreReport& report) {
+  if (stored == journaled.fingerprint) {
+    return;
+  }
+  const bool codes = stored.metadata == journaled.fingerprint.metadata;
+  report.problems.push_back(
+      {capture.string(), std::string(codes ? "the codes differ" : "the shot differs") +
+                             " from what " + journaled.journal +
+                             " holds; neither is overwritten, compare them"});
+}
+
+void check_capture(const std::filesystem::path& path, const JournaledShots& journaled,
+                   StoreReport& report) {
+  try {
+    const Shot shot = read_capture(path);
+    if (path.stem() != shot.id) {
+      report.problems.push_back(
+          {path.string(), "holds the shot " + shot.id + "; give the file the name of its shot"});
+    }
+    if (const auto known = journaled.find(shot.id); known != journaled.end()) {
+      compare(path, fingerprint_of(shot), known->second, report);
+    }
+  } catch (const InputError& error) {
+    add_problem(report, error);
+  }
+}
+
+void recover_shot(const Shot& shot, const JournaledShot& journaled,
+                  const std::filesystem::path& capture, StoreReport& report) {
+  try {
+    if (std::filesystem::exists(std::filesystem::symlink_status(capture))) {
+      compare(capture, fingerprint_of(read_capture(capture)), journaled, report);
+      return;
+    }
+    write_capture(shot, capture);
+    report.recovered.push_back(shot.id);
+  } catch (const InputError& error) {
+    add_problem(report, error);
+  }
+}
+
+}  // namespace
+
+void StoreLayout::create() const {
+  for (const auto& folder : {root, journals(), shots()}) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+      throw InputError(folder.string(), "cannot be made (" + error.message() + ")",
+                       "check the folder and its permissions");
+    }
+  }
+  sync_folder(root);
+}
+
+StoreReport verify_store(const StoreLayout& store) {
+  StoreReport report;
+  const auto journaled = visit_journals(store, report, [](const Shot&, const JournaledShot&) {});
+  for (const auto& path : files_in(store.shots(), ".h5")) {
+    ++report.captures;
+    check_capture(path, journaled, report);
+  }
+  for (const auto& [id, shot] : journaled) {
+    if (std::error_code ignored; !std::filesystem::exists(store.capture_of(id), ignored)) {
+      report.problems.push_back(
+          {shot.journal, "holds the shot " + id +
+                             ", which has no capture; the daemon writes it at "
+                             "its next start"});
+    }
+  }
+  return report;
+}
+
+StoreReport recover_store(const StoreLayout& store) {
+  store.create();
+  StoreReport report;
+  report.temporary_files = remove_abandoned_files(store.shots());
+  visit_journals(store, report, [&](const Shot& shot, const JournaledShot& journaled) {
+    recover_shot(shot, journaled, store.capture_of(shot.id), report);
+  });
+  report.captures = files_in(store.shots(), ".h5").size();
+  return report;
+}
+
+}  // namespace kolsky
