@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "drivers/files/nearest_name.hpp"
 #include "processing/base/error.hpp"
@@ -10,6 +11,9 @@
 
 namespace kolsky::cli {
 namespace {
+
+constexpr std::size_t kNameColumns = 28;
+constexpr std::size_t kHelpColumns = 100;
 
 std::string place_of(const Command& command) {
   return "kolsky " + command.name;
@@ -29,13 +33,36 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// CLI11 indents the lines of a help text but does not break them.
+std::string wrapped(const std::string& text) {
+  std::string lines;
+  std::size_t column = 0;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) {
+    const bool fits = column + 1 + word.size() <= kHelpColumns - kNameColumns;
+    lines += (column == 0 ? "" : fits ? " " : "\n") + word;
+    column = fits && column > 0 ? column + 1 + word.size() : word.size();
+  }
+  return lines;
+}
+
+std::string refuse_negative(const std::string& count) {
+  return count.starts_with("-") ? "a count is not negative" : "";
+}
+
 CLI::Option* add(CLI::App& app, const Argument& argument) {
+  const std::string help = wrapped(argument.help);
   CLI::Option* option = std::visit(
       [&](auto* target) {
-        if constexpr (std::is_same_v<decltype(target), bool*>) {
-          return app.add_flag(argument.name, *target, argument.help);
+        using Value = std::remove_pointer_t<decltype(target)>;
+        if constexpr (std::is_same_v<Value, bool>) {
+          return app.add_flag(argument.name, *target, help)->disable_flag_override();
         } else {
-          return app.add_option(argument.name, *target, argument.help)->type_name(argument.value);
+          CLI::Option* taker = app.add_option(argument.name, *target, help);
+          taker->type_name(is_option(argument.name) ? argument.value : "");
+          // A negative count would wrap round.
+          return std::is_same_v<Value, std::optional<std::uint64_t>> ? taker->check(refuse_negative)
+                                                                     : taker;
         }
       },
       argument.target);
@@ -48,16 +75,18 @@ CLI::Option* add(CLI::App& app, const Argument& argument) {
 class CommandLine {
  public:
   explicit CommandLine(const Command& command)
-      : command_(command), app_(command.purpose, "kolsky " + command.name) {
+      : command_(command),
+        app_("kolsky " + command.name + ": " + command.purpose, "kolsky " + command.name) {
     app_.set_help_flag();
     // What is left over is reported here, with the nearest name, before anything that is missing.
     app_.allow_extras();
-    app_.get_formatter()->column_width(34);
+    app_.get_formatter()->column_width(kNameColumns);
     app_.footer("Examples:\n" + command.examples);
     for (const Argument& argument : command.arguments) {
       options_.push_back(add(app_, argument));
     }
-    app_.add_flag("--json", common_.json, "print one JSON object and nothing else");
+    app_.add_flag("--json", common_.json, "print one JSON object and nothing else")
+        ->disable_flag_override();
     if (command.uses_daemon) {
       common_.endpoint = wire::kDefaultControlEndpoint;
       app_.add_option("--endpoint", common_.endpoint, "control endpoint of kolskyd")
@@ -125,7 +154,7 @@ class CommandLine {
       const auto* const* number = std::get_if<std::optional<double>*>(&argument.target);
       if (number != nullptr && (*number)->has_value() && !std::isfinite(***number)) {
         throw InputError(place_of(command_) + ": " + argument.name, "not a finite number",
-                         "give " + argument.help);
+                         "give a number in " + argument.value);
       }
     }
   }

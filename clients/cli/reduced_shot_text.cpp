@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/cli/time_text.hpp"
 #include "clients/figure/layout.hpp"
@@ -27,6 +30,12 @@ std::string what_was_shot(const Shot& shot) {
                          with_unit(shot.bench.specimen->diameter_m, "m")));
 }
 
+std::string arrival_text(const Reduction& reduction) {
+  const DisplayUnit unit = display_unit("s", std::abs(reduction.arrival_s));
+  return fmt::format("{:.2f} ± {:.2f} {} into the record", reduction.arrival_s * unit.factor,
+                     reduction.arrival_sigma_s * unit.factor, unit.name);
+}
+
 std::string numbers(const Reduction& reduction) {
   const LoopSummary loop = summarise(reduction);
   return row("peak stress",
@@ -36,8 +45,7 @@ std::string numbers(const Reduction& reduction) {
          row("mean strain rate",
              fmt::format("{} over the {} of loading", with_unit(loop.mean_strain_rate_per_s, "1/s"),
                          with_unit(loop.loading_s, "s"))) +
-         row("arrival", fmt::format("{} ± {} into the record", with_unit(reduction.arrival_s, "s"),
-                                    with_unit(reduction.arrival_sigma_s, "s"))) +
+         row("arrival", arrival_text(reduction)) +
          row("band", "up to " + with_unit(reduction.band_limit_Hz, "Hz"));
 }
 
@@ -66,10 +74,7 @@ std::string report(const ReducedShot& reduced, const Terminal& terminal) {
   const Shot& shot = reduced.shot;
   std::string text = inked(shot.id, Ink::bold, terminal.colour) + "  " + short_time(shot.utc_ns) +
                      " UTC  " + reduced.capture + "\n" + what_was_shot(shot);
-  text += row("bars", reduced.reduction.bar_model +
-                          (reduced.default_bar_model
-                               ? " (assumed: neither the capture nor --bar-model says otherwise)"
-                               : ""));
+  text += row("bars", reduced.reduction.bar_model);
   const bool has_loop = !reduced.reduction.stress_Pa.empty();
   if (has_loop) {
     text += numbers(reduced.reduction);

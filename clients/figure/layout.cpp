@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 7> kPrefixes = {"n", "µ", "m", "", "k", "M", "G"};
 constexpr int kNoPrefix = 3;
+constexpr double kNearZero = 0.02;  // of the largest value
 
 bool takes_prefix(const std::string& unit) {
   return unit == "Pa" || unit == "N" || unit == "s" || unit == "V" || unit == "Hz" || unit == "m";
@@ -59,6 +60,10 @@ Range span_of(const Panel& panel, Coordinate coordinate) {
   }
   if (range.low > range.high) {
     return {0.0, 1.0};
+  }
+  // Histories begin a fraction of a sample after zero.
+  if (range.low > 0.0 && range.low < kNearZero * range.high) {
+    range.low = 0.0;
   }
   if (range.high - range.low <= 1e-12 * std::max(std::abs(range.low), std::abs(range.high))) {
     const double margin = range.low == 0.0 ? 1.0 : 0.5 * std::abs(range.low);

@@ -47,6 +47,7 @@ struct AxisLayout {
 
 /// What the finite points of a panel span; never empty: a flat span is widened, no point at all
 /// gives 0 to 1.
+/// Zero is taken in where it is near.
 [[nodiscard]] Range x_range(const Panel& panel);
 [[nodiscard]] Range y_range(const Panel& panel);
 

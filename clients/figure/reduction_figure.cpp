@@ -35,7 +35,7 @@ Panel strain_rate_panel(const Reduction& reduction) {
 }
 
 Panel wave_panel(const Reduction& reduction) {
-  Panel panel{"waves at the interfaces", {"time", "s"}, {"bar strain", "strain"}, {}};
+  Panel panel{"interface waves", {"time", "s"}, {"bar strain", "strain"}, {}};
   add_over_time(panel, reduction, "incident", reduction.incident);
   add_over_time(panel, reduction, "reflected", reduction.reflected);
   add_over_time(panel, reduction, "transmitted", reduction.transmitted);

@@ -2,16 +2,18 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/new_file.hpp"
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/export.hpp"
 #include "drivers/files/material_file.hpp"
+#include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 namespace {
+
+constexpr mode_t kReadableByAll = 0644;
 
 struct Settings {
   std::string capture;
@@ -38,7 +40,9 @@ ReductionOptions reduction_options(const Settings& settings) {
 
 void write_files(const Settings& settings, const ReducedShot& reduced) {
   if (settings.svg.has_value()) {
-    write_new_file(*settings.svg, render_svg(reduction_figure(reduced.reduction, reduced.shot.id)));
+    NewFile page(*settings.svg);
+    page.write(render_svg(reduction_figure(reduced.reduction, reduced.shot.id)));
+    page.publish(kReadableByAll);
   }
   if (settings.csv.has_value()) {
     export_shot(reduced.shot, reduced.reduction, ExportFormat::csv, *settings.csv);

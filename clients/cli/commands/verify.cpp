@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <ostream>
 
@@ -42,9 +41,6 @@ std::string text_of(const StoreReport& found, const std::string& store) {
 }
 
 int run(const std::string& store, Context& context) {
-  if (!std::filesystem::is_directory(store)) {
-    throw InputError(store, "no such folder", "give the store's folder, the one with shots/ in it");
-  }
   const StoreReport found = verify_store({store});
   context.out << (context.json ? to_text(describe(found, store)) + "\n" : text_of(found, store));
   if (!found.problems.empty()) {
