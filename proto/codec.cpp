@@ -1,5 +1,7 @@
 #include "proto/codec.hpp"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -368,6 +370,8 @@ Reduction decode(const v1::Result& message) {
 
 void parse(std::string_view bytes, const std::string& place,
            google::protobuf::MessageLite& message) {
+  // The error says it; left alone, protobuf writes a line to stderr for every hostile message.
+  const google::protobuf::LogSilencer silence;
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
       !message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     throw InputError(place, "these bytes are no " + message.GetTypeName(),

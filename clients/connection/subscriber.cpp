@@ -134,7 +134,10 @@ class Continuity {
   /// A heartbeat names what went out before it. Topics of which nothing was seen yet begin here.
   void note_heartbeat(const Received& message, std::deque<SubscriberEvent>& events) {
     v1::Status status;
-    if (!status.ParseFromString(message.payload)) {
+    try {
+      wire::parse(message.payload, "status", status);
+    } catch (const InputError& error) {
+      events.emplace_back(Unreadable{error.what()});
       return;
     }
     for (const std::string& topic : topics_) {
