@@ -1,5 +1,6 @@
+#include "drivers/simulated/adc_stream.hpp"
+
 #include <algorithm>
-#include <cstring>
 
 #include "drivers/simulated/simulated_adc.hpp"
 
@@ -9,121 +10,169 @@ namespace {
 
 constexpr std::size_t kRunSamples = 1024;
 
-bool enabled(const std::vector<std::uint32_t>& mask, std::size_t channel) {
-  return channel / 32 < mask.size() && ((mask[channel / 32] >> (channel % 32)) & 1U) != 0;
-}
-
-template <typename Integer>
-void interleave(std::span<const std::int32_t> codes, std::byte* out, std::size_t stride) {
-  for (const std::int32_t code : codes) {
-    const auto stored = static_cast<Integer>(code);
-    std::memcpy(out, &stored, sizeof(stored));
-    out += stride;
-  }
-}
-
-void interleave_counter(Tick first, std::size_t samples, std::byte* out, std::size_t stride) {
-  for (std::size_t i = 0; i < samples; ++i) {
-    const auto count = static_cast<std::uint32_t>(first + static_cast<Tick>(i));
-    std::memcpy(out, &count, sizeof(count));
-    out += stride;
-  }
-}
-
 }  // namespace
 
 AdcStream::AdcStream(SimulatedAdc& adc, std::vector<std::uint32_t> mask, Tick block_samples)
     : adc_(adc),
-      mask_(std::move(mask)),
+      asked_(std::move(mask), adc.element_bytes()),
       block_samples_(block_samples),
-      buffers_(std::max(adc.now_tick(), adc.planned_until_), adc.buffers_count_),
-      position_(buffers_.block_start()),
-      codes_(kRunSamples) {
-  lay_out_scan();
-}
+      buffers_(adc.clock_.next(), adc.buffers_count_),
+      codes_(kRunSamples) {}
 
 AdcStream::~AdcStream() {
   const std::lock_guard lock(adc_.mutex_);
   adc_.stream_ = nullptr;
-}
-
-/// As the kernel does: each element at a multiple of its own size, the scan a multiple of the
-/// largest.
-void AdcStream::lay_out_scan() {
-  const std::size_t voltage_bytes = adc_.settings_.bits <= 16 ? 2 : 4;
-  std::size_t largest = 1;
-  for (std::size_t channel = 0; channel < adc_.scan_elements(); ++channel) {
-    if (!enabled(mask_, channel)) {
-      continue;
-    }
-    Element element;
-    element.channel = channel;
-    element.counter = channel == adc_.settings_.channels.size();
-    element.bytes = element.counter ? sizeof(std::uint32_t) : voltage_bytes;
-    element.offset = (scan_bytes_ + element.bytes - 1) / element.bytes * element.bytes;
-    scan_bytes_ = element.offset + element.bytes;
-    largest = std::max(largest, element.bytes);
-    elements_.push_back(element);
+  if (fault_acts_) {
+    adc_.fault_gap_from_ = position();
   }
-  scan_bytes_ = (scan_bytes_ + largest - 1) / largest * largest;
 }
 
-SimulatedAdc::Clock::time_point AdcStream::due() {
+Tick AdcStream::position() const noexcept {
+  return planned_ && !runs_.empty() ? runs_.back().first : buffers_.block_start();
+}
+
+std::chrono::steady_clock::time_point AdcStream::due() {
   const std::lock_guard lock(adc_.mutex_);
-  if (planned_) {
-    return SimulatedAdc::Clock::time_point::min();
-  }
-  const auto complete = adc_.time_of(buffers_.block_start() + block_samples_);
-  if (complete <= SimulatedAdc::Clock::now()) {
+  if (!planned_) {
+    const auto complete = adc_.clock_.time_of(buffers_.block_start() + block_samples_);
+    if (complete > ConverterClock::Clock::now()) {
+      return complete;
+    }
     plan_block();
   }
-  return complete;
+  return adc_.clock_.time_of(block_end_);
 }
 
-/// Fixes what the block holds: it is complete, so every shot in it has been fired.
+/// Fixes what the block holds: its time has come, so every shot in it has been fired. Samples that
+/// the script loses make it end later.
 void AdcStream::plan_block() {
   planned_ = true;
-  position_ = buffers_.block_start();
-  block_end_ = position_ + block_samples_;
-  adc_.fire_due_shots(block_end_);
-  adc_.planned_until_ = std::max(adc_.planned_until_, block_end_);
+  left_ = static_cast<std::size_t>(block_samples_);
+  runs_.clear();
+  faults_.clear();
+  Tick at = buffers_.block_start();
+  adc_.skip_faults(at);
+  Tick missing = block_samples_;
+  while (missing > 0) {
+    adc_.fire_due_shots(at + missing);
+    const auto due = adc_.faults_.take_before(at + missing);
+    if (due && due->fault.kind != FaultKind::lose) {
+      apply(*due);
+      continue;
+    }
+    const Tick whole = due ? std::max<Tick>(due->tick - at, 0) : missing;
+    if (whole > 0) {
+      runs_.push_back({at, whole});
+    }
+    at += whole;
+    missing -= whole;
+    if (due) {
+      adc_.note_fault(*due);
+      adc_.lose(due->fault.samples, true);
+      at += due->fault.samples;
+      adc_.skip_faults(at);
+    }
+  }
+  block_end_ = at;
+  std::reverse(runs_.begin(), runs_.end());
+  std::reverse(faults_.begin(), faults_.end());
+  adc_.clock_.settle(block_end_);
 }
 
-std::size_t AdcStream::available() const noexcept {
-  return planned_ ? static_cast<std::size_t>(block_end_ - position_) : 0;
+void AdcStream::apply(const FaultQueue::Due& due) {
+  adc_.note_fault(due);
+  switch (due.fault.kind) {
+    case FaultKind::overflow:
+      adc_.raise_overflow();
+      break;
+    case FaultKind::clip:
+      std::erase_if(clipped_, [this](const Run& run) {
+        return run.first + run.samples <= buffers_.block_start();
+      });
+      clipped_.push_back({due.tick, due.fault.samples});
+      break;
+    default:
+      faults_.push_back(due.fault);
+  }
+}
+
+std::optional<Fault> AdcStream::take_fault() {
+  if (faults_.empty()) {
+    return std::nullopt;
+  }
+  const Fault fault = faults_.back();
+  faults_.pop_back();
+  fault_acts_ = fault_acts_ || fault.kind == FaultKind::late_block ||
+                fault.kind == FaultKind::timeout || fault.kind == FaultKind::hang ||
+                fault.kind == FaultKind::drop;
+  return fault;
+}
+
+bool AdcStream::add_channel() {
+  const std::vector<std::size_t> bytes = adc_.element_bytes();
+  for (std::size_t element = 0; element < bytes.size(); ++element) {
+    if (!enables(asked_.mask(), element)) {
+      std::vector<std::uint32_t> mask = asked_.mask();
+      mask[element / 32] |= std::uint32_t{1} << (element % 32);
+      extra_.emplace(std::move(mask), bytes);
+      return true;
+    }
+  }
+  return false;
 }
 
 void AdcStream::read(std::span<std::byte> out) {
   while (!out.empty()) {
     const std::lock_guard lock(adc_.mutex_);
-    const std::size_t samples = std::min(out.size() / scan_bytes_, kRunSamples);
-    read_run(position_, out.first(samples * scan_bytes_));
-    position_ += static_cast<Tick>(samples);
-    out = out.subspan(samples * scan_bytes_);
-  }
-  const std::lock_guard lock(adc_.mutex_);
-  if (position_ == block_end_) {
-    buffers_.finish_block(block_end_, std::max(adc_.now_tick(), block_end_));
-    planned_ = false;
-    adc_.note_lost(buffers_.lost_before());
+    Run& run = runs_.back();
+    const std::size_t samples = std::min(
+        {out.size() / layout().bytes(), kRunSamples, static_cast<std::size_t>(run.samples)});
+    fill(run.first, out.first(samples * layout().bytes()));
+    run.first += static_cast<Tick>(samples);
+    run.samples -= static_cast<Tick>(samples);
+    left_ -= samples;
+    if (run.samples == 0) {
+      runs_.pop_back();
+    }
+    if (runs_.empty()) {
+      finish_block();
+    }
+    out = out.subspan(samples * layout().bytes());
   }
 }
 
-void AdcStream::read_run(Tick first, std::span<std::byte> out) {
-  const std::size_t samples = out.size() / scan_bytes_;
-  std::fill(out.begin(), out.end(), std::byte{0});
-  const std::span<std::int32_t> codes(codes_.data(), samples);
-  for (const Element& element : elements_) {
-    std::byte* const place = out.data() + element.offset;
-    if (element.counter) {
-      interleave_counter(first, samples, place, scan_bytes_);
-      continue;
-    }
-    adc_.source_->convert(element.channel, first, codes);
-    if (element.bytes == 2) {
-      interleave<std::int16_t>(codes, place, scan_bytes_);
+void AdcStream::finish_block() {
+  planned_ = false;
+  const Tick now = std::max(adc_.clock_.now(), block_end_);
+  buffers_.finish_block(block_end_, now);
+  adc_.lose(buffers_.lost_before(), fault_acts_);
+  const bool caught_up = now < buffers_.block_start() + block_samples_;
+  if (buffers_.lost_before() == 0 && caught_up) {
+    fault_acts_ = false;
+  }
+}
+
+void AdcStream::fill(Tick first, std::span<std::byte> out) {
+  std::fill(out.begin(), out.end(), std::byte{0});  // between elements too
+  const std::span<std::int32_t> codes(codes_.data(), out.size() / layout().bytes());
+  for (const ScanLayout::Element& element : layout().elements()) {
+    if (element.channel == adc_.settings_.channels.size()) {
+      layout().place_count(element, first, out);
     } else {
-      interleave<std::int32_t>(codes, place, scan_bytes_);
+      adc_.source_->convert(element.channel, first, codes);
+      clip(first, codes);
+      layout().place(element, codes, out);
+    }
+  }
+}
+
+void AdcStream::clip(Tick first, std::span<std::int32_t> codes) const {
+  const Tick end = first + static_cast<Tick>(codes.size());
+  for (const Run& run : clipped_) {
+    const Tick from = std::max(run.first, first);
+    const Tick to = std::min(run.first + run.samples, end);
+    for (Tick tick = from; tick < to; ++tick) {
+      codes[static_cast<std::size_t>(tick - first)] = adc_.highest_code();
     }
   }
 }

@@ -1,4 +1,5 @@
 #include <string>
+#include <string_view>
 
 #include "drivers/simulated/number_text.hpp"
 #include "drivers/simulated/simulated_adc.hpp"
@@ -56,6 +57,9 @@ std::string voltage_channel(std::size_t index, int bits, const AdcChannel& chann
                     (bits <= 16 ? "/16" : "/32") + R"(&gt;&gt;0" scale=")" +
                     number_text(channel.scale_mV) + R"("/>)";
   for (const char* name : {"label", "offset", "raw", "scale", "strain_scale"}) {
+    if (!channel.strain_scale && std::string_view(name) == "strain_scale") {
+      continue;
+    }
     xml += std::string(R"(<attribute name=")") + name + R"(" filename="in_)" + id + "_" + name +
            R"("/>)";
   }
@@ -81,8 +85,9 @@ std::string SimulatedAdc::context_xml() const {
   if (settings_.counter) {
     xml += counter_channel(settings_.channels.size());
   }
-  for (const char* name : {"fire", "overrun_lost_samples", "sampling_frequency",
-                           "sampling_frequency_available", "scenario", "seed", "shots_fired"}) {
+  for (const char* name :
+       {"fire", "injected_lost_samples", "overrun_lost_samples", "sampling_frequency",
+        "sampling_frequency_available", "scenario", "seed", "shots_fired"}) {
     xml += std::string(R"(<attribute name=")") + name + R"("/>)";
   }
   return xml + R"(<debug-attribute name="direct_reg_access"/></device></context>)";

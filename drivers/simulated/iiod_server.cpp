@@ -8,10 +8,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <list>
+#include <mutex>
 #include <system_error>
 #include <thread>
 
@@ -26,6 +27,7 @@ namespace {
 
 constexpr std::size_t kMostClients = 64;
 constexpr int kBacklog = 16;
+constexpr std::chrono::milliseconds kWhenOutOfFiles{10};
 
 sockaddr_in parse_address(const std::string& listen) {
   const std::size_t colon = listen.rfind(':');
@@ -73,8 +75,10 @@ sockaddr_in bound_address(int fd) {
 }
 
 struct Client {
+  explicit Client(int connected) : socket(connected) {}
   std::thread thread;
-  std::atomic<bool> over{false};
+  int socket;  ///< open as long as `over` is false
+  bool over = false;
 };
 
 }  // namespace
@@ -90,7 +94,9 @@ struct IiodServer::State {
   State& operator=(const State&) = delete;
 
   void accept_clients();
-  void serve(int socket);
+  void accept_client();
+  void serve(Client& client);
+  void drop_clients(double seconds);
   void forget_gone_clients(bool all);
 
   int fd;
@@ -98,7 +104,9 @@ struct IiodServer::State {
   sockaddr_in address;
   SimulatedAdc& adc;
   std::thread acceptor;
-  std::list<Client> clients;  ///< touched by the acceptor only, and by stop after it has ended
+  std::mutex mutex;           ///< guards the rest
+  std::list<Client> clients;  ///< added and removed by the acceptor, and by stop once it has ended
+  SimulatedAdc::Clock::time_point closed_until = SimulatedAdc::Clock::time_point::min();
 };
 
 IiodServer::IiodServer(const std::string& listen, SimulatedAdc& adc)
@@ -143,40 +151,65 @@ void IiodServer::State::accept_clients() {
     if (watched[1].revents != 0) {
       return;
     }
-    const int socket = accept4(fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     forget_gone_clients(false);
-    if (socket < 0) {
-      continue;
-    }
-    if (clients.size() >= kMostClients) {
-      close(socket);
-      continue;
-    }
-    serve(socket);
+    accept_client();
   }
 }
 
-void IiodServer::State::serve(int socket) {
+void IiodServer::State::accept_client() {
+  const int socket = accept4(fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (socket < 0) {
+    if (errno == EMFILE || errno == ENFILE) {
+      std::this_thread::sleep_for(kWhenOutOfFiles);  // the socket stays ready: do not spin on it
+    }
+    return;
+  }
+  const std::lock_guard lock(mutex);
+  if (clients.size() >= kMostClients || SimulatedAdc::Clock::now() < closed_until) {
+    close(socket);
+    return;
+  }
   const int on = 1;
   setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  Client& client = clients.emplace_back();
-  client.thread = std::thread([this, socket, &client] {
-    {
-      Connection connection(socket, stop_fd);
-      Session(connection, adc).run();
+  Client& client = clients.emplace_back(socket);
+  client.thread = std::thread([this, &client] { serve(client); });
+}
+
+void IiodServer::State::serve(Client& client) {
+  Connection connection(client.socket, stop_fd);
+  {
+    Session session(connection, adc, [this](double seconds) { drop_clients(seconds); });
+    session.run();
+  }
+  const std::lock_guard lock(mutex);
+  client.over = true;
+}
+
+void IiodServer::State::drop_clients(double seconds) {
+  const std::lock_guard lock(mutex);
+  closed_until = adc.pause_end(seconds);
+  for (const Client& client : clients) {
+    if (!client.over) {
+      shutdown(client.socket, SHUT_RDWR);
     }
-    client.over = true;
-  });
+  }
 }
 
 void IiodServer::State::forget_gone_clients(bool all) {
-  clients.remove_if([all](Client& client) {
-    if (!all && !client.over) {
-      return false;
+  std::list<Client> gone;
+  {
+    const std::lock_guard lock(mutex);
+    for (auto client = clients.begin(); client != clients.end();) {
+      const auto next = std::next(client);
+      if (all || client->over) {
+        gone.splice(gone.end(), clients, client);
+      }
+      client = next;
     }
+  }
+  for (Client& client : gone) {
     client.thread.join();
-    return true;
-  });
+  }
 }
 
 }  // namespace kolsky

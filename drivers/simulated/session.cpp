@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <string>
 
 namespace kolsky {
@@ -20,45 +19,40 @@ constexpr const char* kHelp =
     "[<trigger>] "
     "| EXIT\n";
 
-std::string mask_line(const std::vector<std::uint32_t>& mask) {
-  std::string line;
-  for (auto word = mask.rbegin(); word != mask.rend(); ++word) {
-    char digits[9];
-    std::snprintf(digits, sizeof digits, "%08x", *word);
-    line += digits;
-  }
-  return line + "\n";
-}
-
 }  // namespace
 
-Session::Session(Connection& connection, SimulatedAdc& adc) : connection_(connection), adc_(adc) {}
+Session::Session(Connection& connection, SimulatedAdc& adc, Drop drop)
+    : connection_(connection), adc_(adc), drop_(std::move(drop)) {}
 
 void Session::run() {
   while (const auto line = connection_.read_line()) {
     if (line->empty()) {
       continue;  // libiio ends a session with one
     }
-    const ParsedLine parsed = parse_iiod_line(*line);
-    if (parsed.error == 0 && parsed.command.verb == IiodVerb::exit) {
+    if (const auto silence = adc_.silent_until();
+        silence > SimulatedAdc::Clock::now() && !connection_.wait_until(silence)) {
       return;
     }
-    const bool goes_on = parsed.error != 0 ? reply(parsed.error) : answer(parsed.command);
-    if (!goes_on) {
+    const ParsedLine parsed = parse_iiod_line(*line);
+    if (!(parsed.error != 0 ? reply(parsed.error) : answer(parsed.command))) {
       return;
     }
   }
 }
 
+bool Session::refuse_unknown_device(const IiodCommand& command) {
+  // The bytes that follow a WRITE are not commands.
+  std::string unused;
+  if (command.verb == IiodVerb::write &&
+      (command.number > kLongestValue || !connection_.read_bytes(command.number, unused))) {
+    return false;
+  }
+  return reply(-ENODEV);
+}
+
 bool Session::answer(const IiodCommand& command) {
   if (!command.device.empty() && !adc_.is_device(command.device)) {
-    // The bytes that follow a WRITE are not commands.
-    std::string unused;
-    if (command.verb == IiodVerb::write &&
-        (command.number > kLongestValue || !connection_.read_bytes(command.number, unused))) {
-      return false;
-    }
-    return reply(-ENODEV);
+    return refuse_unknown_device(command);
   }
   switch (command.verb) {
     case IiodVerb::help:
@@ -75,7 +69,7 @@ bool Session::answer(const IiodCommand& command) {
     case IiodVerb::open:
       return open(command);
     case IiodVerb::close:
-      return close(command);
+      return close();
     case IiodVerb::read:
       return read_attribute(command);
     case IiodVerb::write:
@@ -133,7 +127,7 @@ bool Session::open(const IiodCommand& command) {
   return reply(adc_.open_stream(command.mask, command.number, stream_));
 }
 
-bool Session::close(const IiodCommand&) {
+bool Session::close() {
   if (!stream_) {
     return reply(-ENXIO);
   }
@@ -145,47 +139,110 @@ bool Session::read_buffer(const IiodCommand& command) {
   if (!stream_) {
     return reply(-EBADF);
   }
-  std::size_t wanted = command.number / stream_->scan_bytes();
-  const bool whole = wanted > 0 && command.number % stream_->scan_bytes() == 0;
-  for (bool first = true; wanted > 0; first = false) {
-    switch (await_block()) {
-      case Awaited::block:
-        break;
-      case Awaited::timeout:
-        return reply(-ETIMEDOUT);
-      case Awaited::over:
-        return false;
-    }
-    const std::size_t samples = std::min(wanted, stream_->available());
-    if (!send_samples(samples, first)) {
-      return false;
-    }
-    wanted -= samples;
-  }
-  return whole || reply(0);
+  Reply answered;
+  answered.bytes_left = command.number;
+  answered.most_samples = command.number;
+  const bool goes_on = send_blocks(answered);
+  stream_->end_reply();
+  return goes_on;
 }
 
-Session::Awaited Session::await_block() {
+/// Sends blocks until the client has the bytes it asked for. A fault or a time-out after the first
+/// of them ends the reply early and meets the next read: a client throws away what came before an
+/// error.
+bool Session::send_blocks(Reply& answered) {
+  while (answered.bytes_left >= stream_->layout().bytes() && answered.most_samples > 0) {
+    Next next = await_block();
+    if (next == Next::go_on && stream_->fault_pending()) {
+      if (answered.started) {
+        break;
+      }
+      next = act(*stream_->take_fault(), answered);
+      if (next == Next::go_on) {
+        continue;
+      }
+    }
+    if (next == Next::leave) {
+      return false;
+    }
+    if (next == Next::refuse) {
+      return reply(answered.started ? 0 : -ETIMEDOUT);
+    }
+    const std::size_t scan_bytes = stream_->layout().bytes();
+    const std::size_t samples =
+        std::min({answered.bytes_left / scan_bytes, stream_->available(), answered.most_samples});
+    if (!send_samples(samples, !answered.started)) {
+      return false;
+    }
+    answered.started = true;
+    answered.bytes_left -= samples * scan_bytes;
+    answered.most_samples -= samples;
+  }
+  return (answered.bytes_left == 0 && answered.started) || reply(0);
+}
+
+Session::Next Session::await_block() {
   const auto deadline = adc_.read_deadline();
   for (;;) {
     const auto due = stream_->due();
-    if (stream_->available() > 0) {
-      return Awaited::block;
+    const auto now = SimulatedAdc::Clock::now();
+    if (due <= now) {
+      return Next::go_on;
+    }
+    if (deadline <= now) {
+      return Next::refuse;
     }
     if (!connection_.wait_until(std::min(due, deadline))) {
-      return Awaited::over;
-    }
-    if (due > deadline) {
-      return Awaited::timeout;
+      return Next::leave;
     }
   }
 }
 
+Session::Next Session::act(const Fault& fault, Reply& answered) {
+  switch (fault.kind) {
+    case FaultKind::short_block:
+      answered.most_samples =
+          std::min(answered.most_samples, static_cast<std::size_t>(fault.samples));
+      return Next::go_on;
+    case FaultKind::late_block:
+      return pause(fault.duration_s);
+    case FaultKind::timeout:
+      return Next::refuse;
+    case FaultKind::hang:
+      adc_.keep_silent(fault.duration_s);
+      if (fault.duration_s == 0.0) {
+        (void)connection_.wait_until(SimulatedAdc::Clock::time_point::max());
+        return Next::leave;
+      }
+      return pause(fault.duration_s);
+    case FaultKind::drop:
+      drop_(fault.duration_s);
+      adc_.paused(fault.duration_s);
+      return Next::leave;
+    case FaultKind::extra_channel:
+      stream_->add_channel();
+      return Next::go_on;
+    case FaultKind::lose:
+    case FaultKind::overflow:
+    case FaultKind::clip:
+      break;  // the stream itself has seen to these
+  }
+  return Next::go_on;
+}
+
+Session::Next Session::pause(double seconds) {
+  if (!connection_.wait_until(adc_.pause_end(seconds))) {
+    return Next::leave;
+  }
+  adc_.paused(seconds);
+  return Next::go_on;
+}
+
 bool Session::send_samples(std::size_t samples, bool with_mask) {
-  const std::size_t scan_bytes = stream_->scan_bytes();
+  const std::size_t scan_bytes = stream_->layout().bytes();
   std::string head = std::to_string(samples * scan_bytes) + "\n";
   if (with_mask) {
-    head += mask_line(stream_->mask());
+    head += stream_->layout().mask_text() + "\n";
   }
   if (!connection_.write(head)) {
     return false;

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "drivers/simulated/connection.hpp"
@@ -14,27 +16,48 @@ namespace kolsky {
 /// Answers one client's commands until it leaves.
 class Session {
  public:
-  Session(Connection& connection, SimulatedAdc& adc);
+  /// Closes every connection and those to come for a duration of the converter's time, in seconds.
+  using Drop = std::function<void(double)>;
+
+  Session(Connection& connection, SimulatedAdc& adc, Drop drop);
 
   void run();
 
  private:
-  enum class Awaited { block, timeout, over };
+  /// How a wait or a fault leaves the reply.
+  enum class Next {
+    go_on,
+    refuse,  ///< with ETIMEDOUT
+    leave,   ///< the connection is over
+  };
 
-  /// Each answers one command. @return false if the connection is over
+  /// A read of the buffer while it is answered.
+  struct Reply {
+    std::size_t bytes_left = 0;
+    std::size_t most_samples = 0;  ///< a script may end it early
+    bool started = false;
+  };
+
+  // Each of these answers a command, or a part of it, and returns whether the connection goes on.
   [[nodiscard]] bool answer(const IiodCommand& command);
   [[nodiscard]] bool reply(long code);
   [[nodiscard]] bool reply_text(const std::string& text, bool terminated);
+  [[nodiscard]] bool refuse_unknown_device(const IiodCommand& command);
   [[nodiscard]] bool read_attribute(const IiodCommand& command);
   [[nodiscard]] bool write_attribute(const IiodCommand& command);
   [[nodiscard]] bool open(const IiodCommand& command);
-  [[nodiscard]] bool close(const IiodCommand& command);
+  [[nodiscard]] bool close();
   [[nodiscard]] bool read_buffer(const IiodCommand& command);
-  [[nodiscard]] Awaited await_block();
+  [[nodiscard]] bool send_blocks(Reply& answered);
   [[nodiscard]] bool send_samples(std::size_t samples, bool with_mask);
+
+  [[nodiscard]] Next await_block();
+  [[nodiscard]] Next act(const Fault& fault, Reply& answered);
+  [[nodiscard]] Next pause(double seconds);
 
   Connection& connection_;
   SimulatedAdc& adc_;
+  Drop drop_;
   std::unique_ptr<AdcStream> stream_;
   std::uint32_t register_address_ = 0;
   std::vector<std::byte> scans_;

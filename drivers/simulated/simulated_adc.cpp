@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "drivers/simulated/number_text.hpp"
@@ -12,52 +13,13 @@ namespace kolsky {
 
 namespace {
 
-constexpr const char* kDeviceId = "iio:device0";
-constexpr const char* kDeviceName = "kolsky-adc";
-constexpr const char* kCounterId = "count0";
 constexpr std::uint64_t kMostBuffers = 1024;
 constexpr std::uint64_t kMostBlockSamples = std::uint64_t{1} << 28;
 
-// ADI's DMA cores show their state here: bit 2 is the receive overflow, cleared by writing 1 to it.
-constexpr std::uint32_t kStatusRegister = 0x80000088;
-constexpr std::uint32_t kOverflowBit = 4;
-
-AttributeReply text(std::string value) {
-  return {0, std::move(value)};
-}
-
-AttributeReply failure(int error) {
-  return {error, {}};
-}
-
-std::optional<std::size_t> voltage_index(const std::string& id, std::size_t channels) {
-  constexpr std::string_view kPrefix = "voltage";
-  if (!id.starts_with(kPrefix)) {
-    return std::nullopt;
-  }
-  const auto index = parse_number<std::size_t>(std::string_view(id).substr(kPrefix.size()));
-  return index && *index < channels ? index : std::nullopt;
-}
-
-/// strtoul's idea of a number, as the kernel reads registers: 0x... or decimal.
-std::optional<std::uint32_t> register_number(std::string_view word) {
-  const bool hexadecimal = word.starts_with("0x") || word.starts_with("0X");
-  if (hexadecimal) {
-    word.remove_prefix(2);
-  }
-  std::uint32_t value = 0;
-  const auto [end, error] =
-      std::from_chars(word.data(), word.data() + word.size(), value, hexadecimal ? 16 : 10);
-  if (word.empty() || error != std::errc{} || end != word.data() + word.size()) {
-    return std::nullopt;
-  }
-  return value;
-}
-
 void check(const AdcSettings& settings) {
-  if (settings.bits < 12 || settings.bits > 24) {
+  if (settings.bits < 12 || settings.bits > 32) {
     throw InputError("bits", std::to_string(settings.bits) + " is not a simulated resolution",
-                     "give 12 to 24");
+                     "give 12 to 32");
   }
   if (settings.channels.empty() || settings.channels.size() > 128) {
     throw InputError("channels",
@@ -83,48 +45,29 @@ void check(const AdcSettings& settings) {
 }  // namespace
 
 SimulatedAdc::SimulatedAdc(AdcSettings settings, std::unique_ptr<CodeSource> source)
-    : settings_(std::move(settings)), source_(std::move(source)) {
-  check(settings_);
+    : settings_(std::move(settings)),
+      source_(std::move(source)),
+      clock_((check(settings_), settings_.rate), settings_.speed),
+      faults_(settings_.faults, settings_.rate) {
   source_->set_rate(settings_.rate);
   if (settings_.period_s > 0.0 && period_ticks() < source_->shot_samples()) {
-    throw InputError(
-        "period", number_text(settings_.period_s) + " s is shorter than a shot",
-        "give at least " +
-            number_text(static_cast<double>(source_->shot_samples()) * settings_.rate.period_s()) +
-            " s");
+    const double shot_s = static_cast<double>(source_->shot_samples()) * settings_.rate.period_s();
+    throw InputError("period", number_text(settings_.period_s) + " s is shorter than a shot",
+                     "give at least " + number_text(shot_s) + " s");
   }
   next_periodic_shot_ = period_ticks();
-  restart_clock(0);
 }
 
-std::size_t SimulatedAdc::scan_elements() const noexcept {
-  return settings_.channels.size() + (settings_.counter ? 1 : 0);
-}
-
-double SimulatedAdc::ticks_per_s() const noexcept {
-  return settings_.rate.Hz() * settings_.speed;
-}
-
-void SimulatedAdc::restart_clock(Tick at) {
-  clock_start_ = Clock::now();
-  clock_start_tick_ = at;
-}
-
-Tick SimulatedAdc::now_tick() const {
-  if (settings_.speed == 0.0) {
-    return planned_until_;
+std::vector<std::size_t> SimulatedAdc::element_bytes() const {
+  std::vector<std::size_t> bytes(settings_.channels.size(), settings_.bits <= 16 ? 2 : 4);
+  if (settings_.counter) {
+    bytes.push_back(sizeof(std::uint32_t));
   }
-  const std::chrono::duration<double> passed = Clock::now() - clock_start_;
-  return clock_start_tick_ + static_cast<Tick>(passed.count() * ticks_per_s());
+  return bytes;
 }
 
-SimulatedAdc::Clock::time_point SimulatedAdc::time_of(Tick tick) const {
-  if (settings_.speed == 0.0) {
-    return Clock::time_point::min();
-  }
-  const std::chrono::duration<double> after(static_cast<double>(tick - clock_start_tick_) /
-                                            ticks_per_s());
-  return clock_start_ + std::chrono::ceil<Clock::duration>(after);
+std::int32_t SimulatedAdc::highest_code() const noexcept {
+  return static_cast<std::int32_t>((std::int64_t{1} << (settings_.bits - 1)) - 1);
 }
 
 Tick SimulatedAdc::period_ticks() const {
@@ -146,153 +89,18 @@ void SimulatedAdc::start_shot(Tick tick) {
   source_->fire(tick);
   shot_ends_ = tick + source_->shot_samples();
   ++shots_fired_;
+  faults_.shot_fired(shots_fired_, tick);
+  log("shot " + std::to_string(shots_fired_) + " at sample " + std::to_string(tick));
 }
 
 int SimulatedAdc::fire_now() {
-  const Tick tick = std::max(now_tick(), planned_until_);
+  const Tick tick = clock_.next();
   fire_due_shots(tick + 1);
   if (tick < shot_ends_) {
     return -EBUSY;
   }
   start_shot(tick);
   return 0;
-}
-
-bool SimulatedAdc::is_device(const std::string& id) const {
-  return id == kDeviceId || id == kDeviceName;
-}
-
-AttributeReply SimulatedAdc::read_attribute(const IiodCommand& command,
-                                            std::uint32_t register_address) {
-  const std::lock_guard lock(mutex_);
-  switch (command.scope) {
-    case AttributeScope::device:
-      return read_device_attribute(command.attribute);
-    case AttributeScope::input_channel:
-      return read_channel_attribute(command.channel, command.attribute);
-    case AttributeScope::debug:
-      if (command.attribute == "direct_reg_access") {
-        note_overrun();
-        return text(register_address == kStatusRegister && status_register_ != 0 ? "0x4" : "0x0");
-      }
-      return failure(-ENOENT);
-    case AttributeScope::buffer:
-    case AttributeScope::output_channel:
-      break;
-  }
-  return failure(-ENOENT);
-}
-
-void SimulatedAdc::note_overrun() {
-  if (stream_ != nullptr && settings_.speed > 0.0 &&
-      stream_->buffers_.overrun(now_tick(), stream_->block_samples_)) {
-    status_register_ |= kOverflowBit;
-  }
-}
-
-void SimulatedAdc::note_lost(Tick samples) {
-  if (samples > 0) {
-    status_register_ |= kOverflowBit;
-    overrun_lost_samples_ += static_cast<std::uint64_t>(samples);
-  }
-}
-
-AttributeReply SimulatedAdc::read_device_attribute(const std::string& name) {
-  if (name == "sampling_frequency") {
-    return text(number_text(settings_.rate.Hz()));
-  }
-  if (name == "sampling_frequency_available") {
-    std::string rates;
-    for (const SampleRate& rate : settings_.rates) {
-      if (!rates.empty()) {
-        rates += ' ';
-      }
-      rates += number_text(rate.Hz());
-    }
-    return text(rates);
-  }
-  if (name == "fire") {
-    return text("0");
-  }
-  if (name == "shots_fired") {
-    fire_due_shots(now_tick());
-    return text(std::to_string(shots_fired_));
-  }
-  if (name == "scenario") {
-    return text(settings_.scenario);
-  }
-  if (name == "seed") {
-    return text(std::to_string(settings_.seed));
-  }
-  if (name == "overrun_lost_samples") {
-    return text(std::to_string(overrun_lost_samples_));
-  }
-  return failure(-ENOENT);
-}
-
-AttributeReply SimulatedAdc::read_channel_attribute(const std::string& id,
-                                                    const std::string& name) {
-  if (settings_.counter && id == kCounterId) {
-    return name == "raw" ? text(std::to_string(static_cast<std::uint32_t>(now_tick())))
-                         : failure(-ENOENT);
-  }
-  const auto index = voltage_index(id, settings_.channels.size());
-  if (!index) {
-    return failure(-ENXIO);
-  }
-  const AdcChannel& channel = settings_.channels[*index];
-  if (name == "raw") {
-    std::int32_t code = 0;
-    source_->convert(*index, now_tick(), {&code, 1});
-    return text(std::to_string(code));
-  }
-  if (name == "scale") {
-    return text(number_text(channel.scale_mV));
-  }
-  if (name == "offset") {
-    return text(number_text(channel.offset_codes));
-  }
-  if (name == "strain_scale") {
-    return text(number_text(channel.strain_scale));
-  }
-  if (name == "label") {
-    return text(channel.label);
-  }
-  return failure(-ENOENT);
-}
-
-int SimulatedAdc::write_attribute(const IiodCommand& command, const std::string& value,
-                                  std::uint32_t& register_address) {
-  const std::lock_guard lock(mutex_);
-  const std::string trimmed(value.begin(), std::find_if(value.begin(), value.end(), [](char c) {
-                              return c == '\0' || c == '\n' || c == '\r';
-                            }));
-  switch (command.scope) {
-    case AttributeScope::device:
-      return write_device_attribute(command.attribute, trimmed);
-    case AttributeScope::debug:
-      return command.attribute == "direct_reg_access" ? write_register(trimmed, register_address)
-                                                      : -ENOENT;
-    case AttributeScope::input_channel: {
-      const int error = read_channel_attribute(command.channel, command.attribute).error;
-      return error != 0 ? error : -EACCES;
-    }
-    case AttributeScope::buffer:
-    case AttributeScope::output_channel:
-      break;
-  }
-  return -ENOENT;
-}
-
-int SimulatedAdc::write_device_attribute(const std::string& name, const std::string& value) {
-  if (name == "fire") {
-    return value == "1" ? fire_now() : -EINVAL;
-  }
-  if (name == "sampling_frequency") {
-    return set_rate(value);
-  }
-  const int error = read_device_attribute(name).error;
-  return error != 0 ? error : -EACCES;
 }
 
 int SimulatedAdc::set_rate(const std::string& value) {
@@ -308,37 +116,39 @@ int SimulatedAdc::set_rate(const std::string& value) {
   if (*rate == settings_.rate) {
     return 0;
   }
-  const Tick now = std::max(now_tick(), planned_until_);
-  if (stream_ != nullptr || now < shot_ends_) {
+  if (stream_ != nullptr || clock_.next() < shot_ends_) {
     return -EBUSY;
   }
   settings_.rate = *rate;
   source_->set_rate(*rate);
-  restart_clock(now);
-  next_periodic_shot_ = now + period_ticks();
+  clock_.set_rate(*rate);
+  next_periodic_shot_ = clock_.next() + period_ticks();
   return 0;
 }
 
-/// "ADDRESS" chooses what the next read shows, "ADDRESS VALUE" writes.
-int SimulatedAdc::write_register(const std::string& value, std::uint32_t& register_address) {
-  const std::size_t space = value.find(' ');
-  const auto address = register_number(std::string_view(value).substr(0, space));
-  if (!address) {
-    return -EINVAL;
+void SimulatedAdc::lose(Tick samples, bool by_script) {
+  if (samples > 0) {
+    raise_overflow();
+    (by_script ? injected_lost_samples_ : overrun_lost_samples_) += samples;
   }
-  register_address = *address;
-  if (space == std::string::npos) {
-    return 0;
+}
+
+void SimulatedAdc::note_fault(const FaultQueue::Due& due) {
+  log(std::string("fault: ") + fault_name(due.fault.kind) + " at sample " +
+      std::to_string(due.tick));
+}
+
+void SimulatedAdc::skip_faults(Tick until) {
+  while (const auto passed = faults_.take_before(until)) {
+    log(std::string("no fault: ") + fault_name(passed->fault.kind) + " at sample " +
+        std::to_string(passed->tick) + ", which nobody read");
   }
-  const auto bits = register_number(std::string_view(value).substr(space + 1));
-  if (!bits) {
-    return -EINVAL;
+}
+
+void SimulatedAdc::log(const std::string& text) const {
+  if (settings_.log) {
+    settings_.log(text);
   }
-  if (*address == kStatusRegister) {
-    note_overrun();
-    status_register_ &= ~*bits;
-  }
-  return 0;
 }
 
 int SimulatedAdc::set_buffers_count(std::uint64_t count) {
@@ -363,14 +173,35 @@ SimulatedAdc::Clock::time_point SimulatedAdc::read_deadline() {
   return timeout_.count() == 0 ? Clock::time_point::max() : Clock::now() + timeout_;
 }
 
+SimulatedAdc::Clock::time_point SimulatedAdc::silent_until() {
+  const std::lock_guard lock(mutex_);
+  return silent_until_;
+}
+
+void SimulatedAdc::keep_silent(double seconds) {
+  const std::lock_guard lock(mutex_);
+  silent_until_ = seconds == 0.0 ? Clock::time_point::max() : Clock::now() + clock_.pause(seconds);
+}
+
+SimulatedAdc::Clock::time_point SimulatedAdc::pause_end(double seconds) {
+  const std::lock_guard lock(mutex_);
+  return Clock::now() + clock_.pause(seconds);
+}
+
+void SimulatedAdc::paused(double seconds) {
+  const std::lock_guard lock(mutex_);
+  clock_.paused(seconds);
+}
+
 int SimulatedAdc::open_stream(const std::vector<std::uint32_t>& mask, std::uint64_t block_samples,
                               std::unique_ptr<AdcStream>& stream) {
   const std::lock_guard lock(mutex_);
-  const std::size_t words = (scan_elements() + 31) / 32;
+  const std::size_t elements = element_bytes().size();
+  const std::size_t words = (elements + 31) / 32;
   if (mask.size() != words || block_samples == 0) {
     return -EINVAL;
   }
-  const std::size_t spare_bits = words * 32 - scan_elements();
+  const std::size_t spare_bits = words * 32 - elements;
   const bool unknown_channel = spare_bits > 0 && (mask.back() >> (32 - spare_bits)) != 0;
   const bool none = std::all_of(mask.begin(), mask.end(), [](std::uint32_t w) { return w == 0; });
   if (unknown_channel || none) {
@@ -384,6 +215,10 @@ int SimulatedAdc::open_stream(const std::vector<std::uint32_t>& mask, std::uint6
   }
   stream = std::make_unique<AdcStream>(*this, mask, static_cast<Tick>(block_samples));
   stream_ = stream.get();
+  if (fault_gap_from_) {
+    injected_lost_samples_ += stream->position() - *fault_gap_from_;
+    fault_gap_from_.reset();
+  }
   return 0;
 }
 

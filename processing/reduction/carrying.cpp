@@ -9,16 +9,18 @@ struct Stretches {
   Complex to_specimen;  // exp(-gamma l)
   Complex round_trip;   // exp(-2 gamma x), gauge to far end and back
   Complex separation;   // 1 / (1 - round_trip)
-  Complex force;        // A / J
-  Complex velocity;     // s / gamma
+  Complex mean;         // mean strain over what the gauge reads
+  Complex force;        // A rho s^2 / gamma^2, of what the gauge reads
+  Complex velocity;     // s / gamma, likewise
 
-  Stretches(const BarWaves& bar, Complex s) {
-    const Complex gamma = bar.propagation->gamma(s);
+  Stretches(const BarWaves& bar, const BarMode& mode, Complex s) {
+    const Complex gamma = mode.gamma;
     to_specimen = std::exp(-gamma * bar.gauge_to_specimen_m);
     round_trip = std::exp(-2.0 * gamma * bar.gauge_to_far_end_m);
     separation = 1.0 / (1.0 - round_trip);
-    force = bar.area_m2 / bar.propagation->J(s);
-    velocity = s / gamma;
+    mean = mode.mean_over_surface;
+    velocity = mean * s / gamma;
+    force = bar.area_m2 * bar.density_kg_m3 * velocity * s / gamma;
   }
 };
 
@@ -48,21 +50,21 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
   }
   for (std::size_t k = 0; k < bins; ++k) {
     const Complex s = transform.s(k);
-    const Stretches a(input, s);
+    const Stretches a(input, input.modes[k], s);
     const Complex right_rest = -a.round_trip * a.separation * a.to_specimen;
     const Complex left_rest = a.separation / a.to_specimen;
-    right_of_incident_[k] = a.to_specimen;
-    right_of_rest_[k] = right_rest;
-    left_of_rest_[k] = left_rest;
+    right_of_incident_[k] = a.mean * a.to_specimen;
+    right_of_rest_[k] = a.mean * right_rest;
+    left_of_rest_[k] = a.mean * left_rest;
     force_of_incident_[k] = a.force * a.to_specimen;
     force_of_rest_[k] = a.force * (right_rest + left_rest);
     rate_of_incident_[k] = a.velocity * a.to_specimen / specimen_length_m;
     rate_of_rest_[k] = a.velocity * (right_rest - left_rest) / specimen_length_m;
 
-    const Stretches b(output, s);
+    const Stretches b(output, output.modes[k], s);
     const Complex right_out = b.separation / b.to_specimen;
     const Complex left_out = -b.separation * b.round_trip * b.to_specimen;
-    right_of_output_[k] = right_out;
+    right_of_output_[k] = b.mean * right_out;
     force_of_output_[k] = b.force * (right_out + left_out);
     rate_of_output_[k] = -b.velocity * (right_out - left_out) / specimen_length_m;
   }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "processing/base/shot.hpp"
-#include "processing/waves/propagation.hpp"
+#include "processing/waves/bar_modes.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -11,10 +11,11 @@ namespace kolsky {
 /// One bar as the reduction sees it.
 struct BarWaves {
   double area_m2 = 0.0;
+  double density_kg_m3 = 0.0;
   double gauge_to_specimen_m = 0.0;
   double gauge_to_far_end_m =
       0.0;  ///< the impacted end of the input bar, the free end of the output bar
-  const ElementaryPropagation* propagation = nullptr;
+  std::vector<BarMode> modes;  ///< one per bin of the transform
 };
 
 /// What turns the spectra of the gauge records into those of the histories at the specimen.

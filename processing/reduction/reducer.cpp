@@ -19,12 +19,20 @@ constexpr double kShortestPulse_s = 5e-6;
 /// The quiet part ends this many filter widths and this much time before the foot.
 constexpr double kFootClearance_s = 10e-6;
 
+/// One bar with how waves travel in it.
 struct BarModel {
   std::unique_ptr<const Compliance> compliance;
-  ElementaryPropagation propagation;
+  double front_speed_m_per_s;
+  BarWaves waves;
 
-  BarModel(const Bar& bar, const Material& viscoelastic)
-      : compliance(compliance_of(bar, viscoelastic)), propagation(bar.density_kg_m3, *compliance) {}
+  BarModel(const Bar& bar, const Station& station, const Material& viscoelastic)
+      : compliance(compliance_of(bar, viscoelastic)),
+        front_speed_m_per_s(kolsky::front_speed_m_per_s(bar, *compliance)),
+        waves{bar.area_m2(),
+              bar.density_kg_m3,
+              station.gauge_to_specimen_m,
+              station.gauge_to_far_end_m,
+              {}} {}
 };
 
 std::string describe(const Bench& bench, const Material& viscoelastic, bool assumed) {
@@ -45,30 +53,35 @@ struct TableKey {
   std::size_t samples;
   SampleRate rate;
   std::string bench_toml;
+  WaveTheory theory;
   std::vector<double> numbers;
   bool operator==(const TableKey&) const = default;
 };
 
-TableKey key_of(const Shot& shot, const Material& m, const Station& in, const Station& out) {
+TableKey key_of(const Shot& shot, const Material& m, WaveTheory theory, const Station& in,
+                const Station& out) {
   const Bench& b = shot.bench;
   return {shot.samples(),
           shot.rate,
           shot.bench_toml,
+          theory,
           {m.E1_Pa, m.E2_Pa, m.eta2_Pa_s, b.input.area_m2(), b.input.density_kg_m3,
-           b.input.youngs_modulus_Pa.value_or(Measured{}), b.output->area_m2(),
-           b.output->density_kg_m3, b.output->youngs_modulus_Pa.value_or(Measured{}),
-           in.gauge_to_specimen_m, in.gauge_to_far_end_m, out.gauge_to_specimen_m,
-           out.gauge_to_far_end_m, b.specimen->length_m}};
+           b.input.youngs_modulus_Pa.value_or(Measured{}), b.input.poisson_ratio,
+           b.input.dispersion_radius_m(), b.output->poisson_ratio, b.output->dispersion_radius_m(),
+           b.output->area_m2(), b.output->density_kg_m3,
+           b.output->youngs_modulus_Pa.value_or(Measured{}), in.gauge_to_specimen_m,
+           in.gauge_to_far_end_m, out.gauge_to_specimen_m, out.gauge_to_far_end_m,
+           b.specimen->length_m}};
 }
 
 /// Seconds a front needs over a distance.
 double front_time_s(const BarModel& bar, double distance_m) {
-  return distance_m / bar.propagation.front_speed_m_per_s();
+  return distance_m / bar.front_speed_m_per_s;
 }
 
 /// Samples from just before the incident pulse to the specimen's answer at the gauge.
-std::size_t longest_pulse(const Shot& shot, const BarModel& bar, const Station& station) {
-  const double round_trip_s = 2.0 * front_time_s(bar, station.gauge_to_specimen_m);
+std::size_t longest_pulse(const Shot& shot, const BarModel& bar) {
+  const double round_trip_s = 2.0 * front_time_s(bar, bar.waves.gauge_to_specimen_m);
   return static_cast<std::size_t>((round_trip_s + kFootClearance_s) * shot.rate.Hz()) + 2;
 }
 
@@ -77,24 +90,20 @@ struct Tables {
   TableKey key;
   BarModel input;
   BarModel output;
+  double highest_Hz = 0.0;  ///< where surface gauges go blind
   DampedTransform transform;
-  CarryingKernels kernels;
   BandLimit band;
+  CarryingKernels kernels;
   std::vector<double> input_strain, output_strain, incident_strain, history;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
   Tables(TableKey k, const Shot& shot, const Material& m, const Station& in, const Station& out)
       : key(std::move(k)),
-        input(shot.bench.input, m),
-        output(*shot.bench.output, m),
+        input(shot.bench.input, in, m),
+        output(*shot.bench.output, out, m),
         transform(shot.samples(), shot.rate.period_s()),
-        kernels(transform,
-                {shot.bench.input.area_m2(), in.gauge_to_specimen_m, in.gauge_to_far_end_m,
-                 &input.propagation},
-                {shot.bench.output->area_m2(), out.gauge_to_specimen_m, out.gauge_to_far_end_m,
-                 &output.propagation},
-                shot.bench.specimen->length_m),
-        band(transform, longest_pulse(shot, input, in)),
+        band(transform, longest_pulse(shot, input)),
+        kernels(make_kernels(shot.bench)),
         input_strain(shot.samples()),
         output_strain(shot.samples()),
         incident_strain(shot.samples()),
@@ -103,6 +112,19 @@ struct Tables {
         rest(transform.bins()),
         output_spectrum(transform.bins()),
         work(transform.bins()) {}
+
+ private:
+  CarryingKernels make_kernels(const Bench& bench) {
+    std::vector<Complex> path(transform.bins());
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      path[k] = transform.s(k);
+    }
+    input.waves.modes = bar_modes(key.theory, bench.input, *input.compliance, path);
+    output.waves.modes = bar_modes(key.theory, *bench.output, *output.compliance, path);
+    highest_Hz =
+        std::min(blind_from_Hz(input.waves.modes, path), blind_from_Hz(output.waves.modes, path));
+    return {transform, input.waves, output.waves, bench.specimen->length_m};
+  }
 };
 
 Reduction not_reducible(std::string reason) {
@@ -212,7 +234,8 @@ class Pass {
     t_.transform.forward(t_.incident_strain, t_.incident);
     const auto pulse = std::span<const double>(t_.incident_strain).subspan(quiet_, split_ - quiet_);
     reduction_.band_limit_Hz =
-        options_.band_limit_Hz ? *options_.band_limit_Hz : t_.band.from_noise(pulse, input_noise_);
+        options_.band_limit_Hz ? *options_.band_limit_Hz
+                               : std::min(t_.band.from_noise(pulse, input_noise_), t_.highest_Hz);
     t_.transform.forward(t_.input_strain, t_.rest);
     for (std::size_t k = 0; k < t_.rest.size(); ++k) {
       t_.rest[k] -= t_.incident[k];
@@ -394,7 +417,7 @@ Reduction Reducer::reduce(const Shot& shot) {
                                               : paper_pmma();
   const Station in = station_on(shot.bench, "input");
   const Station out = station_on(shot.bench, "output");
-  TableKey key = key_of(shot, material, in, out);
+  TableKey key = key_of(shot, material, options.theory, in, out);
   if (!state_->tables || !(state_->tables->key == key)) {
     state_->tables = std::make_unique<Tables>(std::move(key), shot, material, in, out);
   }

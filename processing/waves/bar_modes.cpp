@@ -1,0 +1,81 @@
+#include "processing/waves/bar_modes.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+std::vector<BarMode> elementary_modes(const Bar& bar, const Compliance& compliance,
+                                      const std::vector<Complex>& path) {
+  std::vector<BarMode> modes;
+  modes.reserve(path.size());
+  const double rho = bar.density_kg_m3;
+  for (const Complex s : path) {
+    // J of a passive solid lies in the right half plane, so the principal root is the decaying one.
+    modes.push_back({s * std::sqrt(rho * compliance.at(s)), 1.0});
+  }
+  return modes;
+}
+
+std::vector<BarMode> love_modes(const Bar& bar, const Compliance& compliance,
+                                const std::vector<Complex>& path) {
+  const double rho = bar.density_kg_m3;
+  const double lateral = 0.5 * rho * std::pow(bar.poisson_ratio * bar.dispersion_radius_m(), 2);
+  std::vector<BarMode> modes;
+  modes.reserve(path.size());
+  for (const Complex s : path) {
+    modes.push_back({s * std::sqrt(rho / (1.0 / compliance.at(s) + lateral * s * s)), 1.0});
+  }
+  return modes;
+}
+
+}  // namespace
+
+WaveTheory wave_theory(const std::string& name) {
+  if (name == "elementary") {
+    return WaveTheory::elementary;
+  }
+  if (name == "love") {
+    return WaveTheory::love;
+  }
+  if (name == "exact") {
+    return WaveTheory::exact;
+  }
+  throw InputError("dispersion", "\"" + name + "\" is not a wave theory",
+                   "give elementary, love or exact");
+}
+
+std::vector<BarMode> bar_modes(WaveTheory theory, const Bar& bar, const Compliance& compliance,
+                               const std::vector<Complex>& path) {
+  switch (theory) {
+    case WaveTheory::elementary:
+      return elementary_modes(bar, compliance, path);
+    case WaveTheory::love:
+      return love_modes(bar, compliance, path);
+    case WaveTheory::exact:
+      break;
+  }
+  return PochhammerChree(bar.density_kg_m3, bar.poisson_ratio, bar.dispersion_radius_m(),
+                         compliance)
+      .along(path);
+}
+
+double blind_from_Hz(const std::vector<BarMode>& modes, const std::vector<Complex>& path) {
+  constexpr double kHalf = 0.5;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (std::abs(1.0 / modes[k].mean_over_surface) < kHalf) {
+      return path[k].imag() / (2.0 * std::numbers::pi);
+    }
+  }
+  return path.back().imag() / (2.0 * std::numbers::pi);
+}
+
+double front_speed_m_per_s(const Bar& bar, const Compliance& compliance) {
+  return 1.0 / std::sqrt(bar.density_kg_m3 * compliance.instantaneous());
+}
+
+}  // namespace kolsky

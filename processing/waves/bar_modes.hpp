@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/base/bench.hpp"
+#include "processing/waves/compliance.hpp"
+#include "processing/waves/pochhammer_chree.hpp"
+
+namespace kolsky {
+
+/// How waves travel in a bar: one-dimensionally (the paper), with lateral inertia to first order
+/// (Love), or exactly (Pochhammer and Chree, first mode).
+enum class WaveTheory { elementary, love, exact };
+
+/// @throws InputError for any other name
+[[nodiscard]] WaveTheory wave_theory(const std::string& name);
+
+/// gamma and the mean-to-surface ratio along a path of s that starts near zero.
+///   elementary  gamma = s sqrt(rho J)
+///   love        gamma^2 = rho s^2 / (1/J + rho nu^2 a^2 s^2 / 2)
+///   exact       see PochhammerChree
+/// Whatever the theory, mean stress is rho s^2 / gamma^2 and mean particle velocity s / gamma times
+/// the mean strain.
+[[nodiscard]] std::vector<BarMode> bar_modes(WaveTheory theory, const Bar& bar,
+                                             const Compliance& compliance,
+                                             const std::vector<Complex>& path);
+
+/// Where surface gauges go blind: the frequency [Hz] on the path from which they read less than
+/// half of the mean strain. The path's highest frequency where that does not happen.
+[[nodiscard]] double blind_from_Hz(const std::vector<BarMode>& modes,
+                                   const std::vector<Complex>& path);
+
+/// Speed of a wave's very front [m/s], 1 / sqrt(rho J(infinity)).
+[[nodiscard]] double front_speed_m_per_s(const Bar& bar, const Compliance& compliance);
+
+}  // namespace kolsky

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "processing/waves/compliance.hpp"
+
+namespace kolsky {
+
+/// The first axisymmetric mode of a round bar at one s.
+struct BarMode {
+  Complex gamma;              ///< propagation coefficient [1/m]; a wave in +x goes as exp(-gamma x)
+  Complex mean_over_surface;  ///< axial strain, mean over the section by that at the surface
+};
+
+/// Exact longitudinal waves in a round bar (Pochhammer, Chree), first mode, for a linear solid of
+/// compliance J(s) and constant Poisson's ratio. With xi = gamma / i, w = s / i, complex Lame
+/// moduli,
+///   p^2 = rho w^2 / (lambda + 2 mu) - xi^2,   q^2 = rho w^2 / mu - xi^2,
+///   (2p/a)(q^2 + xi^2) J1(pa) J1(qa) - (q^2 - xi^2)^2 J0(pa) J1(qa) - 4 xi^2 p q J1(pa) J0(qa) =
+///   0.
+/// Divided by q it depends on p^2, q^2 and xi^2 alone and is entire in them: no branches.
+/// Mean stress over the section is rho s^2 / gamma^2 times mean strain.
+class PochhammerChree {
+ public:
+  /// @param compliance outlives this
+  PochhammerChree(double density_kg_m3, double poisson_ratio, double radius_m,
+                  const Compliance& compliance);
+
+  /// The mode along a path of s that starts where the bar is thin beside the wavelength, |gamma a|
+  /// < 0.5, and moves in steps small enough that each root is near what the ones before it
+  /// foretell. Beyond |gamma0 a| = 12 (gamma0 elementary), where surface waves have long taken
+  /// over, the last ratio to gamma0 is kept.
+  /// @throws std::invalid_argument if the path starts too far out
+  [[nodiscard]] std::vector<BarMode> along(const std::vector<Complex>& path) const;
+
+ private:
+  struct Squares;  // (pa)^2, (qa)^2, (xi a)^2
+  [[nodiscard]] Squares squares(Complex s, Complex gamma_squared) const;
+  [[nodiscard]] Complex residual(Complex s, Complex elementary_squared, Complex ratio) const;
+  [[nodiscard]] Complex solve(Complex s, Complex elementary_squared, Complex guess) const;
+
+  double density_kg_m3_;
+  double poisson_ratio_;
+  double radius_m_;
+  const Compliance* compliance_;
+};
+
+}  // namespace kolsky
