@@ -12,9 +12,12 @@ namespace kolsky {
 }
 
 /// Time that only goes forward: durations and order.
-[[nodiscard]] inline std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
+[[nodiscard]] inline std::int64_t monotonic_ns() noexcept {
+  return clock_ns(CLOCK_MONOTONIC);
+}
 
-/// What the calendar says now of a moment on the monotonic clock: for labels only, it may be stepped.
+/// What the calendar says now of a moment on the monotonic clock: for labels only, it may be
+/// stepped.
 [[nodiscard]] inline std::int64_t utc_of_ns(std::int64_t moment_monotonic_ns) noexcept {
   return moment_monotonic_ns + (clock_ns(CLOCK_REALTIME) - monotonic_ns());
 }

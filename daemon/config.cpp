@@ -64,25 +64,37 @@ DigitiserConfig read_digitiser(const TomlTable& table, const std::filesystem::pa
   return digitiser;
 }
 
+std::optional<double> optional_within(const TomlTable& table, const std::string& key, double least,
+                                      double most) {
+  if (!table.has(key)) {
+    return std::nullopt;
+  }
+  return number_within(table, key, least, least, most);
+}
+
+std::optional<std::int64_t> optional_integer_within(const TomlTable& table, const std::string& key,
+                                                    std::int64_t least, std::int64_t most) {
+  if (!table.has(key)) {
+    return std::nullopt;
+  }
+  return integer_within(table, key, least, least, most);
+}
+
 TriggerConfig read_trigger(const TomlTable& table) {
   table.expect({"channel", "level_sigma", "hysteresis_share", "pre_samples", "post_samples",
                 "hold_off_samples", "learn_samples", "minimum_width_s", "maximum_rise_s"});
   TriggerConfig trigger;
   trigger.channel = table.text("channel");
   trigger.level_sigma = number_within(table, "level_sigma", trigger.level_sigma, 3.0, 1e4);
-  trigger.hysteresis_share =
-      number_within(table, "hysteresis_share", trigger.hysteresis_share, 0.05, 1.0);
   trigger.pre_samples =
       integer_within(table, "pre_samples", trigger.pre_samples, 0, kLongestWindow);
   trigger.post_samples =
       integer_within(table, "post_samples", trigger.post_samples, 16, kLongestWindow);
-  trigger.hold_off_samples =
-      integer_within(table, "hold_off_samples", trigger.post_samples, 0, kLongestWindow);
-  trigger.learn_samples = integer_within(table, "learn_samples", trigger.learn_samples, 16, 1 << 20);
-  trigger.minimum_width_s =
-      number_within(table, "minimum_width_s", trigger.minimum_width_s, 0.0, 1.0);
-  trigger.maximum_rise_s =
-      number_within(table, "maximum_rise_s", trigger.maximum_rise_s, 0.0, 1.0);
+  trigger.hysteresis_share = optional_within(table, "hysteresis_share", 0.05, 0.95);
+  trigger.minimum_width_s = optional_within(table, "minimum_width_s", 0.0, 1.0);
+  trigger.maximum_rise_s = optional_within(table, "maximum_rise_s", 0.0, 1.0);
+  trigger.hold_off_samples = optional_integer_within(table, "hold_off_samples", 0, kLongestWindow);
+  trigger.learn_samples = optional_integer_within(table, "learn_samples", 16, 1 << 20);
   return trigger;
 }
 
@@ -145,6 +157,14 @@ void check_gauges(const DaemonConfig& config, const Bench& bench) {
   }
 }
 
+void check_trigger(const DaemonConfig& config, const Bench& bench) {
+  try {
+    check(trigger_options(config.trigger, bench.sampling_frequency_Hz));
+  } catch (const InputError& error) {
+    throw error.inside(config.file.string() + ": trigger");
+  }
+}
+
 std::size_t find_trigger_channel(const DaemonConfig& config, const Bench& bench) {
   std::string known;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
@@ -153,13 +173,15 @@ std::size_t find_trigger_channel(const DaemonConfig& config, const Bench& bench)
     }
     known += (known.empty() ? "" : ", ") + bench.gauges[i].name;
   }
-  throw InputError(config.file.string() + ": trigger.channel",
-                   fmt::format("{} has no gauge '{}'", config.bench.string(), config.trigger.channel),
-                   "name one of " + known);
+  throw InputError(
+      config.file.string() + ": trigger.channel",
+      fmt::format("{} has no gauge '{}'", config.bench.string(), config.trigger.channel),
+      "name one of " + known);
 }
 
-std::size_t whole_samples(double duration_s, double sample_rate_Hz, std::size_t least) {
-  return std::max(least, static_cast<std::size_t>(std::ceil(duration_s * sample_rate_Hz - 1e-6)));
+std::size_t whole_samples(double duration_s, double sample_rate_Hz) {
+  // A duration of 5e-6 s at 1 MS/s is five samples, whatever the last bit says.
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s * sample_rate_Hz - 1e-6)));
 }
 
 }  // namespace
@@ -205,24 +227,34 @@ Apparatus read_apparatus(const DaemonConfig& config) {
   const std::size_t asked = config.digitiser.channels.size();
   const std::size_t gauges = apparatus.bench.gauges.size();
   if (asked != 0 && asked != gauges) {
-    throw InputError(config.file.string() + ": digitiser.channels",
-                     fmt::format("names {} channels, {} has {} gauges", asked,
-                                 config.bench.string(), gauges),
-                     "name one channel for each gauge, in the bench's order");
+    throw InputError(
+        config.file.string() + ": digitiser.channels",
+        fmt::format("names {} channels, {} has {} gauges", asked, config.bench.string(), gauges),
+        "name one channel for each gauge, in the bench's order");
   }
   check_gauges(config, apparatus.bench);
   apparatus.trigger_channel = find_trigger_channel(config, apparatus.bench);
+  check_trigger(config, apparatus.bench);
   return apparatus;
 }
 
 TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_Hz) {
-  TriggerOptions options;
+  TriggerOptions options = TriggerOptions::for_rate(sample_rate_Hz);
   options.level_sigma = config.level_sigma;
-  options.hysteresis_share = config.hysteresis_share;
-  options.minimum_width_samples = whole_samples(config.minimum_width_s, sample_rate_Hz, 2);
-  options.maximum_rise_samples = whole_samples(config.maximum_rise_s, sample_rate_Hz, 2);
-  options.hold_off_samples = static_cast<std::size_t>(config.hold_off_samples);
-  options.learn_samples = static_cast<std::size_t>(config.learn_samples);
+  options.hysteresis_share = config.hysteresis_share.value_or(options.hysteresis_share);
+  if (config.minimum_width_s) {
+    options.minimum_width_samples = whole_samples(*config.minimum_width_s, sample_rate_Hz);
+  }
+  if (config.maximum_rise_s) {
+    options.maximum_rise_samples = whole_samples(*config.maximum_rise_s, sample_rate_Hz);
+  }
+  const auto post_samples = static_cast<std::size_t>(config.post_samples);
+  options.hold_off_samples =
+      config.hold_off_samples ? static_cast<std::size_t>(*config.hold_off_samples)
+                              : std::max(options.hold_off_samples, post_samples);
+  if (config.learn_samples) {
+    options.learn_samples = static_cast<std::size_t>(*config.learn_samples);
+  }
   return options;
 }
 

@@ -14,19 +14,19 @@
 
 namespace kolsky {
 
-/// What `[trigger]` asks for, in the units a person sets it in.
+/// What `[trigger]` asks for, in the units a person sets it in. What is not given follows from the rate, as
+/// in TriggerOptions::for_rate.
 struct TriggerConfig {
   std::string channel;  ///< gauge whose record is watched
   double level_sigma = 8.0;
-  double hysteresis_share = 0.5;
   std::int64_t pre_samples = 400;
   std::int64_t post_samples = 3600;
-  std::int64_t hold_off_samples = 3600;  ///< default: post_samples, so echoes stay in their own window
-  std::int64_t learn_samples = 256;
-  double minimum_width_s = 8e-6;
-  double maximum_rise_s = 64e-6;
-
-  friend bool operator==(const TriggerConfig&, const TriggerConfig&) = default;
+  std::optional<double> hysteresis_share;
+  std::optional<double> minimum_width_s;
+  std::optional<double> maximum_rise_s;
+  std::optional<std::int64_t> hold_off_samples;  ///< else at least post_samples, so that echoes stay in
+                                                 ///< the window of their shot
+  std::optional<std::int64_t> learn_samples;
 };
 
 struct DigitiserConfig {
@@ -47,8 +47,8 @@ struct EndpointConfig {
   friend bool operator==(const EndpointConfig&, const EndpointConfig&) = default;
 };
 
-/// What KOLSKYD.toml says. Paths are absolute or relative to where the daemon runs; in the file they are
-/// relative to the file.
+/// What KOLSKYD.toml says. Paths are absolute or relative to where the daemon runs; in the file
+/// they are relative to the file.
 struct DaemonConfig {
   std::filesystem::path file;
   std::filesystem::path bench;
@@ -57,8 +57,9 @@ struct DaemonConfig {
   DigitiserConfig digitiser;
   TriggerConfig trigger;
   EndpointConfig endpoints;
-  std::optional<double> ring_s;  ///< how far back the ring reaches; none: what the window needs and more
-  bool auto_arm = false;         ///< arm by itself as soon as the preflight passes
+  std::optional<double>
+      ring_s;             ///< how far back the ring reaches; none: what the window needs and more
+  bool auto_arm = false;  ///< arm by itself as soon as the preflight passes
   std::map<std::string, std::string> meta;  ///< goes with every shot
 };
 
@@ -73,8 +74,9 @@ struct Apparatus {
   std::size_t trigger_channel = 0;  ///< index in bench.gauges
 };
 
-/// Reads the bench and the bar's material, and checks what only both files together can show: the trigger
-/// channel is a gauge, as many digitiser channels as gauges, every gauge converts to strain.
+/// Reads the bench and the bar's material, and checks what only both files together can show: the
+/// trigger channel is a gauge, as many digitiser channels as gauges, every gauge converts to
+/// strain.
 /// @throws InputError
 [[nodiscard]] Apparatus read_apparatus(const DaemonConfig& config);
 
@@ -83,8 +85,8 @@ struct Apparatus {
 
 [[nodiscard]] DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench);
 
-/// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded so that a
-/// fast scope does not take the memory; always several windows and blocks.
+/// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded
+/// so that a fast scope does not take the memory; always several windows and blocks.
 [[nodiscard]] std::size_t ring_samples(const DaemonConfig& config, double sample_rate_Hz,
                                        std::size_t max_block_samples);
 

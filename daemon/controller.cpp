@@ -135,6 +135,7 @@ PreflightFacts Controller::facts() {
     const Acquirer::Level level = station_.acquirer().level(i);
     facts.channels.push_back({.baseline_codes = level.baseline_codes,
                               .noise_codes = level.noise_codes,
+                              .constant_samples = level.constant_samples,
                               .learned = level.ready});
   }
   return facts;

@@ -36,8 +36,8 @@ void start(Level level) {
 }
 
 void stop() {
-  auto direct = std::make_shared<spdlog::logger>(
-      "kolskyd-direct", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  auto direct = std::make_shared<spdlog::logger>("kolskyd-direct",
+                                                 std::make_shared<spdlog::sinks::stderr_sink_mt>());
   direct->set_level(spdlog::default_logger_raw()->level());
   spdlog::set_default_logger(std::move(direct));
   spdlog::drop(kName);

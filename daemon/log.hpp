@@ -2,8 +2,9 @@
 
 #include <string>
 
-/// The daemon's log: one line per event on stderr, written by a thread of its own so that no caller waits for
-/// a terminal or a pipe that does not drain (the oldest lines go then). Not for the acquisition thread.
+/// The daemon's log: one line per event on stderr, written by a thread of its own so that no caller
+/// waits for a terminal or a pipe that does not drain (the oldest lines go then). Not for the
+/// acquisition thread.
 namespace kolsky::log {
 
 enum class Level { quiet, normal, verbose };

@@ -87,7 +87,8 @@ Station::Station(DaemonConfig config)
       lock_(store_.root),
       publisher_(publisher_options(config_.endpoints)),
       journal_(store_, recovered(store_, publisher_.boot_id())),
-      digitiser_(open_digitiser(config_.digitiser.uri, digitiser_options(config_, apparatus_.bench))),
+      digitiser_(
+          open_digitiser(config_.digitiser.uri, digitiser_options(config_, apparatus_.bench))),
       stream_(digitiser_->info()),
       settings_(make_settings(config_, apparatus_, stream_)),
       ring_(make_ring(config_, stream_)),

@@ -18,9 +18,9 @@
 
 namespace kolsky {
 
-/// The parts of a running daemon, in the order in which they come to be: store, sockets, digitiser, threads.
-/// Opening it recovers the store, binds the results and preview sockets and opens the digitiser; `start`
-/// lets the samples in.
+/// The parts of a running daemon, in the order in which they come to be: store, sockets, digitiser,
+/// threads. Opening it recovers the store, binds the results and preview sockets and opens the
+/// digitiser; `start` lets the samples in.
 class Station {
  public:
   /// @throws InputError for whatever the configuration has wrong
@@ -51,8 +51,9 @@ class Station {
   /// What the next shots are made from; replaced whole.
   [[nodiscard]] std::shared_ptr<const ShotSettings> settings() const;
 
-  /// Reads configuration and bench again and takes what can change while the digitiser runs: bench, bar model,
-  /// trigger, window, meta. @throws InputError where it is wrong or asks for what needs a restart
+  /// Reads configuration and bench again and takes what can change while the digitiser runs: bench,
+  /// bar model, trigger, window, meta. @throws InputError where it is wrong or asks for what needs
+  /// a restart
   void reload();
 
  private:

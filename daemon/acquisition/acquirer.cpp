@@ -81,6 +81,7 @@ Acquirer::Level Acquirer::level(std::size_t channel) const noexcept {
   return {.baseline_codes = level.baseline.load(std::memory_order_relaxed),
           .noise_codes = level.noise.load(std::memory_order_relaxed),
           .level_codes = level.level.load(std::memory_order_relaxed),
+          .constant_samples = level.constant.load(std::memory_order_relaxed),
           .ready = level.ready.load(std::memory_order_relaxed)};
 }
 
@@ -118,7 +119,8 @@ void Acquirer::run() {
 void Acquirer::go_real_time() {
   pthread_setname_np(pthread_self(), "kolsky-acquire");
   if (stream_.ends) {
-    return;  // a replay takes what the processor gives; ahead of its own consumers it would only wait
+    return;  // a replay takes what the processor gives; ahead of its own consumers it would only
+             // wait
   }
   sched_param parameters{};
   parameters.sched_priority = kPriority;
@@ -139,10 +141,10 @@ void Acquirer::take_plan() {
 
 void Acquirer::take(const Block& block) {
   const Tick block_end = block.first_tick + static_cast<Tick>(block.samples);
-  note_missing(block);
   if (block.starts_capture || !streaming_) {
     begin_capture(block);
   }
+  note_missing(block);
   settle_long_mark(block);
   wait_for_room(block_end);
   ring_.write(block, statistics_);
@@ -160,7 +162,9 @@ void Acquirer::note_missing(const Block& block) {
     missing.kind = Missing::Kind::unknown;
   }
   overflow_pending_ = false;
-  if (missing.kind == Missing::Kind::none) {
+  // Before a capture of a replay nothing is missing but the world between two captures.
+  const bool between = block.starts_capture && missing.kind == Missing::Kind::unknown;
+  if (missing.kind == Missing::Kind::none || between) {
     return;
   }
   const bool known = missing.kind == Missing::Kind::known;
@@ -182,8 +186,9 @@ void Acquirer::note_missing(const Block& block) {
 
 void Acquirer::begin_capture(const Block& block) {
   close_capture();
+  const bool headless = block.starts_capture && block.missing_before.kind == Missing::Kind::known;
   streaming_ = true;
-  capture_start_ = block.first_tick;
+  capture_start_ = block.first_tick - (headless ? block.missing_before.samples : 0);
   capture_marked_ = false;
   watch_.trigger.reset();
   for (IncidentTrigger& baseline : baselines_) {
@@ -195,9 +200,8 @@ void Acquirer::watch(const Block& block) {
   if (block.mark) {
     take_mark(block, *block.mark);
   }
-  const std::optional<TriggerEvent> event = stream_.format == SampleFormat::int16
-                                                ? feed<std::int16_t>(block)
-                                                : feed<std::int32_t>(block);
+  const std::optional<TriggerEvent> event =
+      stream_.format == SampleFormat::int16 ? feed<std::int16_t>(block) : feed<std::int32_t>(block);
   if (event && armed() && !capture_marked_) {
     trigger_at(*event);
   }
@@ -265,10 +269,11 @@ void Acquirer::settle_long_mark(const Block& block) {
 
 void Acquirer::trigger_at(const TriggerEvent& trigger) {
   triggers_.fetch_add(1, std::memory_order_relaxed);
-  const Window window{.trigger = trigger,
-                      .first_tick = std::max(capture_start_, trigger.tick - watch_.plan.pre_samples),
-                      .end_tick = trigger.tick + watch_.plan.post_samples,
-                      .trigger_monotonic_ns = monotonic_at(trigger.tick)};
+  const Window window{
+      .trigger = trigger,
+      .first_tick = std::max(capture_start_, trigger.tick - watch_.plan.pre_samples),
+      .end_tick = trigger.tick + watch_.plan.post_samples,
+      .trigger_monotonic_ns = monotonic_at(trigger.tick)};
   AcquisitionEvent event;
   event.kind = AcquisitionEvent::Kind::triggered;
   event.tick = trigger.tick;
@@ -305,6 +310,11 @@ void Acquirer::close_full_windows() {
 }
 
 void Acquirer::close_capture() {
+  if (overflow_pending_) {  // samples were lost, and none came after them
+    overflow_pending_ = false;
+    interrupt_windows();
+    return;
+  }
   if (whole_capture_) {
     hand_over({.trigger = *whole_capture_,
                .first_tick = capture_start_,
@@ -459,7 +469,15 @@ void Acquirer::show_levels() {
     levels_[i].noise.store(source.noise_codes(), std::memory_order_relaxed);
     levels_[i].level.store(triggers ? source.level_codes() : 0.0, std::memory_order_relaxed);
     levels_[i].ready.store(source.ready(), std::memory_order_relaxed);
+    follow_constant(levels_[i], statistics_[i]);
   }
+}
+
+void Acquirer::follow_constant(AtomicLevel& level, const RunStatistics& run) {
+  const bool same = run.minimum == run.maximum && run.minimum == level.last_code;
+  level.last_code = run.maximum;
+  const std::int64_t before = same ? level.constant.load(std::memory_order_relaxed) : 0;
+  level.constant.store(before + (same ? run.count : 0), std::memory_order_relaxed);
 }
 
 std::int64_t Acquirer::monotonic_at(Tick tick) const noexcept {

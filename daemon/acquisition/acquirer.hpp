@@ -23,14 +23,15 @@ struct AcquisitionPlan {
   std::int64_t post_samples = 0;
 };
 
-/// Reads a digitiser into the ring on a thread of its own, watches the trigger channel and says through a
-/// queue what happened. Waits only in `Digitiser::read` and while a device is gone; does not allocate, lock
-/// or log. The one exception is a replay (a stream that ends): it may wait for the recorder, because a file
-/// can, so that replaying as fast as possible loses nothing.
+/// Reads a digitiser into the ring on a thread of its own, watches the trigger channel and says
+/// through a queue what happened. Waits only in `Digitiser::read` and while a device is gone; does
+/// not allocate, lock or log. The one exception is a replay (a stream that ends): it may wait for
+/// the recorder, because a file can, so that replaying as fast as possible loses nothing.
 ///
-/// A window is [tick - pre, tick + post), cut where the stream or the capture begins or ends. A mark that
-/// the stream carries is used in place of the software trigger for that capture; a replayed capture with a
-/// mark is one window whole, so that a stored shot comes back as it was (where it fits the ring).
+/// A window is [tick - pre, tick + post), cut where the stream or the capture begins or ends. A
+/// mark that the stream carries is used in place of the software trigger for that capture; a
+/// replayed capture with a mark is one window whole, so that a stored shot comes back as it was
+/// (where it fits the ring).
 class Acquirer {
  public:
   /// The digitiser, ring and queue must outlive the acquirer. The digitiser has been started.
@@ -70,6 +71,7 @@ class Acquirer {
     double baseline_codes = 0.0;
     double noise_codes = 0.0;
     double level_codes = 0.0;  ///< 0 on channels that do not trigger
+    std::int64_t constant_samples = 0;  ///< for how long the code has not changed
     bool ready = false;        ///< enough quiet samples were seen
   };
   [[nodiscard]] Level level(std::size_t channel) const noexcept;
@@ -93,7 +95,9 @@ class Acquirer {
     std::atomic<double> baseline{0.0};
     std::atomic<double> noise{0.0};
     std::atomic<double> level{0.0};
+    std::atomic<std::int64_t> constant{0};
     std::atomic<bool> ready{false};
+    std::int32_t last_code = 0;  ///< of the thread alone
   };
 
   void run();
@@ -123,6 +127,7 @@ class Acquirer {
   [[nodiscard]] bool same_stream() const;
   void pause(std::int64_t milliseconds) const;
   void show_levels();
+  static void follow_constant(AtomicLevel& level, const RunStatistics& run);
   [[nodiscard]] std::int64_t monotonic_at(Tick tick) const noexcept;
 
   Digitiser& digitiser_;
@@ -130,7 +135,8 @@ class Acquirer {
   AcquisitionQueue& events_;
   const StreamInfo stream_;
   Watch watch_;
-  std::vector<IncidentTrigger> baselines_;  ///< of the other channels: they only tell baseline and noise
+  std::vector<IncidentTrigger>
+      baselines_;  ///< of the other channels: they only tell baseline and noise
   std::vector<RunStatistics> statistics_;
   std::vector<AtomicLevel> levels_;
 
@@ -142,7 +148,8 @@ class Acquirer {
   bool capture_marked_ = false;
   bool overflow_pending_ = false;
   std::optional<AcquisitionEvent> held_gap_;  ///< found no room; goes ahead of whatever comes next
-  std::optional<TriggerEvent> whole_capture_;  ///< the mark of a replayed capture that is still coming
+  std::optional<TriggerEvent>
+      whole_capture_;  ///< the mark of a replayed capture that is still coming
   std::array<Window, kOpenWindows> open_{};
   std::size_t opened_ = 0;
   std::array<Tick, AcquisitionQueue::capacity()> handed_first_{};

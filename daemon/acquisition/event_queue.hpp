@@ -7,8 +7,8 @@
 
 namespace kolsky {
 
-/// First in, first out between one producer that never waits and one consumer that may. Fixed size, no
-/// locks, no allocation. T is copied.
+/// First in, first out between one producer that never waits and one consumer that may. Fixed size,
+/// no locks, no allocation. T is copied.
 template <typename T, std::size_t kCapacity>
 class EventQueue {
   static_assert((kCapacity & (kCapacity - 1)) == 0, "the capacity is a power of two");

@@ -14,8 +14,10 @@
 
 namespace kolsky {
 
-/// What goes on beside the shots: the preview of the stream, the heartbeat, arming by itself where that is
-/// set, and the watchdog.
+class Previewer;
+
+/// What goes on beside the shots: the preview of the stream, the heartbeat, arming by itself where
+/// that is set, and the watchdog.
 class Monitor {
  public:
   Monitor(Station& station, Controller& controller, bool auto_arm);
@@ -27,8 +29,6 @@ class Monitor {
   void stop();
 
  private:
-  class Previewer;
-
   void run();
   void turn(std::chrono::steady_clock::time_point now);
   void arm_by_itself();

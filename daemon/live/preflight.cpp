@@ -15,10 +15,12 @@ namespace {
 // A shot is in the journal, in its capture and for a moment in a temporary file.
 constexpr std::uint64_t kShotsOfRoom = 100;
 constexpr std::uint64_t kLeastFree_bytes = 64ull << 20;
-constexpr double kBalancedShare = 0.25;   // of the converter's range that must be free on either side
-constexpr double kLoudestShare = 0.05;    // of the range, as rms
-constexpr double kLeastFullScale = 20e-6;   // strain; the smallest pulses are ten times this
-constexpr double kCoarsestStep = 1e-3;      // strain
+constexpr double kBalancedShare =
+    0.25;                               // of the converter's range that must be free on either side
+constexpr std::int64_t kDeadSamples = 50'000;
+constexpr double kLoudestShare = 0.05;  // of the range, as rms
+constexpr double kLeastFullScale = 20e-6;  // strain; the smallest pulses are ten times this
+constexpr double kCoarsestStep = 1e-3;     // strain
 
 PreflightItem connection(const PreflightFacts& facts) {
   if (facts.ended) {
@@ -49,8 +51,8 @@ PreflightItem calibration(const ChannelRecord& channel, const Gauge& gauge, cons
     const double per_code = std::abs(conversion.sensitivity() * channel.scale);
     const double range = static_cast<double>(channel.code_max) - channel.code_min;
     const double full_scale = per_code * range;
-    const bool ok = std::isfinite(full_scale) && full_scale >= kLeastFullScale &&
-                    per_code <= kCoarsestStep;
+    const bool ok =
+        std::isfinite(full_scale) && full_scale >= kLeastFullScale && per_code <= kCoarsestStep;
     return {name, ok,
             fmt::format("full scale {:.4g} strain, step {:.3g}{}", full_scale, per_code,
                         ok ? "" : ": check gauge factor, gain and scale")};
@@ -76,8 +78,10 @@ PreflightItem noise(const ChannelRecord& channel, const ChannelCondition& condit
   }
   const double range = static_cast<double>(channel.code_max) - channel.code_min;
   const double rms = condition.noise_codes * std::abs(channel.scale);
-  if (condition.noise_codes <= 0.0) {
-    return {name, false, "none at all: the input is dead or not connected"};
+  if (condition.constant_samples >= kDeadSamples) {
+    return {name, false,
+            fmt::format("none at all, the same code for {} samples: the input is dead",
+                        condition.constant_samples)};
   }
   const bool ok = condition.noise_codes <= kLoudestShare * range;
   return {name, ok,

@@ -14,20 +14,6 @@ constexpr std::size_t kStepsPerMessage = 200;
 constexpr std::size_t kChunk = 8192;
 constexpr Tick kMostPerLook = 1 << 19;
 
-std::vector<PreviewChannel> channels_of(const Shot& blank) {
-  std::vector<PreviewChannel> channels;
-  for (const ChannelRecord& channel : blank.channels) {
-    channels.push_back({.gauge = channel.gauge,
-                        .unit = channel.unit,
-                        .scale = channel.scale,
-                        .offset = channel.offset,
-                        .bits = channel.bits,
-                        .code_min = channel.code_min,
-                        .code_max = channel.code_max});
-  }
-  return channels;
-}
-
 std::size_t samples_per_step(const SampleRate& rate) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(rate.Hz() / kSteps_per_s)));
 }
@@ -37,7 +23,7 @@ std::size_t samples_per_step(const SampleRate& rate) {
 Previewer::Previewer(const SampleRing& ring, Publisher& publisher, const Shot& blank)
     : ring_(ring),
       publisher_(publisher),
-      decimator_(channels_of(blank), blank.rate, samples_per_step(blank.rate), kStepsPerMessage),
+      decimator_(blank.channels, blank.rate, samples_per_step(blank.rate), kStepsPerMessage),
       chunk_(blank.channels.size(), std::vector<std::int32_t>(kChunk)),
       codes_(blank.channels.size()) {}
 

@@ -3,15 +3,15 @@
 #include <memory>
 #include <vector>
 
+#include "daemon/acquisition/sample_ring.hpp"
 #include "daemon/publish/preview_decimator.hpp"
 #include "daemon/publish/publisher.hpp"
-#include "daemon/acquisition/sample_ring.hpp"
 #include "processing/base/shot.hpp"
 
 namespace kolsky {
 
-/// Publishes the envelope of what has come into the ring since the last look. Where the stream is faster than
-/// it, samples between are passed over; the preview counts them.
+/// Publishes the envelope of what has come into the ring since the last look. Where the stream is
+/// faster than it, samples between are passed over; the preview counts them.
 class Previewer {
  public:
   /// @param blank  the channels

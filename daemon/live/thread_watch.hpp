@@ -9,7 +9,8 @@
 
 namespace kolsky {
 
-/// Sees that threads get on. Each gives a counter that moves while it works, and says whether it has work.
+/// Sees that threads get on. Each gives a counter that moves while it works, and says whether it
+/// has work.
 class ThreadWatch {
  public:
   struct Pulse {
@@ -29,7 +30,7 @@ class ThreadWatch {
     std::chrono::milliseconds patience;
     std::function<Pulse()> pulse;
     std::uint64_t last_progress = 0;
-    std::chrono::steady_clock::time_point last_change;
+    std::chrono::steady_clock::time_point last_change{};
     bool seen = false;
   };
   std::vector<Watched> threads_;

@@ -87,8 +87,7 @@ bool Archivist::idle() const {
 template <typename Ask>
 auto Archivist::ask(Ask question) -> decltype(question()) {
   // Shared with the job: the answer may come after the asker has given up.
-  auto task =
-      std::make_shared<std::packaged_task<decltype(question())()>>(std::move(question));
+  auto task = std::make_shared<std::packaged_task<decltype(question())()>>(std::move(question));
   auto answer = task->get_future();
   submit([task] { (*task)(); });
   if (answer.wait_for(kPatience) != std::future_status::ready) {
@@ -133,8 +132,8 @@ void Archivist::store_now(const Shot& shot, CatalogueEntry entry) {
     catalogue().put(entry);
   } catch (const std::exception& error) {
     failed_.fetch_add(1);
-    fault_(fmt::format("shot {} is in the journal but could not be filed: {}", shot.id,
-                       error.what()));
+    fault_(
+        fmt::format("shot {} is in the journal but could not be filed: {}", shot.id, error.what()));
   }
 }
 

@@ -25,8 +25,8 @@ struct StoredShot {
   std::string capture;  ///< its file
 };
 
-/// The one thread of the daemon that writes captures and the catalogue and reads them back. Shots come to it
-/// journaled: whatever happens here, or to it, nothing is lost.
+/// The one thread of the daemon that writes captures and the catalogue and reads them back. Shots
+/// come to it journaled: whatever happens here, or to it, nothing is lost.
 class Archivist {
  public:
   /// Told what could not be stored, from the archivist's thread.
@@ -45,7 +45,8 @@ class Archivist {
   /// Hands over a journaled shot. Waits while `kMostWaiting` others wait.
   void store(std::shared_ptr<const Shot> shot, CatalogueEntry entry);
 
-  /// Reads a capture back and reduces it with default options: what `kolsky reduce` does with that file.
+  /// Reads a capture back and reduces it with default options: what `kolsky reduce` does with that
+  /// file.
   /// @throws InputError where there is no such shot or its capture is damaged
   [[nodiscard]] StoredShot get(const std::string& id);
   /// Newest first. @param most 0: all

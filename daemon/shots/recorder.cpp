@@ -49,8 +49,9 @@ void put_timings(const std::vector<StageDuration>& laps, v1::Result& result) {
 }
 
 std::string gap_text(const Gap& gap) {
-  return gap.known ? fmt::format("{} samples are missing from tick {} on", gap.samples, gap.first_tick)
-                   : fmt::format("an unknown number of samples is missing at tick {}", gap.first_tick);
+  return gap.known
+             ? fmt::format("{} samples are missing from tick {} on", gap.samples, gap.first_tick)
+             : fmt::format("an unknown number of samples is missing at tick {}", gap.first_tick);
 }
 
 }  // namespace
@@ -171,7 +172,8 @@ void ShotRecorder::report_loss(const AcquisitionEvent& event) {
             event.tick, 0);
       break;
     case Kind::window_refused:
-      fault("window-refused", "too many windows were open; this trigger has no shot", event.tick, 0);
+      fault("window-refused", "too many windows were open; this trigger has no shot", event.tick,
+            0);
       break;
     default:
       break;
@@ -252,7 +254,8 @@ bool ShotRecorder::journal(const Shot& shot) {
     return true;
   } catch (const std::exception& error) {
     journal_failures_.fetch_add(1);
-    fault("store", fmt::format("shot {} could not be journaled and is lost: {}", shot.id, error.what()),
+    fault("store",
+          fmt::format("shot {} could not be journaled and is lost: {}", shot.id, error.what()),
           shot.trigger->tick, shot.samples());
     return false;
   }

@@ -36,9 +36,9 @@ struct StageDuration {
 
 class Stopwatch;
 
-/// The thread that makes shots out of complete windows: copies the window from the ring, journals it, reduces
-/// it, publishes both and hands it to the archivist. Nothing is published before it is durable. It also
-/// publishes what the acquisition thread reports as lost.
+/// The thread that makes shots out of complete windows: copies the window from the ring, journals
+/// it, reduces it, publishes both and hands it to the archivist. Nothing is published before it is
+/// durable. It also publishes what the acquisition thread reports as lost.
 class ShotRecorder {
  public:
   /// Everything referred to must outlive the recorder.

@@ -2,36 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 namespace kolsky {
 
 SharedJournal::SharedJournal(const StoreLayout& store, std::uint64_t boot_id)
     : folder_(store.journals()), boot_id_(boot_id) {
-  open();
+  static_cast<void>(current());
 }
 
-void SharedJournal::open() {
-  const std::string name = files_ == 0 ? fmt::format("{:016x}.kj", boot_id_)
-                                       : fmt::format("{:016x}-{}.kj", boot_id_, files_);
-  ++files_;
-  journal_ = std::make_unique<Journal>(folder_ / name);
+std::shared_ptr<Journal> SharedJournal::current() {
+  const std::lock_guard lock(mutex_);
+  if (!journal_) {
+    const std::string name = files_ == 0 ? fmt::format("{:016x}.kj", boot_id_)
+                                         : fmt::format("{:016x}-{}.kj", boot_id_, files_);
+    journal_ = std::make_shared<Journal>(folder_ / name);
+    ++files_;
+  }
+  return journal_;
+}
+
+void SharedJournal::give_up(const std::shared_ptr<Journal>& journal) {
+  const std::lock_guard lock(mutex_);
+  if (journal_ == journal) {
+    journal_.reset();
+  }
 }
 
 template <typename Append>
 void SharedJournal::append(const Append& write) {
-  const std::lock_guard lock(mutex_);
-  for (int attempt = 0;; ++attempt) {
-    try {
-      if (!journal_) {
-        open();
-      }
-      write(*journal_);
-      return;
-    } catch (...) {
-      journal_.reset();
-      if (attempt == 1) {
-        throw;
-      }
-    }
+  const std::shared_ptr<Journal> first = current();
+  try {
+    write(*first);
+  } catch (const std::runtime_error&) {
+    give_up(first);
+    write(*current());
   }
 }
 

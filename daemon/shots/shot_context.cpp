@@ -50,11 +50,11 @@ Shot blank_shot(const DaemonConfig& config, const Apparatus& apparatus, const St
   for (std::size_t i = 0; i < gauges.size(); ++i) {
     const ChannelInfo& channel = stream.channels[i];
     if (channel.unit != gauges[i].unit) {
-      throw InputError(fmt::format("{}: gauges[{}].unit", config.bench.string(), i),
-                       fmt::format("gauge {} is in {}, channel {} of {} delivers {}",
-                                   gauges[i].name, gauges[i].unit, channel.name, stream.uri,
-                                   channel.unit),
-                       fmt::format("give unit = \"{}\" and what converts it to strain", channel.unit));
+      throw InputError(
+          fmt::format("{}: gauges[{}].unit", config.bench.string(), i),
+          fmt::format("gauge {} is in {}, channel {} of {} delivers {}", gauges[i].name,
+                      gauges[i].unit, channel.name, stream.uri, channel.unit),
+          fmt::format("give unit = \"{}\" and what converts it to strain", channel.unit));
     }
     ChannelRecord record;
     record.gauge = gauges[i].name;
@@ -95,8 +95,7 @@ Shot rehearsal_shot(const Shot& blank, std::int64_t pre_samples, std::int64_t po
   for (std::size_t i = 0; i < shot.channels.size(); ++i) {
     ChannelRecord& channel = shot.channels[i];
     const Gauge& gauge = shot.bench.gauges[i];
-    const double to_specimen_samples =
-        shot.bench.distance_to_specimen_m(gauge) / speed * rate_Hz;
+    const double to_specimen_samples = shot.bench.distance_to_specimen_m(gauge) / speed * rate_Hz;
     const double range = static_cast<double>(channel.code_max) - channel.code_min;
     const double middle = static_cast<double>(channel.code_min) + 0.5 * range;
     const bool input_side = gauge.bar != "output";

@@ -6,8 +6,8 @@
 namespace kolsky {
 
 /// Names shots: UTC date and time of the trigger, four digits of the boot id and a counter, as
-/// "20250117T101530123Z-1f3a-0001". Sorts by time, is a file name, and two runs never share one even where
-/// the clock was set back.
+/// "20250117T101530123Z-1f3a-0001". Sorts by time, is a file name, and two runs never share one
+/// even where the clock was set back.
 class ShotIdSource {
  public:
   explicit ShotIdSource(std::uint64_t boot_id);
