@@ -215,8 +215,17 @@ std::string bench_toml(const Scenario& scenario) {
 }
 
 BenchHistory run_shot(const Scenario& scenario) {
-  const auto steps = static_cast<std::size_t>(std::llround(scenario.record_s * kStepsPerSecond));
-  return run_bench(scenario.model, 1.0 / kStepsPerSecond, steps);
+  const auto whole = static_cast<std::size_t>(std::llround(scenario.record_s * kStepsPerSecond));
+  const auto fading = static_cast<std::size_t>(std::llround(scenario.fade_s * kStepsPerSecond));
+  BenchHistory shot = run_bench(scenario.model, 1.0 / kStepsPerSecond, whole + fading);
+  for (std::vector<double>& strain : shot.gauge_strain) {
+    for (std::size_t i = 0; i < fading; ++i) {
+      const double c =
+          std::cos(std::numbers::pi / 2.0 * static_cast<double>(i) / static_cast<double>(fading));
+      strain[whole + i] *= c * c;
+    }
+  }
+  return shot;
 }
 
 void write_truth(const Scenario& scenario, const BenchHistory& shot, std::ostream& out) {
@@ -228,7 +237,8 @@ void write_truth(const Scenario& scenario, const BenchHistory& shot, std::ostrea
   out << "time_s,stress_Pa,strain,strain_rate_per_s,force_front_N,force_back_N\n";
   const auto every = static_cast<std::size_t>(
       std::llround(kStepsPerSecond / scenario.bench.sampling_frequency_Hz));
-  for (std::size_t i = 0; i < s.time_s.size(); i += every) {
+  const auto rows = static_cast<std::size_t>(std::llround(scenario.record_s * kStepsPerSecond));
+  for (std::size_t i = 0; i < rows; i += every) {
     out << number_text(s.time_s[i]) << ',' << number_text(s.stress_Pa[i]) << ','
         << number_text(s.strain[i]) << ',' << number_text(s.strain_rate_per_s[i]) << ','
         << number_text(s.force_front_N[i]) << ',' << number_text(s.force_back_N[i]) << '\n';

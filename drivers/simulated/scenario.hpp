@@ -18,7 +18,8 @@ struct Scenario {
   Bench bench;       ///< as its bench file states it; gauge i is channel i
   BenchModel model;  ///< the same in the time domain
   FrontEndSettings front_end;
-  double record_s = 4e-3;  ///< from the impact on
+  double record_s = 4e-3;  ///< from the impact on, as the model has it
+  double fade_s = 4e-3;    ///< then the bars come to rest, so that the record's end is no step
 };
 
 [[nodiscard]] std::vector<Scenario> scenarios();
@@ -30,7 +31,7 @@ struct Scenario {
 /// factor that makes them strain.
 [[nodiscard]] std::string bench_toml(const Scenario& scenario);
 
-/// A shot of the scenario, sampled finely enough for all its rates.
+/// A shot of the scenario at the model's own steps, faded out at its end.
 [[nodiscard]] BenchHistory run_shot(const Scenario& scenario);
 
 /// The model's steps per second: a multiple of every rate.
