@@ -43,9 +43,9 @@ void multiply_add(const std::vector<Complex>& kernel, const std::vector<Complex>
 CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWaves& input,
                                  const BarWaves& output, double specimen_length_m) {
   const std::size_t bins = transform.bins();
-  for (auto* kernel : {&force_of_incident_, &force_of_rest_, &force_of_output_, &rate_of_incident_,
-                       &rate_of_rest_, &rate_of_output_, &right_of_incident_, &right_of_rest_,
-                       &left_of_rest_, &right_of_output_}) {
+  for (auto* kernel : {&from_impact_, &force_of_incident_, &force_of_rest_, &force_of_output_,
+                       &rate_of_incident_, &rate_of_rest_, &rate_of_output_, &right_of_incident_,
+                       &right_of_rest_, &left_of_rest_, &right_of_output_}) {
     kernel->resize(bins);
   }
   for (std::size_t k = 0; k < bins; ++k) {
@@ -53,6 +53,8 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
     const Stretches a(input, input.modes[k], s);
     const Complex right_rest = -a.round_trip * a.separation * a.to_specimen;
     const Complex left_rest = a.separation / a.to_specimen;
+    from_impact_[k] =
+        std::exp(-input.modes[k].gamma * input.gauge_to_far_end_m) * input.area_m2 / a.force;
     right_of_incident_[k] = a.mean * a.to_specimen;
     right_of_rest_[k] = a.mean * right_rest;
     left_of_rest_[k] = a.mean * left_rest;
@@ -68,6 +70,16 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
     force_of_output_[k] = b.force * (right_out + left_out);
     rate_of_output_[k] = -b.velocity * (right_out - left_out) / specimen_length_m;
   }
+}
+
+void CarryingKernels::push_from_incident(std::vector<Complex>& wave) const {
+  for (std::size_t k = 0; k < wave.size(); ++k) {
+    wave[k] /= from_impact_[k];
+  }
+}
+
+void CarryingKernels::incident_from_push(std::vector<Complex>& wave) const {
+  multiply(from_impact_, wave, wave);
 }
 
 void CarryingKernels::force_front(const Inputs& in, std::vector<Complex>& out) const {

@@ -21,9 +21,11 @@ struct BarWaves {
 /// What turns the spectra of the gauge records into those of the histories at the specimen.
 /// Everything at s = eta + i w, for one bench and one length of record.
 ///
-/// Input bar. The incident pulse I is known at the gauge until the specimen's answer arrives there;
-/// from then on the record holds the left-going wave L and what the free impacted end has sent back
-/// of it:
+/// Input bar. While the striker pushes, the impacted end is the source of the incident wave;
+/// afterwards it is free. The incident pulse is known at the gauge only until the specimen's answer
+/// arrives there, but carried to the impacted end, where it ends with the striker's push, it is
+/// known whole: so is its tail at the gauge, I. The rest of the record is the left-going wave L and
+/// what the free end has sent back of it:
 ///     e1 = I + L - L exp(-2 gamma x1),    D = e1 - I,    L = D / (1 - exp(-2 gamma x1)),
 /// x1 from the gauge to the impacted end. At the specimen
 ///     right-going (I - L exp(-2 gamma x1)) exp(-gamma l1),   left-going L exp(+gamma l1).
@@ -44,6 +46,11 @@ class CarryingKernels {
     const std::vector<Complex>& rest;
     const std::vector<Complex>& output;
   };
+  /// The incident wave at the input gauge as the stress [Pa] of the striker's push; and back. It is
+  /// the stress that ends with the push: the strain of a viscoelastic end goes on recovering.
+  void push_from_incident(std::vector<Complex>& wave) const;
+  void incident_from_push(std::vector<Complex>& wave) const;
+
   void force_front(const Inputs& in, std::vector<Complex>& out) const;
   void force_back(const Inputs& in, std::vector<Complex>& out) const;
   void strain_rate(const Inputs& in, std::vector<Complex>& out) const;
@@ -52,6 +59,7 @@ class CarryingKernels {
   void right_going_back(const Inputs& in, std::vector<Complex>& out) const;
 
  private:
+  std::vector<Complex> from_impact_;
   std::vector<Complex> force_of_incident_;
   std::vector<Complex> force_of_rest_;
   std::vector<Complex> force_of_output_;

@@ -82,16 +82,21 @@ Check signal_to_noise(const QualityInputs& in) {
 
 Check window_overlap(const QualityInputs& in) {
   Check check{.name = "window_overlap", .limit = kOverlapLimit, .unit = "1", .text = {}};
-  check.value = in.incident_left_share;
+  check.value = in.push_left_share;
   check.verdict = check.value <= kOverlapLimit   ? Verdict::pass
                   : check.value <= kOverlapFloor ? Verdict::warn
                                                  : Verdict::fail;
-  check.text =
-      text(check.verdict == Verdict::pass
-               ? "%.1f %% of the incident peak is left when the reflection arrives (limit %.0f %%)"
-               : "%.1f %% of the incident peak is left when the reflection arrives (limit %.0f "
-                 "%%): a shorter pulse or a gauge further from the specimen is needed",
-           100 * check.value, 100 * kOverlapLimit);
+  check.text = check.verdict == Verdict::pass
+                   ? text(
+                         "the striker has left before the reflection hides its push: %.1f %% of "
+                         "the peak is left "
+                         "(limit %.0f %%)",
+                         100 * check.value, 100 * kOverlapLimit)
+                   : text(
+                         "%.1f %% of the striker's push is left when the reflection hides it "
+                         "(limit %.0f %%): a shorter "
+                         "pulse or a gauge further from the specimen is needed",
+                         100 * check.value, 100 * kOverlapLimit);
   return check;
 }
 

@@ -18,9 +18,9 @@ struct QualityInputs {
   double input_noise_rms = 0.0;  ///< strain
   double output_peak = 0.0;      ///< at the output gauge within the histories' time
   double output_noise_rms = 0.0;
-  double incident_left_share = 0.0;  ///< of its peak, when the specimen's answer reaches the gauge
-  std::size_t quiet_samples = 0;     ///< before the pulse
-  double specimen_transit_s = 0.0;   ///< 0 where the specimen's density and stiffness are not known
+  double push_left_share =
+      0.0;  ///< of the striker's push, of its peak, at the end of what is known of it
+  std::size_t quiet_samples = 0;  ///< before the pulse
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the

@@ -237,13 +237,41 @@ class Pass {
         options_.band_limit_Hz ? *options_.band_limit_Hz
                                : std::min(t_.band.from_noise(pulse, input_noise_), t_.highest_Hz);
     t_.transform.forward(t_.input_strain, t_.rest);
-    for (std::size_t k = 0; k < t_.rest.size(); ++k) {
-      t_.rest[k] -= t_.incident[k];
-    }
     t_.transform.forward(t_.output_strain, t_.output_spectrum);
     for (auto* spectrum : {&t_.incident, &t_.rest, &t_.output_spectrum}) {
       t_.band.apply(reduction_.band_limit_Hz, *spectrum);
     }
+    complete_incident();
+    for (std::size_t k = 0; k < t_.rest.size(); ++k) {
+      t_.rest[k] -= t_.incident[k];
+    }
+  }
+
+  /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
+  /// the striker's push, which is over before the hidden part would have started there.
+  void complete_incident() {
+    t_.kernels.push_from_incident(t_.incident);
+    t_.transform.inverse(t_.incident, t_.history);
+    const double hidden_s = front_time_s(t_.input, in_.gauge_to_far_end_m) +
+                            BandLimit::smear_s(reduction_.band_limit_Hz);
+    const double known = static_cast<double>(split_) - hidden_s * rate_Hz_;
+    const auto end = static_cast<std::size_t>(std::max(0.0, known));
+    judge_push(end);
+    std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
+    t_.transform.forward(t_.history, t_.incident);
+    t_.kernels.incident_from_push(t_.incident);
+  }
+
+  /// How much of the push is left at the end of what is known of it, averaged over a few samples so
+  /// that it is the push that is judged and not the noise.
+  void judge_push(std::size_t end) {
+    const auto few = std::min(end, static_cast<std::size_t>(10e-6 * rate_Hz_) + 1);
+    double left = 0.0;
+    for (std::size_t n = end - few; n < end; ++n) {
+      left += t_.history[n] / static_cast<double>(few);
+    }
+    const double peak = largest(std::span<const double>(t_.history).first(end));
+    push_left_share_ = peak > 0.0 ? std::abs(left) / peak : 1.0;
   }
 
   /// t = 0: the foot of the incident pulse after it has been carried to interface A.
@@ -348,7 +376,6 @@ class Pass {
 
   void judge_quality() {
     QualityInputs q;
-    const auto split = static_cast<std::ptrdiff_t>(split_);
     const auto incident = std::span<const double>(t_.incident_strain).first(split_);
     q.input_peak = largest(incident);
     q.input_noise_rms = input_noise_;
@@ -361,13 +388,7 @@ class Pass {
     const std::size_t end = std::min(begin + count_, shot_.samples());
     q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
     q.output_noise_rms = output_noise_;
-    // Averaged over a few samples, so that it is the pulse that is judged and not its noise.
-    const auto few = std::min<std::size_t>(split_, static_cast<std::size_t>(4e-6 * rate_Hz_) + 1);
-    double tail = 0.0;
-    for (auto n = split - static_cast<std::ptrdiff_t>(few); n < split; ++n) {
-      tail += t_.incident_strain[static_cast<std::size_t>(n)] / static_cast<double>(few);
-    }
-    q.incident_left_share = q.input_peak > 0.0 ? std::abs(tail) / q.input_peak : 1.0;
+    q.push_left_share = push_left_share_;
     q.quiet_samples = quiet_;
     reduction_.quality.reducible = true;
     judge(q, reduction_);
@@ -382,6 +403,7 @@ class Pass {
   double period_s_;
   double sense_ = 1.0;
   double gauge_foot_ = 0.0;
+  double push_left_share_ = 0.0;
   double input_noise_ = 0.0;
   double output_noise_ = 0.0;
   std::size_t quiet_ = 0;
