@@ -5,6 +5,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -38,6 +39,19 @@ struct Argument {
   bool required = false;
   std::vector<std::string> choices;  ///< the only values taken, if there are any
 };
+
+/// What a command cannot do without.
+inline Argument needed(std::string name, std::string value, std::string help, Target target) {
+  return {std::move(name), std::move(value), std::move(help), target, true, {}};
+}
+
+inline Argument option(std::string name, std::string value, std::string help, Target target) {
+  return {std::move(name), std::move(value), std::move(help), target, false, {}};
+}
+
+inline Argument flag(std::string name, std::string help, bool* target) {
+  return {std::move(name), "", std::move(help), target, false, {}};
+}
 
 /// One command: what --help teaches, what it takes, what it does. `--json` (and `--endpoint`, where
 /// it uses the daemon) come by themselves.

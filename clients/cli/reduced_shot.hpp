@@ -46,6 +46,12 @@ struct LoopSummary {
 [[nodiscard]] std::vector<double> true_strain(const Reduction& reduction);
 [[nodiscard]] std::vector<double> true_stress_Pa(const Reduction& reduction);
 
+/// What --true does, for --help.
+inline constexpr const char* kTrueHelp =
+    "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), for "
+    "a "
+    "specimen that keeps its volume";
+
 /// What `reduce --json` and `get --json` print.
 [[nodiscard]] JsonValue describe(const ReducedShot& shot, bool with_true);
 

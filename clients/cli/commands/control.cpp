@@ -100,49 +100,53 @@ int act_and_wait(const Action& action, const std::string& done, std::optional<do
   return kDone;
 }
 
+Command daemon_command(const std::string& name, const std::string& purpose) {
+  Command command;
+  command.name = name;
+  command.purpose = purpose;
+  command.examples = "  kolsky " + name + "\n";
+  command.uses_daemon = true;
+  return command;
+}
+
 Command simple_command(const std::string& name, const std::string& purpose, const Action& action,
                        const std::string& done) {
-  return {name, purpose, "  kolsky " + name + "\n",
-          true, {},      [action, done](Context& context) {
-            return act(action, done, context); }};
+  Command command = daemon_command(name, purpose);
+  command.run = [action, done](Context& context) { return act(action, done, context); };
+  return command;
 }
 
 Command shot_command(const std::string& name, const std::string& purpose, const Action& action,
                      const std::string& done) {
   auto patience_s = std::make_shared<std::optional<double>>();
-  return {name,
-          purpose,
-          "  kolsky " + name + " --wait 10\n",
-          true,
-          {{"--wait",
-            "S",
-            "wait for the shot's result, so many seconds at most, and print its id",
-            patience_s.get(),
-            false,
-            {}}},
-          [=](Context& context) { return act_and_wait(action, done, *patience_s, context); }};
+  Command command = daemon_command(name, purpose);
+  command.examples += "  kolsky " + name + " --wait 10\n";
+  command.arguments = {
+      option("--wait", "S", "wait for the shot's result, so many seconds at most, and print its id",
+             patience_s.get())};
+  command.run = [=](Context& context) { return act_and_wait(action, done, *patience_s, context); };
+  return command;
 }
 
 }  // namespace
 
 Command status_command() {
-  return {"status",
-          "what the daemon does, reads and has lost\n"
-          "State, digitiser, counts since its start, noise and trigger level of each gauge.",
-          "  kolsky status\n  kolsky status --endpoint tcp://127.0.0.1:5602 --json\n",
-          true,
-          {},
-          show_status};
+  Command command = daemon_command(
+      "status",
+      "what the daemon does, reads and has lost\n"
+      "State, digitiser, counts since its start, noise and trigger level of each gauge.");
+  command.examples += "  kolsky status --endpoint tcp://127.0.0.1:5602 --json\n";
+  command.run = show_status;
+  return command;
 }
 
 Command arm_command() {
-  return {"arm",
-          "make the daemon wait for a shot, after a preflight of disk, ring, balance and noise\n"
-          "Takes the lease: until it is released, or silent for long, no other operator can act.",
-          "  kolsky arm\n",
-          true,
-          {},
-          arm};
+  Command command = daemon_command(
+      "arm",
+      "make the daemon wait for a shot, after a preflight of disk, ring, balance and noise\n"
+      "Takes the lease: until it is released, or silent for long, no other operator can act.");
+  command.run = arm;
+  return command;
 }
 
 Command disarm_command() {

@@ -59,32 +59,25 @@ int run(const Settings& settings, Context& context) {
 
 Command export_command() {
   auto settings = std::make_shared<Settings>();
-  return {
-      "export",
+  Settings& s = *settings;
+  Argument format = needed("--format", "NAME", "csv, mat (MATLAB, version 5) or hdf5", &s.format);
+  format.choices = {"csv", "mat", "hdf5"};
+  Command command;
+  command.name = "export";
+  command.purpose =
       "write a shot and its result for other programs: CSV, MATLAB or HDF5\n"
-      "SI units, named in every column. CSV makes two files: the histories, and <name>-gauges.csv.",
+      "SI units, named in every column. CSV makes two files: the histories, and <name>-gauges.csv.";
+  command.examples =
       "  kolsky export shot.h5 --format csv -o shot.csv\n"
-      "  kolsky export last --format mat -o shot.mat\n",
-      true,
-      {{"CAPTURE|ID",
-        "CAPTURE|ID",
-        "a capture file, or a shot's id (or last) from the daemon",
-        &settings->what,
-        true,
-        {}},
-       {"--format",
-        "csv|mat|hdf5",
-        "one of csv, mat, hdf5",
-        &settings->format,
-        true,
-        {"csv", "mat", "hdf5"}},
-       {"-o,--output",
-        "FILE",
-        "the file to write; an existing one is never overwritten",
-        &settings->output,
-        true,
-        {}}},
-      [settings](Context& context) { return run(*settings, context); }};
+      "  kolsky export last --format mat -o shot.mat\n";
+  command.uses_daemon = true;
+  command.arguments = {
+      needed("CAPTURE|ID", "", "a capture file, or a shot's id (or last) from the daemon", &s.what),
+      format,
+      needed("-o,--output", "FILE", "the file to write; an existing one is never overwritten",
+             &s.output)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
 }
 
 }  // namespace kolsky::cli

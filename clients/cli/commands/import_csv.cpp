@@ -80,41 +80,27 @@ int run(const Settings& settings, Context& context) {
 
 Command import_csv_command() {
   auto settings = std::make_shared<Settings>();
-  return {
-      "import csv",
+  Settings& s = *settings;
+  Command command;
+  command.name = "import csv";
+  command.purpose =
       "make a capture of tables that a scope or a program wrote\n"
       "Takes time_s,<gauge>,... and what PicoScope, Tektronix and others write, decimal commas "
       "too;\n"
-      "several files are channels of one shot. The time column must agree with the bench's rate.",
+      "several files are channels of one shot. The time column must agree with the bench's rate.";
+  command.examples =
       "  kolsky import csv shot.csv --bench bench.toml -o shot.h5 --meta "
       "striker_speed_m_per_s=12.5\n"
-      "  kolsky import csv ch1.csv ch2.csv --bench bench.toml -o shot.h5\n",
-      false,
-      {{"FILE",
-        "FILE...",
-        "the tables, in the order of the bench's gauges if there are several",
-        &settings->tables,
-        true,
-        {}},
-       {"--bench",
-        "BENCH.toml",
-        "the bench file: rate, bars, gauges, specimen",
-        &settings->bench,
-        true,
-        {}},
-       {"-o,--output",
-        "CAPTURE.h5",
-        "the capture to write; an existing file is never overwritten",
-        &settings->output,
-        true,
-        {}},
-       {"--meta",
-        "KEY=VALUE...",
-        "facts of this shot, SI units in the key",
-        &settings->meta,
-        false,
-        {}}},
-      [settings](Context& context) { return run(*settings, context); }};
+      "  kolsky import csv ch1.csv ch2.csv --bench bench.toml -o shot.h5\n";
+  command.arguments = {
+      needed("FILE", "", "the tables, in the order of the bench's gauges if there are several",
+             &s.tables),
+      needed("--bench", "BENCH.toml", "the bench file: rate, bars, gauges, specimen", &s.bench),
+      needed("-o,--output", "CAPTURE.h5",
+             "the capture to write; an existing file is never overwritten", &s.output),
+      option("--meta", "KEY=VALUE", "facts of this shot, SI units in the key", &s.meta)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
 }
 
 }  // namespace kolsky::cli

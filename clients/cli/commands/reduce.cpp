@@ -21,18 +21,27 @@ struct Settings {
   bool with_true = false;
   std::optional<double> arrival_s;
   std::optional<double> band_limit_Hz;
+  std::optional<double> duration_s;
   std::optional<std::string> svg;
   std::optional<std::string> csv;
 };
+
+void refuse_not_positive(std::optional<double> number, const std::string& option_name,
+                         const std::string& unit) {
+  if (number.has_value() && *number <= 0.0) {
+    throw InputError("kolsky reduce: " + option_name, "must be above 0 " + unit,
+                     "give a positive number in " + unit);
+  }
+}
 
 ReductionOptions reduction_options(const Settings& settings) {
   ReductionOptions options;
   if (settings.bar_model.has_value()) {
     options.bar_model = read_material(*settings.bar_model);
   }
-  if (settings.band_limit_Hz.has_value() && *settings.band_limit_Hz <= 0.0) {
-    throw InputError("kolsky reduce: --band-limit", "must be above 0 Hz", "give a frequency in Hz");
-  }
+  refuse_not_positive(settings.band_limit_Hz, "--band-limit", "Hz");
+  refuse_not_positive(settings.duration_s, "--duration", "s");
+  options.duration_s = settings.duration_s;
   options.arrival_s = settings.arrival_s;
   options.band_limit_Hz = settings.band_limit_Hz;
   return options;
@@ -61,49 +70,37 @@ int run(const Settings& settings, Context& context) {
 
 Command reduce_command() {
   auto settings = std::make_shared<Settings>();
-  return {
-      "reduce",
+  Settings& s = *settings;
+  Command command;
+  command.name = "reduce";
+  command.purpose =
       "a specimen's stress, strain, strain rate and forces from a capture\n"
       "Three-wave analysis with the bars' dispersion; engineering values, compression positive,\n"
-      "t = 0 when the pulse arrives at the specimen. Says how far the result can be trusted.",
+      "t = 0 when the pulse arrives at the specimen. Says how far the result can be trusted.";
+  command.examples =
       "  kolsky reduce shot.h5\n"
       "  kolsky reduce shot.h5 --json --true > shot.json\n"
-      "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n",
-      false,
-      {{"CAPTURE", "CAPTURE.h5", "the capture to reduce", &settings->capture, true, {}},
-       {"--bar-model",
-        "M.toml",
-        "material file of viscoelastic bars; else the capture's own, else the paper's PMMA",
-        &settings->bar_model,
-        false,
-        {}},
-       {"--true",
-        "",
-        "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), "
-        "for a specimen that keeps its volume",
-        &settings->with_true,
-        false,
-        {}},
-       {"--arrival",
-        "S",
-        "foot of the incident pulse at the first gauge, in s from the first sample",
-        &settings->arrival_s,
-        false,
-        {}},
-       {"--band-limit",
-        "HZ",
-        "upper end of the frequencies used, in Hz; else what the noise allows",
-        &settings->band_limit_Hz,
-        false,
-        {}},
-       {"--svg", "FILE", "a page of plots to write", &settings->svg, false, {}},
-       {"--csv",
-        "FILE",
-        "a table of the histories to write, with the gauges beside it",
-        &settings->csv,
-        false,
-        {}}},
-      [settings](Context& context) { return run(*settings, context); }};
+      "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n";
+  command.arguments = {
+      needed("CAPTURE", "", "the capture to reduce", &s.capture),
+      option("--bar-model", "M.toml",
+             "material file of viscoelastic bars; else the capture's own, else the paper's PMMA",
+             &s.bar_model),
+      flag("--true", kTrueHelp, &s.with_true),
+      option("--arrival", "S",
+             "foot of the incident pulse at the first gauge, in s from the first sample",
+             &s.arrival_s),
+      option("--band-limit", "HZ",
+             "upper end of the frequencies used, in Hz; else what the noise allows",
+             &s.band_limit_Hz),
+      option("--duration", "S",
+             "length of the histories in s; else until a wave comes back from a bar's far end",
+             &s.duration_s),
+      option("--svg", "FILE", "a page of plots to write", &s.svg),
+      option("--csv", "FILE", "a table of the histories to write, with the gauges beside it",
+             &s.csv)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
 }
 
 }  // namespace kolsky::cli

@@ -45,32 +45,31 @@ int get(const GetSettings& settings, Context& context) {
 
 Command shots_command() {
   auto most = std::make_shared<std::optional<std::uint64_t>>();
-  return {"shots",
-          "the shots in the daemon's store, newest first\n"
-          "Id, time (UTC), verdict, peak stress and strain; --json also names each capture's file.",
-          "  kolsky shots --most 10\n",
-          true,
-          {{"--most", "N", "how many at most; else all", most.get(), false, {}}},
-          [most](Context& context) { return list_shots(*most, context); }};
+  Command command;
+  command.name = "shots";
+  command.purpose =
+      "the shots in the daemon's store, newest first\n"
+      "Id, time (UTC), verdict, peak stress and strain; --json also names each capture's file.";
+  command.examples = "  kolsky shots --most 10\n";
+  command.uses_daemon = true;
+  command.arguments = {option("--most", "N", "how many at most; else all", most.get())};
+  command.run = [most](Context& context) { return list_shots(*most, context); };
+  return command;
 }
 
 Command get_command() {
   auto settings = std::make_shared<GetSettings>();
-  return {
-      "get",
+  Command command;
+  command.name = "get";
+  command.purpose =
       "a shot's result from the daemon, as reduce shows it\n"
-      "With --json the same numbers, to the bit, as reduce --json for that capture.",
-      "  kolsky get last\n  kolsky get last --json > shot.json\n",
-      true,
-      {{"ID", "ID", "the shot's id, as shots lists it, or last", &settings->id, true, {}},
-       {"--true",
-        "",
-        "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), "
-        "for a specimen that keeps its volume",
-        &settings->with_true,
-        false,
-        {}}},
-      [settings](Context& context) { return get(*settings, context); }};
+      "With --json the same numbers, to the bit, as reduce --json for that capture.";
+  command.examples = "  kolsky get last\n  kolsky get last --json > shot.json\n";
+  command.uses_daemon = true;
+  command.arguments = {needed("ID", "", "the shot's id, as shots lists it, or last", &settings->id),
+                       flag("--true", kTrueHelp, &settings->with_true)};
+  command.run = [settings](Context& context) { return get(*settings, context); };
+  return command;
 }
 
 }  // namespace kolsky::cli

@@ -57,18 +57,16 @@ int run(const std::string& store, Context& context) {
 
 Command verify_command() {
   auto store = std::make_shared<std::string>();
-  return {"verify",
-          "check every journal and capture of a store against its checksums\n"
-          "Changes nothing. Exit code 0: all sound; 2: something is damaged, and it says what.",
-          "  kolsky verify store\n",
-          false,
-          {{"STORE",
-            "FOLDER",
-            "the store's folder, as in kolskyd's configuration",
-            store.get(),
-            true,
-            {}}},
-          [store](Context& context) { return run(*store, context); }};
+  Command command;
+  command.name = "verify";
+  command.purpose =
+      "check every journal and capture of a store against its checksums\n"
+      "Changes nothing. Exit code 0: all sound; 2: something is damaged, and it says what.";
+  command.examples = "  kolsky verify store\n";
+  command.arguments = {
+      needed("STORE", "", "the store's folder, as in kolskyd's configuration", store.get())};
+  command.run = [store](Context& context) { return run(*store, context); };
+  return command;
 }
 
 }  // namespace kolsky::cli

@@ -201,25 +201,25 @@ int run(const Settings& settings, Context& context) {
 
 Command watch_command() {
   auto settings = std::make_shared<Settings>();
-  return {
-      "watch",
+  Settings& s = *settings;
+  Command command;
+  command.name = "watch";
+  command.purpose =
       "the daemon live: traces, state, noise, shots and the last loop as they come\n"
       "On a terminal a screen until Ctrl-C; into a file or pipe a line for everything that "
       "happens.\n"
-      "Messages lost on the way are counted and shown. Exit code 1: --for ended before --count.",
+      "Messages lost on the way are counted and shown. Exit code 1: --for ended before --count.";
+  command.examples =
       "  kolsky watch\n"
       "  kolsky watch --once\n"
-      "  kolsky watch --json --count 1 --for 30\n",
-      true,
-      {{"--once",
-        "",
-        "listen for a moment, print the screen once and end",
-        &settings->once,
-        false,
-        {}},
-       {"--count", "N", "end after so many results", &settings->count, false, {}},
-       {"--for", "SECONDS", "end after so many seconds", &settings->seconds, false, {}}},
-      [settings](Context& context) { return run(*settings, context); }};
+      "  kolsky watch --json --count 1 --for 30\n";
+  command.uses_daemon = true;
+  command.arguments = {
+      flag("--once", "listen for a moment, print the screen once and end", &s.once),
+      option("--count", "N", "end after so many results", &s.count),
+      option("--for", "SECONDS", "end after so many seconds", &s.seconds)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
 }
 
 }  // namespace kolsky::cli
