@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "clients/cli/time_text.hpp"
 #include "clients/figure/layout.hpp"
 
 namespace kolsky::cli {
@@ -10,8 +9,8 @@ namespace {
 
 constexpr double kBytesPerGigabyte = 1e9;
 
-std::string counted(std::uint64_t count, const std::string& what, bool colour) {
-  const std::string text = fmt::format("{} {}", count, what);
+std::string counted(const std::string& what, std::uint64_t count, bool colour) {
+  const std::string text = fmt::format(", {} {}", what, count);
   return count == 0 ? text : inked(text, Ink::bad, colour);
 }
 
@@ -81,21 +80,26 @@ std::string headline(const v1::Status& status, bool colour) {
 }
 
 std::string counters_line(const v1::Status& status, bool colour) {
-  return fmt::format("{} samples read, {}, {}, {}, {}, {}; {} shots stored; {:.1f} GB free",
-                     status.samples_read(), counted(status.samples_missing(), "missing", colour),
-                     counted(status.gaps_of_unknown_length(), "gaps of unknown length", colour),
-                     counted(status.overflows(), "overflows", colour),
-                     counted(status.ring_overruns(), "windows overrun", colour),
-                     counted(status.reconnects(), "reconnects", colour), status.shots_stored(),
+  return fmt::format("samples {}", status.samples_read()) +
+         counted("missing", status.samples_missing(), colour) +
+         counted("unknown gaps", status.gaps_of_unknown_length(), colour) +
+         counted("overflows", status.overflows(), colour) +
+         counted("overruns", status.ring_overruns(), colour) +
+         counted("reconnects", status.reconnects(), colour);
+}
+
+std::string store_line(const v1::Status& status) {
+  return fmt::format("shots {} stored of {} triggered since the start, {:.1f} GB free",
+                     status.shots_stored(), status.triggers(),
                      static_cast<double>(status.disk_free_bytes()) / kBytesPerGigabyte);
 }
 
 std::string channel_line(const v1::ChannelStatus& channel) {
-  std::string text = fmt::format("{}  baseline {}, noise {} rms", channel.gauge(),
+  std::string text = fmt::format("{}  at {}, noise {} rms", channel.gauge(),
                                  with_unit(channel.baseline(), channel.unit()),
                                  with_unit(channel.noise_rms(), channel.unit()));
   if (channel.trigger_level() != 0.0) {
-    text += ", triggers at " + with_unit(channel.trigger_level(), channel.unit());
+    text += ", level " + with_unit(channel.trigger_level(), channel.unit());
   }
   return text;
 }
@@ -104,11 +108,10 @@ std::string shot_line(const v1::ShotSummary& shot, bool colour) {
   const std::string verdict =
       inked(padded_right(verdict_name(shot.verdict()), 8), verdict_ink(shot.verdict()), colour);
   const std::string outcome =
-      shot.reducible()
-          ? fmt::format("{} at most, strain {}", with_unit(shot.peak_stress_pa(), "Pa"),
-                        with_unit(shot.peak_strain(), "strain"))
-          : shot.reason();
-  return padded_right(shot.id(), 24) + "  " + short_time(shot.utc_ns()) + "  " + verdict + outcome;
+      shot.reducible() ? fmt::format("{} peak, strain {}", with_unit(shot.peak_stress_pa(), "Pa"),
+                                     with_unit(shot.peak_strain(), "strain"))
+                       : shot.reason();
+  return shot.id() + "  " + verdict + outcome;
 }
 
 std::string preflight_text(const v1::Preflight& preflight, bool colour) {

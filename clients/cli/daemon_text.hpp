@@ -25,10 +25,13 @@ namespace kolsky::cli {
 /// What was read and lost since the daemon started, in one line.
 [[nodiscard]] std::string counters_line(const v1::Status& status, bool colour);
 
+/// What is stored, in one line.
+[[nodiscard]] std::string store_line(const v1::Status& status);
+
 /// One line each, with how large the noise is.
 [[nodiscard]] std::string channel_line(const v1::ChannelStatus& channel);
 
-/// A line of a list of shots.
+/// A shot in one line: id, verdict, outcome.
 [[nodiscard]] std::string shot_line(const v1::ShotSummary& shot, bool colour);
 
 /// One line per check.

@@ -74,17 +74,14 @@ std::vector<std::string> LiveView::trace_lines(const Terminal& terminal) const {
       lines.push_back(label);
       continue;
     }
-    const auto newest =
-        std::min(trace->second.minimum.size(), static_cast<std::size_t>(2 * terminal.columns));
-    const auto newest_offset = static_cast<std::ptrdiff_t>(newest);
-    const std::vector<double> low(trace->second.minimum.end() - newest_offset,
-                                  trace->second.minimum.end());
-    const std::vector<double> high(trace->second.maximum.end() - newest_offset,
-                                   trace->second.maximum.end());
+    const std::vector<double> low(trace->second.minimum.begin(), trace->second.minimum.end());
+    const std::vector<double> high(trace->second.maximum.begin(), trace->second.maximum.end());
     const Range range = range_of(low, high, channel.noise_rms());
-    lines.push_back(label + fmt::format(" · shown {} to {}",
-                                        with_unit(range.low, trace->second.unit),
-                                        with_unit(range.high, trace->second.unit)));
+    lines.push_back(
+        label + fmt::format(" · {}: {} to {}",
+                            with_unit(trace->second.step_s * static_cast<double>(low.size()), "s"),
+                            with_unit(range.low, trace->second.unit),
+                            with_unit(range.high, trace->second.unit)));
     append(lines, lines_of(envelope_text(low, high, range, {terminal.columns, kTraceRows},
                                          terminal.colour)));
   }
@@ -106,12 +103,11 @@ std::vector<std::string> LiveView::shot_lines(const Terminal& terminal) const {
 }
 
 std::vector<std::string> LiveView::loop_lines(const Terminal& terminal, int rows) const {
-  if (!last_.has_value() || last_->reduction.stress_Pa.empty() ||
-      rows < kLeastLoopRows + kLoopFrame) {
+  if (!last_loop_.has_value() || rows < kLeastLoopRows + kLoopFrame) {
     return {};
   }
-  Panel panel = loop_panel(last_->reduction);
-  panel.title = last_->shot_id;
+  Panel panel = loop_panel(last_loop_->reduction);
+  panel.title = last_loop_->shot_id;
   return lines_of(
       plot_text(panel, {std::min(terminal.columns, 100), rows - kLoopFrame}, terminal.colour));
 }
@@ -132,7 +128,7 @@ std::string LiveView::loss_line(bool colour) const {
 
 std::string LiveView::screen(const Terminal& terminal) const {
   std::vector<std::string> lines = {headline(status_, terminal.colour),
-                                    counters_line(status_, terminal.colour),
+                                    counters_line(status_, terminal.colour), store_line(status_),
                                     loss_line(terminal.colour)};
   append(lines, trace_lines(terminal));
   append(lines, shot_lines(terminal));

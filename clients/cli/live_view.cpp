@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "clients/cli/daemon_text.hpp"
 #include "clients/cli/reduced_shot.hpp"
@@ -16,7 +17,7 @@ namespace kolsky::cli {
 namespace {
 
 constexpr std::size_t kKeptShots = 32;
-constexpr std::size_t kKeptPairs = 4096;
+constexpr std::size_t kKeptPairs = 16384;  // some seconds at the rate kolskyd previews with
 
 JsonObject event_of(const std::string& kind, std::int64_t utc_ns) {
   JsonObject event{{"event", kind}};
@@ -128,17 +129,15 @@ std::string LiveView::take_shot(const Received& message) {
 std::string LiveView::take_result(const Received& message) {
   v1::Result result;
   wire::parse(message.payload, "result", result);
-  show_result(result);
+  const v1::ShotSummary& summary = show_result(result);
   ++results_;
-  const LoopSummary loop = summarise(last_->reduction);
-  const v1::ShotSummary& summary = summary_of(result.shot_id());
   JsonObject event = event_of("result", message.utc_ns);
   event.push_back({"shot", result.shot_id()});
   event.push_back({"verdict", verdict_name(summary.verdict())});
   event.push_back({"reducible", summary.reducible()});
   event.push_back({"reason", summary.reason()});
-  event.push_back({"peak_stress_Pa", loop.peak_stress_Pa});
-  event.push_back({"peak_strain", loop.peak_strain});
+  event.push_back({"peak_stress_Pa", summary.peak_stress_pa()});
+  event.push_back({"peak_strain", summary.peak_strain()});
   events_.emplace_back(std::move(event));
   return "result " + shot_line(summary, false);
 }
@@ -162,6 +161,7 @@ void LiveView::take_preview(const Received& message) {
   for (const v1::ChannelPreview& channel : preview.channels()) {
     Trace& trace = traces_[channel.gauge()];
     trace.unit = channel.minimum().unit();
+    trace.step_s = preview.step_s();
     append(trace.minimum, values_of(channel.minimum()));
     append(trace.maximum, values_of(channel.maximum()));
   }
@@ -181,15 +181,19 @@ std::string LiveView::take_lost(const Lost& lost) {
   return fmt::format("{} messages of {} lost", lost.count, lost.topic);
 }
 
-void LiveView::show_result(const v1::Result& result) {
-  last_ = LastResult{result.shot_id(), wire::decode(result)};
-  const LoopSummary loop = summarise(last_->reduction);
+v1::ShotSummary& LiveView::show_result(const v1::Result& result) {
+  Reduction reduction = wire::decode(result);
+  const LoopSummary loop = summarise(reduction);
   v1::ShotSummary& summary = summary_of(result.shot_id());
   summary.set_verdict(result.quality().verdict());
   summary.set_reducible(result.quality().reducible());
   summary.set_reason(result.quality().reason());
   summary.set_peak_stress_pa(loop.peak_stress_Pa);
   summary.set_peak_strain(loop.peak_strain);
+  if (!reduction.stress_Pa.empty()) {
+    last_loop_ = LastLoop{result.shot_id(), std::move(reduction)};
+  }
+  return summary;
 }
 
 v1::ShotSummary& LiveView::summary_of(const std::string& id) {

@@ -36,10 +36,11 @@ class LiveView {
  private:
   struct Trace {
     std::string unit;
+    double step_s = 0.0;  ///< from one pair to the next
     std::deque<double> minimum;
     std::deque<double> maximum;
   };
-  struct LastResult {
+  struct LastLoop {
     std::string shot_id;
     Reduction reduction;
   };
@@ -53,7 +54,7 @@ class LiveView {
   std::string take_lost(const Lost& lost);
   std::string take_unreadable(const std::string& reason);
 
-  void show_result(const v1::Result& result);
+  v1::ShotSummary& show_result(const v1::Result& result);
   v1::ShotSummary& summary_of(const std::string& id);
 
   [[nodiscard]] std::vector<std::string> trace_lines(const Terminal& terminal) const;
@@ -64,7 +65,7 @@ class LiveView {
   v1::Status status_;
   std::map<std::string, Trace> traces_;  ///< by gauge
   std::deque<v1::ShotSummary> shots_;    ///< newest first
-  std::optional<LastResult> last_;
+  std::optional<LastLoop> last_loop_;
   std::string last_fault_;
   std::map<std::string, std::uint64_t> lost_;  ///< by topic
   std::uint64_t restarts_ = 0;

@@ -23,6 +23,7 @@ int show_status(Context& context) {
   const bool colour = context.terminal.colour;
   context.out << headline(status, colour) << "\n"
               << counters_line(status, colour) << "\n"
+              << store_line(status) << "\n"
               << "bench " << status.bench_path() << ", store " << status.store_folder() << "\n";
   for (const v1::ChannelStatus& channel : status.channels()) {
     context.out << "  " << channel_line(channel) << "\n";

@@ -4,6 +4,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/daemon_shot.hpp"
 #include "clients/cli/daemon_text.hpp"
+#include "clients/cli/time_text.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -23,7 +24,8 @@ int list_shots(std::optional<std::uint64_t> most, Context& context) {
     context.out << "no shots yet\n";
   }
   for (const v1::ShotSummary& shot : shots.shots()) {
-    context.out << shot_line(shot, context.terminal.colour) << "\n";
+    context.out << short_time(shot.utc_ns()) << "  " << shot_line(shot, context.terminal.colour)
+                << "\n";
   }
   return kDone;
 }

@@ -24,11 +24,14 @@ constexpr milliseconds kListen{40};
 constexpr milliseconds kRedraw{100};
 constexpr milliseconds kHeardBeforeOnce{1500};  // longer than a heartbeat
 constexpr std::size_t kListedShots = 16;
+constexpr int kPageRows = 40;  // of --once into a file
 
 struct Settings {
   bool once = false;
   std::optional<std::uint64_t> count;
   std::optional<double> seconds;
+  std::optional<std::string> results;
+  std::optional<std::string> preview;
 };
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -100,10 +103,12 @@ class Watch {
         context_(context),
         control_(connect(context.endpoint)),
         told_(control_.status()),
-        results_(subscribe(reachable(told_.results_endpoint(), wire::kDefaultResultsEndpoint),
-                           SubscriberOptions{}.topics)),
-        preview_(subscribe(reachable(told_.preview_endpoint(), wire::kDefaultPreviewEndpoint),
-                           {wire::kPreviewTopic})) {
+        results_(subscribe(
+            endpoint(settings.results, told_.results_endpoint(), wire::kDefaultResultsEndpoint),
+            SubscriberOptions{}.topics)),
+        preview_(subscribe(
+            endpoint(settings.preview, told_.preview_endpoint(), wire::kDefaultPreviewEndpoint),
+            {wire::kPreviewTopic})) {
     const v1::Snapshot snapshot = results_.join(control_, kJoinPatience);
     view_.begin(snapshot, control_.list_shots(kListedShots));
   }
@@ -129,9 +134,13 @@ class Watch {
   [[nodiscard]] const LiveView& view() const { return view_; }
 
  private:
-  // What the daemon binds, as it is reached from here: by the host that control was reached by.
-  [[nodiscard]] std::string reachable(const std::string& bound,
-                                      const std::string& otherwise) const {
+  // Told by hand (a tunnel), or what the daemon binds as seen from here: by the host that control
+  // was reached by.
+  [[nodiscard]] std::string endpoint(const std::optional<std::string>& by_hand,
+                                     const std::string& bound, const std::string& otherwise) const {
+    if (by_hand.has_value()) {
+      return *by_hand;
+    }
     return bound.empty() ? otherwise : with_host_of(bound, context_.endpoint);
   }
 
@@ -192,7 +201,9 @@ int run(const Settings& settings, Context& context) {
                                       {"status", describe(watch.view().status())}})
                 << "\n";
   } else if (settings.once) {
-    context.out << watch.view().screen(context.terminal);
+    Terminal page = context.terminal;
+    page.rows = page.interactive ? page.rows : kPageRows;
+    context.out << watch.view().screen(page);
   }
   return complete ? kDone : kUnexpected;
 }
@@ -217,7 +228,10 @@ Command watch_command() {
   command.arguments = {
       flag("--once", "listen for a moment, print the screen once and end", &s.once),
       option("--count", "N", "end after so many results", &s.count),
-      option("--for", "SECONDS", "end after so many seconds", &s.seconds)};
+      option("--for", "SECONDS", "end after so many seconds", &s.seconds),
+      option("--results", "TCP", "where to hear results; else where the daemon says", &s.results),
+      option("--preview", "TCP", "where to hear the preview; else where the daemon says",
+             &s.preview)};
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }
