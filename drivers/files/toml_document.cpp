@@ -245,8 +245,11 @@ std::size_t line_in_message(std::string_view message, std::size_t otherwise) {
   return last;
 }
 
-[[noreturn]] void refuse(const std::string& name, std::size_t line, const std::string& message) {
-  throw InputError(place_of(name, line_in_message(message, line)),
+[[noreturn]] void refuse(const std::string& text, const std::string& name, std::size_t line,
+                         const std::string& message) {
+  // What is missed at the end of the file is missed in its last line.
+  const std::size_t last = line_at(text, text.find_last_not_of(" \t\r\n"));
+  throw InputError(place_of(name, std::min(line_in_message(message, line), last)),
                    "is not TOML: " + first_words(message), "mend this line");
 }
 
@@ -262,9 +265,9 @@ TomlNode parse_toml(const std::string& text, const std::string& name) {
   } catch (const InputError&) {
     throw;
   } catch (const toml::exception& error) {
-    refuse(name, error.location().line(), error.what());
+    refuse(text, name, error.location().line(), error.what());
   } catch (const std::exception& error) {
-    refuse(name, 1, error.what());
+    refuse(text, name, 1, error.what());
   }
 }
 
