@@ -76,8 +76,15 @@ class InputFile {
 
 }  // namespace
 
-std::string seal_of(std::span<const std::byte> hdf5_image) {
-  return seal_line(sha256_hex(hdf5_image));
+std::string seal_of_file(const std::filesystem::path& path) {
+  InputFile file(path);
+  Sha256 hash;
+  for (std::uint64_t done = 0; done < file.size();) {
+    const auto bytes = file.read(file.size() - done);
+    hash.add(bytes);
+    done += bytes.size();
+  }
+  return seal_line(hash.hex());
 }
 
 std::uint64_t check_seal(const std::filesystem::path& path) {
