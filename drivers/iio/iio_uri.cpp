@@ -8,8 +8,9 @@
 namespace kolsky {
 namespace {
 
-/// libiio asks the server to give up after half of this, so a read comes to nothing in half a second, and
-/// a silent network is known after one. A server has one time-out for all its clients: each must ask alike.
+/// libiio asks the server to give up after half of this, so a read comes to nothing in half a
+/// second, and a silent network is known after one. A server has one time-out for all its clients:
+/// each must ask alike.
 constexpr unsigned int kTimeout_ms = 1000;
 
 constexpr const char* kForms =
@@ -66,8 +67,9 @@ void check_uri(const std::string& uri) {
   if (scheme == "xml") {
     throw InputError(uri, "is a description of a device, it delivers no samples", kForms);
   }
-  if (scheme == "usb" && rest.empty()) {
-    throw InputError(uri, "names no device",
+  if (scheme == "usb" &&
+      (rest.empty() || rest.find_first_not_of("0123456789.") != std::string::npos)) {
+    throw InputError(uri, "names no USB device",
                      "give usb:BUS.ADDRESS.INTERFACE as iio_info -S usb lists it");
   }
   if (scheme == "ip") {

@@ -17,12 +17,6 @@ LossByClock::LossByClock(double rate_Hz, std::size_t block_samples)
       threshold_s_(std::max(kLeastThreshold_s,
                             kBlocksThreshold * static_cast<double>(block_samples) / rate_Hz)) {}
 
-void LossByClock::restart() {
-  started_ = false;
-  samples_ = 0.0;
-  baseline_s_ = kNever;
-}
-
 bool LossByClock::note(std::size_t samples, std::int64_t monotonic_ns) {
   if (!started_) {
     started_ = true;

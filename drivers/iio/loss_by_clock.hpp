@@ -18,9 +18,6 @@ class LossByClock {
   /// So many more samples were in hand at that time. @return whether samples were lost a while ago
   bool note(std::size_t samples, std::int64_t monotonic_ns);
 
-  /// A new stream begins.
-  void restart();
-
   [[nodiscard]] double threshold_s() const noexcept { return threshold_s_; }
 
  private:

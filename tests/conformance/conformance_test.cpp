@@ -294,8 +294,10 @@ TEST_P(DigitiserContract, ReadsNothingBeforeItIsStarted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drivers, DigitiserContract,
-                         testing::Values(Driver{"iio", make_iio_rig}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         testing::Values(Driver{"iio", make_iio_rig},
+                                         Driver{"replay_of_a_capture", make_capture_rig},
+                                         Driver{"replay_of_a_folder", make_folder_rig}),
+                         [](const auto& driver) { return std::string(driver.param.name); });
 
 }  // namespace
 }  // namespace kolsky

@@ -23,8 +23,8 @@ namespace kolsky {
   return code;
 }
 
-/// Reads until something other than a block or, where they are allowed, a time-out comes; `each` says
-/// whether to go on. @return what ended it, `samples` if it was `each`
+/// Reads until something other than a block or, where they are allowed, a time-out comes; `each`
+/// says whether to go on. @return what ended it, `samples` if it was `each`
 inline ReadStatus read_while(Digitiser& digitiser, const std::function<bool(const Block&)>& each) {
   Block block;
   for (int timeouts = 0; timeouts < 20;) {

@@ -8,8 +8,8 @@
 
 namespace kolsky {
 
-/// A driver with a source behind it that is known to the sample: channel c carries pattern_code(c, ...), its
-/// values are (code + 3 + c) * (c + 1) / 4096 volts.
+/// A driver with a source behind it that is known to the sample: channel c carries pattern_code(c,
+/// ...), its values are (code + 3 + c) * (c + 1) / 4096 volts.
 class Rig {
  public:
   virtual ~Rig() = default;

@@ -13,6 +13,18 @@
 namespace kolsky {
 namespace {
 
+/// libiio's parser grumbles without one.
+constexpr const char* kHead =
+    R"(<?xml version="1.0" encoding="utf-8"?><!DOCTYPE context [)"
+    R"(<!ELEMENT context ANY><!ELEMENT device ANY><!ELEMENT channel ANY>)"
+    R"(<!ELEMENT scan-element EMPTY><!ELEMENT attribute EMPTY><!ELEMENT debug-attribute EMPTY>)"
+    R"(<!ATTLIST context name CDATA #IMPLIED version-major CDATA #IMPLIED)"
+    R"( version-minor CDATA #IMPLIED version-git CDATA #IMPLIED description CDATA #IMPLIED>)"
+    R"(<!ATTLIST device id CDATA #REQUIRED name CDATA #IMPLIED>)"
+    R"(<!ATTLIST channel id CDATA #REQUIRED type CDATA #REQUIRED>)"
+    R"(<!ATTLIST scan-element index CDATA #REQUIRED format CDATA #REQUIRED>)"
+    R"(<!ATTLIST attribute name CDATA #REQUIRED><!ATTLIST debug-attribute name CDATA #REQUIRED>]>)";
+
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
     text.replace(at, what.size(), with);
@@ -34,10 +46,13 @@ std::string text_reply(const std::string& text) {
   return std::to_string(text.size()) + "\n" + text + "\n";
 }
 
-/// "attribute" of READ DEV attribute, "channel/attribute" of READ DEV INPUT channel attribute.
+/// Of READ DEV attribute, READ DEV DEBUG attribute, READ DEV INPUT channel attribute; also of
+/// WRITE.
 std::string attribute_key(const std::vector<std::string>& words) {
-  const bool of_channel = words.size() > 4 && words[2] == "INPUT";
-  return of_channel ? words[3] + "/" + words[4] : words.at(2);
+  if (words.size() > 4 && words[2] == "INPUT") {
+    return words[3] + "/" + words[4];
+  }
+  return words.size() > 3 && words[2] == "DEBUG" ? "DEBUG/" + words[3] : words.at(2);
 }
 
 }  // namespace
@@ -81,10 +96,10 @@ void ScriptedClient::hang_up() {
 }
 
 std::string ScriptedDevice::xml() const {
-  std::string text =
-      R"(<?xml version="1.0" encoding="utf-8"?><context name="network" version-major="0" )"
-      R"(version-minor="24" version-git="v0.24" description="scripted">)"
-      R"(<device id="iio:device0" name="scripted-adc">)";
+  std::string text = std::string(kHead) +
+                     R"(<context name="network" version-major="0" )"
+                     R"(version-minor="24" version-git="v0.24" description="scripted">)"
+                     R"(<device id="iio:device0" name="scripted-adc">)";
   int index = 0;
   for (const Channel& channel : channels) {
     text += R"(<channel id=")" + channel.id + R"(" type="input"><scan-element index=")" +
@@ -97,6 +112,9 @@ std::string ScriptedDevice::xml() const {
   }
   for (const std::string& name : device_attributes) {
     text += R"(<attribute name=")" + name + R"("/>)";
+  }
+  for (const std::string& name : debug_attributes) {
+    text += R"(<debug-attribute name=")" + name + R"("/>)";
   }
   return text + "</device></context>";
 }
@@ -173,12 +191,29 @@ void ScriptedIiod::serve(ScriptedClient& client) {
   }
 }
 
+bool ScriptedIiod::describe(ScriptedClient& client) const {
+  const std::string reply = text_reply(device_.xml());
+  if (device_.trickle.count() == 0) {
+    return client.send(reply);
+  }
+  for (const char c : reply) {
+    if (stop_ || !client.send({&c, 1})) {
+      return false;
+    }
+    pause(device_.trickle);
+  }
+  return true;
+}
+
 bool ScriptedIiod::answer(ScriptedClient& client, const std::vector<std::string>& words) {
   const std::string& verb = words.front();
   if (verb == "PRINT") {
-    return client.send(text_reply(device_.xml()));
+    return describe(client);
   }
   if (verb == "READ") {
+    if (words.at(2) == "DEBUG" && polls_++ == device_.breaks_on_poll) {
+      return false;
+    }
     return client.send(read_attribute(words));
   }
   if (verb == "WRITE") {

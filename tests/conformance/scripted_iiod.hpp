@@ -43,12 +43,14 @@ struct ScriptedDevice {
   };
   std::vector<Channel> channels{{"voltage0"}, {"voltage1"}};
   std::vector<std::string> device_attributes{"sampling_frequency"};
-  /// Texts by "attribute" or "channel/attribute".
-  std::map<std::string, std::string> texts{{"sampling_frequency", "1000000"},
-                                           {"voltage0/scale", "0.5"},
-                                           {"voltage1/scale", "0.5"}};
-  bool writable = true;  ///< else writes are answered with EPERM
-  bool sticks = true;    ///< else what is written is forgotten
+  std::vector<std::string> debug_attributes;
+  /// Texts by "attribute", "channel/attribute" or "DEBUG/attribute".
+  std::map<std::string, std::string> texts{
+      {"sampling_frequency", "1000000"}, {"voltage0/scale", "0.5"}, {"voltage1/scale", "0.5"}};
+  bool writable = true;     ///< else writes are answered with EPERM
+  bool sticks = true;       ///< else what is written is forgotten
+  int breaks_on_poll = -1;  ///< the read of a debug attribute, from 0, that ends the connection
+  std::chrono::milliseconds trickle{0};  ///< the description is sent a byte each so often
 
   [[nodiscard]] std::string xml() const;
 };
@@ -75,6 +77,7 @@ class ScriptedIiod {
  private:
   void accept_clients();
   void serve(ScriptedClient& client);
+  bool describe(ScriptedClient& client) const;
   bool answer(ScriptedClient& client, const std::vector<std::string>& words);
   std::string read_attribute(const std::vector<std::string>& words);
   void write_attribute(const std::vector<std::string>& words, const std::string& value);
@@ -87,6 +90,7 @@ class ScriptedIiod {
   mutable std::mutex mutex_;
   std::vector<std::string> lines_;
   int calls_ = 0;
+  int polls_ = 0;
   std::list<ScriptedClient> clients_;
   std::list<std::thread> threads_;
   std::thread acceptor_;

@@ -22,11 +22,11 @@ class SimulatedDevice::PatternSource final : public CodeSource {
   std::atomic<int> shots{0};
 };
 
-SimulatedDevice::SimulatedDevice(AdcSettings settings) {
+SimulatedDevice::SimulatedDevice(AdcSettings settings, const std::string& listen) {
   auto source = std::make_unique<PatternSource>();
   source_ = source.get();
   adc_ = std::make_unique<SimulatedAdc>(std::move(settings), std::move(source));
-  server_ = std::make_unique<IiodServer>("127.0.0.1:0", *adc_);
+  server_ = std::make_unique<IiodServer>(listen, *adc_);
   server_->start();
   uri_ = server_->uri();
 }

@@ -10,11 +10,12 @@
 
 namespace kolsky {
 
-/// The simulated digitiser with the test pattern as its signal, on a free port; it can be switched off and
-/// on again, and its converter runs on meanwhile.
+/// The simulated digitiser with the test pattern as its signal, on a free port; it can be switched
+/// off and on again, and its converter runs on meanwhile.
 class SimulatedDevice {
  public:
-  explicit SimulatedDevice(AdcSettings settings = pattern_settings());
+  explicit SimulatedDevice(AdcSettings settings = pattern_settings(),
+                           const std::string& listen = "127.0.0.1:0");
 
   /// Two 16-bit channels at 1 MHz that give what a Rig promises.
   [[nodiscard]] static AdcSettings pattern_settings();
