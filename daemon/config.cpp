@@ -249,9 +249,9 @@ TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_H
     options.maximum_rise_samples = whole_samples(*config.maximum_rise_s, sample_rate_Hz);
   }
   const auto post_samples = static_cast<std::size_t>(config.post_samples);
-  options.hold_off_samples =
-      config.hold_off_samples ? static_cast<std::size_t>(*config.hold_off_samples)
-                              : std::max(options.hold_off_samples, post_samples);
+  options.hold_off_samples = config.hold_off_samples
+                                 ? static_cast<std::size_t>(*config.hold_off_samples)
+                                 : std::max(options.hold_off_samples, post_samples);
   if (config.learn_samples) {
     options.learn_samples = static_cast<std::size_t>(*config.learn_samples);
   }

@@ -14,8 +14,8 @@
 
 namespace kolsky {
 
-/// What `[trigger]` asks for, in the units a person sets it in. What is not given follows from the rate, as
-/// in TriggerOptions::for_rate.
+/// What `[trigger]` asks for, in the units a person sets it in. What is not given follows from the
+/// rate, as in TriggerOptions::for_rate.
 struct TriggerConfig {
   std::string channel;  ///< gauge whose record is watched
   double level_sigma = 8.0;
@@ -24,8 +24,8 @@ struct TriggerConfig {
   std::optional<double> hysteresis_share;
   std::optional<double> minimum_width_s;
   std::optional<double> maximum_rise_s;
-  std::optional<std::int64_t> hold_off_samples;  ///< else at least post_samples, so that echoes stay in
-                                                 ///< the window of their shot
+  std::optional<std::int64_t> hold_off_samples;  ///< else at least post_samples, so that echoes
+                                                 ///< stay in the window of their shot
   std::optional<std::int64_t> learn_samples;
 };
 

@@ -136,7 +136,7 @@ PreflightFacts Controller::facts() {
     facts.channels.push_back({.baseline_codes = level.baseline_codes,
                               .noise_codes = level.noise_codes,
                               .constant_samples = level.constant_samples,
-                              .learned = level.ready});
+                              .learned = level.learned});
   }
   return facts;
 }

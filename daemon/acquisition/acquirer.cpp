@@ -82,7 +82,7 @@ Acquirer::Level Acquirer::level(std::size_t channel) const noexcept {
           .noise_codes = level.noise.load(std::memory_order_relaxed),
           .level_codes = level.level.load(std::memory_order_relaxed),
           .constant_samples = level.constant.load(std::memory_order_relaxed),
-          .ready = level.ready.load(std::memory_order_relaxed)};
+          .learned = level.learned.load(std::memory_order_relaxed)};
 }
 
 void Acquirer::run() {
@@ -190,6 +190,9 @@ void Acquirer::begin_capture(const Block& block) {
   streaming_ = true;
   capture_start_ = block.first_tick - (headless ? block.missing_before.samples : 0);
   capture_marked_ = false;
+  for (AtomicLevel& level : levels_) {
+    level.learned.store(false, std::memory_order_relaxed);
+  }
   watch_.trigger.reset();
   for (IncidentTrigger& baseline : baselines_) {
     baseline.reset();
@@ -468,7 +471,9 @@ void Acquirer::show_levels() {
     levels_[i].baseline.store(source.baseline_codes(), std::memory_order_relaxed);
     levels_[i].noise.store(source.noise_codes(), std::memory_order_relaxed);
     levels_[i].level.store(triggers ? source.level_codes() : 0.0, std::memory_order_relaxed);
-    levels_[i].ready.store(source.ready(), std::memory_order_relaxed);
+    if (source.ready()) {  // stays so: in the hold-off after a trigger they are still known
+      levels_[i].learned.store(true, std::memory_order_relaxed);
+    }
     follow_constant(levels_[i], statistics_[i]);
   }
 }

@@ -70,9 +70,9 @@ class Acquirer {
   struct Level {
     double baseline_codes = 0.0;
     double noise_codes = 0.0;
-    double level_codes = 0.0;  ///< 0 on channels that do not trigger
+    double level_codes = 0.0;           ///< 0 on channels that do not trigger
     std::int64_t constant_samples = 0;  ///< for how long the code has not changed
-    bool ready = false;        ///< enough quiet samples were seen
+    bool learned = false;               ///< enough quiet samples were seen
   };
   [[nodiscard]] Level level(std::size_t channel) const noexcept;
 
@@ -96,7 +96,7 @@ class Acquirer {
     std::atomic<double> noise{0.0};
     std::atomic<double> level{0.0};
     std::atomic<std::int64_t> constant{0};
-    std::atomic<bool> ready{false};
+    std::atomic<bool> learned{false};
     std::int32_t last_code = 0;  ///< of the thread alone
   };
 

@@ -16,9 +16,9 @@ namespace {
 constexpr std::uint64_t kShotsOfRoom = 100;
 constexpr std::uint64_t kLeastFree_bytes = 64ull << 20;
 constexpr double kBalancedShare =
-    0.25;                               // of the converter's range that must be free on either side
+    0.25;  // of the converter's range that must be free on either side
 constexpr std::int64_t kDeadSamples = 50'000;
-constexpr double kLoudestShare = 0.05;  // of the range, as rms
+constexpr double kLoudestShare = 0.05;     // of the range, as rms
 constexpr double kLeastFullScale = 20e-6;  // strain; the smallest pulses are ten times this
 constexpr double kCoarsestStep = 1e-3;     // strain
 

@@ -20,7 +20,7 @@ struct ChannelCondition {
   double baseline_codes = 0.0;
   double noise_codes = 0.0;
   std::int64_t constant_samples = 0;  ///< for how long the code has not changed
-  bool learned = false;  ///< enough quiet samples were seen
+  bool learned = false;               ///< enough quiet samples were seen
 };
 
 struct PreflightFacts {

@@ -9,12 +9,9 @@
 
 namespace kolsky {
 
-/// Where a reply goes: the peer's routing id, and whether it puts an empty frame first, as REQ
-/// does.
-struct Route {
-  std::string peer;
-  bool delimited = false;
-};
+/// Where a reply goes: the frames that go before it, as they came before the request. The peer's
+/// routing id, then what proxies on the way and the peer's own socket put there.
+using Route = std::vector<std::string>;
 
 /// What makes two requests the same.
 struct RequestKey {

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 
 SharedJournal::SharedJournal(const StoreLayout& store, std::uint64_t boot_id)
@@ -34,6 +36,8 @@ void SharedJournal::append(const Append& write) {
   const std::shared_ptr<Journal> first = current();
   try {
     write(*first);
+  } catch (const InputError&) {
+    throw;  // the shot is not storable; nothing was written
   } catch (const std::runtime_error&) {
     give_up(first);
     write(*current());

@@ -31,7 +31,8 @@ class SharedJournal {
 
   std::filesystem::path folder_;
   std::uint64_t boot_id_;
-  std::mutex mutex_;  ///< guards which journal it is, not the writing: that locks itself, for less long
+  std::mutex
+      mutex_;  ///< guards which journal it is, not the writing: that locks itself, for less long
   int files_ = 0;
   std::shared_ptr<Journal> journal_;
 };
