@@ -16,6 +16,8 @@ namespace {
 constexpr std::uint64_t kMostBuffers = 1024;
 constexpr std::uint64_t kMostBlockSamples = std::uint64_t{1} << 28;
 
+}  // namespace
+
 void check(const AdcSettings& settings) {
   if (settings.bits < 12 || settings.bits > 32) {
     throw InputError("bits", std::to_string(settings.bits) + " is not a simulated resolution",
@@ -41,8 +43,6 @@ void check(const AdcSettings& settings) {
                      "give one of them");
   }
 }
-
-}  // namespace
 
 SimulatedAdc::SimulatedAdc(AdcSettings settings, std::unique_ptr<CodeSource> source)
     : settings_(std::move(settings)),

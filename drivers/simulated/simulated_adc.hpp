@@ -45,6 +45,9 @@ struct AdcSettings {
       log;  ///< of shots and faults; called under the lock, may be empty
 };
 
+/// @throws InputError whose place is the setting
+void check(const AdcSettings& settings);
+
 /// What an attribute answers: its text, or a negative errno.
 struct AttributeReply {
   int error = 0;
