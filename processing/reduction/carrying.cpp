@@ -41,7 +41,7 @@ void multiply_add(const std::vector<Complex>& kernel, const std::vector<Complex>
 }  // namespace
 
 CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWaves& input,
-                                 const BarWaves& output, double specimen_length_m) {
+                                 const BarWaves& output, double specimen_length_m, double delay_s) {
   const std::size_t bins = transform.bins();
   for (auto* kernel : {&from_impact_, &force_of_incident_, &force_of_rest_, &force_of_output_,
                        &rate_of_incident_, &rate_of_rest_, &rate_of_output_, &right_of_incident_,
@@ -53,8 +53,9 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
     const Stretches a(input, input.modes[k], s);
     const Complex right_rest = -a.round_trip * a.separation * a.to_specimen;
     const Complex left_rest = a.separation / a.to_specimen;
-    from_impact_[k] =
-        std::exp(-input.modes[k].gamma * input.gauge_to_far_end_m) * input.area_m2 / a.force;
+    const Complex front = s / input.front_speed_m_per_s;
+    from_impact_[k] = std::exp(-(input.modes[k].gamma - front) * input.gauge_to_far_end_m) *
+                      input.area_m2 / a.force;
     right_of_incident_[k] = a.mean * a.to_specimen;
     right_of_rest_[k] = a.mean * right_rest;
     left_of_rest_[k] = a.mean * left_rest;
@@ -69,6 +70,13 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
     right_of_output_[k] = b.mean * right_out;
     force_of_output_[k] = b.force * (right_out + left_out);
     rate_of_output_[k] = -b.velocity * (right_out - left_out) / specimen_length_m;
+
+    const Complex delay = std::exp(-s * delay_s);
+    for (auto* history : {&force_of_incident_, &force_of_rest_, &force_of_output_,
+                          &rate_of_incident_, &rate_of_rest_, &rate_of_output_, &right_of_incident_,
+                          &right_of_rest_, &left_of_rest_, &right_of_output_}) {
+      (*history)[k] *= delay;
+    }
   }
 }
 

@@ -13,8 +13,9 @@ struct BarWaves {
   double area_m2 = 0.0;
   double density_kg_m3 = 0.0;
   double gauge_to_specimen_m = 0.0;
-  double gauge_to_far_end_m =
-      0.0;  ///< the impacted end of the input bar, the free end of the output bar
+  /// To the impacted end of the input bar, to the free end of the output bar.
+  double gauge_to_far_end_m = 0.0;
+  double front_speed_m_per_s = 0.0;
   std::vector<BarMode> modes;  ///< one per bin of the transform
 };
 
@@ -36,8 +37,12 @@ struct BarWaves {
 /// first passages these are the paper's eqs (10) to (18) with their errata, bars unequal or not.
 class CarryingKernels {
  public:
+  /// @param delay_s  by which every history comes out late; at least the longer of both fronts'
+  /// travel from gauge to
+  ///                 specimen, so that carrying back looks into no future and nothing wraps round
+  ///                 the record's start
   CarryingKernels(const DampedTransform& transform, const BarWaves& input, const BarWaves& output,
-                  double specimen_length_m);
+                  double specimen_length_m, double delay_s);
 
   /// Spectra of the histories, from those of the incident pulse I, the rest D of the input gauge,
   /// and the output gauge E2. One Complex per bin each.
@@ -46,8 +51,9 @@ class CarryingKernels {
     const std::vector<Complex>& rest;
     const std::vector<Complex>& output;
   };
-  /// The incident wave at the input gauge as the stress [Pa] of the striker's push; and back. It is
-  /// the stress that ends with the push: the strain of a viscoelastic end goes on recovering.
+  /// The incident wave at the input gauge as the stress [Pa] of the striker's push, late by a
+  /// front's travel from the impacted end to the gauge; and back. It is the stress that ends with
+  /// the push: the strain of a viscoelastic end goes on recovering.
   void push_from_incident(std::vector<Complex>& wave) const;
   void incident_from_push(std::vector<Complex>& wave) const;
 

@@ -32,6 +32,7 @@ struct BarModel {
               bar.density_kg_m3,
               station.gauge_to_specimen_m,
               station.gauge_to_far_end_m,
+              front_speed_m_per_s,
               {}} {}
 };
 
@@ -85,11 +86,19 @@ std::size_t longest_pulse(const Shot& shot, const BarModel& bar) {
   return static_cast<std::size_t>((round_trip_s + kFootClearance_s) * shot.rate.Hz()) + 2;
 }
 
+/// Samples that a front needs from a gauge to the specimen, on the bar where it needs more.
+std::size_t longest_travel(const Shot& shot, const BarModel& input, const BarModel& output) {
+  const double travel_s = std::max(front_time_s(input, input.waves.gauge_to_specimen_m),
+                                   front_time_s(output, output.waves.gauge_to_specimen_m));
+  return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
+}
+
 /// Plans, kernels and work space for shots of one bench and length.
 struct Tables {
   TableKey key;
   BarModel input;
   BarModel output;
+  std::size_t delay;  ///< samples by which histories come out late, so that nothing looks ahead
   double highest_Hz = 0.0;  ///< where surface gauges go blind
   DampedTransform transform;
   BandLimit band;
@@ -101,20 +110,22 @@ struct Tables {
       : key(std::move(k)),
         input(shot.bench.input, in, m),
         output(*shot.bench.output, out, m),
-        transform(shot.samples(), shot.rate.period_s()),
+        delay(longest_travel(shot, input, output)),
+        transform(shot.samples() + delay, shot.rate.period_s()),
         band(transform, longest_pulse(shot, input)),
-        kernels(make_kernels(shot.bench)),
+        kernels(make_kernels(shot)),
         input_strain(shot.samples()),
         output_strain(shot.samples()),
         incident_strain(shot.samples()),
-        history(shot.samples()),
+        history(shot.samples() + delay),
         incident(transform.bins()),
         rest(transform.bins()),
         output_spectrum(transform.bins()),
         work(transform.bins()) {}
 
  private:
-  CarryingKernels make_kernels(const Bench& bench) {
+  CarryingKernels make_kernels(const Shot& shot) {
+    const Bench& bench = shot.bench;
     std::vector<Complex> path(transform.bins());
     for (std::size_t k = 0; k < path.size(); ++k) {
       path[k] = transform.s(k);
@@ -123,7 +134,8 @@ struct Tables {
     output.waves.modes = bar_modes(key.theory, *bench.output, *output.compliance, path);
     highest_Hz =
         std::min(blind_from_Hz(input.waves.modes, path), blind_from_Hz(output.waves.modes, path));
-    return {transform, input.waves, output.waves, bench.specimen->length_m};
+    const double delay_s = static_cast<double>(delay) * shot.rate.period_s();
+    return {transform, input.waves, output.waves, bench.specimen->length_m, delay_s};
   }
 };
 
@@ -252,9 +264,8 @@ class Pass {
   void complete_incident() {
     t_.kernels.push_from_incident(t_.incident);
     t_.transform.inverse(t_.incident, t_.history);
-    const double hidden_s = front_time_s(t_.input, in_.gauge_to_far_end_m) +
-                            BandLimit::smear_s(reduction_.band_limit_Hz);
-    const double known = static_cast<double>(split_) - hidden_s * rate_Hz_;
+    const double known =
+        static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const auto end = static_cast<std::size_t>(std::max(0.0, known));
     judge_push(end);
     std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
@@ -294,6 +305,7 @@ class Pass {
     }
     const double noise = input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz);
     Foot foot = foot_of(pulse, half, *peak, noise);
+    foot.index -= static_cast<double>(t_.delay);
     if (options_.arrival_s) {
       foot.index = gauge_foot_ + travel;
       foot.sigma = 0.0;
@@ -311,11 +323,9 @@ class Pass {
     const double first_return_s = 2.0 * std::min(front_time_s(t_.input, bench.input.length_m),
                                                  front_time_s(t_.output, bench.output->length_m));
     const double duration_s = options_.duration_s.value_or(first_return_s);
-    const double ahead_s = std::max(front_time_s(t_.input, in_.gauge_to_specimen_m),
-                                    front_time_s(t_.output, out_.gauge_to_specimen_m)) +
-                           4.0 * BandLimit::smear_s(reduction_.band_limit_Hz);
+    const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const double last = std::min(arrival + duration_s * rate_Hz_,
-                                 static_cast<double>(shot_.samples()) - ahead_s * rate_Hz_);
+                                 static_cast<double>(shot_.samples() - t_.delay) - smear);
     constexpr double kFewestSamples = 8.0;
     if (last < arrival + kFewestSamples) {
       return false;
@@ -333,7 +343,7 @@ class Pass {
   std::vector<double> history(Kernel kernel) {
     (t_.kernels.*kernel)(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
-    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_);
+    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.delay);
     return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
   }
 
@@ -365,10 +375,10 @@ class Pass {
   /// The rate integrated over what the low-pass has smeared before the arrival; t_.history still
   /// holds it.
   double strain_before_window() {
-    const double lead = 4.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+    const double lead = 2.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const auto begin = static_cast<std::size_t>(std::max(0.0, static_cast<double>(first_) - lead));
     double strain = 0.0;
-    for (std::size_t n = begin; n < first_; ++n) {
+    for (std::size_t n = begin + t_.delay; n < first_ + t_.delay; ++n) {
       strain += period_s_ * (t_.history[n] + t_.history[n + 1]) / 2.0;
     }
     return strain;
