@@ -54,8 +54,10 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 int run(const Settings& settings, Context& context) {
-  const TableImport request{
-      {settings.tables.begin(), settings.tables.end()}, settings.bench, meta_of(settings.meta)};
+  TableImport request;
+  request.tables.assign(settings.tables.begin(), settings.tables.end());
+  request.bench = settings.bench;
+  request.meta = meta_of(settings.meta);
   const Shot shot = import_tables(request);
   write_capture(shot, settings.output);
   const std::vector<std::string> channels = channel_names(shot);
