@@ -37,11 +37,11 @@ Groups group(std::span<const double> samples) {
     double sum = 0.0;
     for (const double sample : part) sum += sample;
     const double mean = sum / static_cast<double>(length);
-    double square = 0.0;
-    for (const double sample : part) square += (sample - mean) * (sample - mean);
+    double squares = 0.0;
+    for (const double sample : part) squares += (sample - mean) * (sample - mean);
     groups[g] = {static_cast<double>(end) - 0.5 * static_cast<double>(length + 1) -
                      static_cast<double>(samples.size()),
-                 mean, square / static_cast<double>(length - 1)};
+                 mean, squares / static_cast<double>(length - 1)};
   }
   return groups;
 }
@@ -66,6 +66,15 @@ double trimmed_square(std::array<double, kGroups> residuals) {
   double sum = 0.0;
   for (std::size_t g = 0; g + 2 < kGroups; ++g) sum += residuals[g];
   return kTrimming * sum / static_cast<double>(kGroups - 2);
+}
+
+double square(double value) {
+  return value * value;
+}
+
+double fade(const BaselineMemory& memory) {
+  return 1.0 -
+         1.0 / std::max(2.0, static_cast<double>(memory.baseline_samples) / BaselineTracker::kCell);
 }
 
 }  // namespace
@@ -95,7 +104,8 @@ QuietEstimate estimate_quiet(std::span<const double> samples) {
 }
 
 BaselineTracker::BaselineTracker(const BaselineMemory& memory)
-    : fade_(1.0 - 1.0 / std::max(2.0, static_cast<double>(memory.baseline_samples) / kCell)),
+    : level_gain_(1.0 - square(fade(memory))),
+      slope_gain_(square(1.0 - fade(memory))),
       noise_gain_(1.0 / std::max(1.0, static_cast<double>(memory.noise_samples) / kCell)),
       guard_(memory.guard_samples / kCell) {}
 
@@ -110,12 +120,12 @@ void BaselineTracker::start(const QuietEstimate& quiet, std::size_t samples) {
   if (known() && quiet.noise_variance < kSameNoise * noise_variance_) return;
   noise_cells_ = cells_;
   noise_variance_ = quiet.noise_variance;
-  noise_weight_ = kMedianEfficiency * static_cast<double>(samples);
+  noise_spread_ = 1.0 / (kMedianEfficiency * static_cast<double>(samples));
 }
 
 void BaselineTracker::forget() {
   guard_size_ = 0;
-  noise_weight_ = 0.0;
+  noise_spread_ = 0.0;
   noise_variance_ = 0.0;
   baseline_variance_ = 0.0;
 }
@@ -154,11 +164,13 @@ void BaselineTracker::push(const Cell& cell) noexcept {
 void BaselineTracker::absorb(const Cell& cell) noexcept {
   level_ += slope_;
   if (!cell.quiet) return;
-  const double k = cells_;
-  const double all = (k + 1.0) * (k + 2.0);
-  const double level_gain =
-      std::max(std::min(1.0, 2.0 * (2.0 * k + 1.0) / all), 1.0 - fade_ * fade_);
-  const double slope_gain = std::max(std::min(1.0, 6.0 / all), (1.0 - fade_) * (1.0 - fade_));
+  // The gains of a plain fit to all cells so far fall as these grow more.
+  const double all = (cells_ + 1.0) * (cells_ + 2.0);
+  const double level_share = 2.0 * (2.0 * cells_ + 1.0);
+  double level_gain = level_gain_;
+  double slope_gain = slope_gain_;
+  if (level_gain * all < level_share) level_gain = std::min(1.0, level_share / all);
+  if (slope_gain * all < 6.0) slope_gain = std::min(1.0, 6.0 / all);
   const double miss = cell.mean - level_;
   level_ += level_gain * miss;
   slope_ += slope_gain * miss;
@@ -167,12 +179,11 @@ void BaselineTracker::absorb(const Cell& cell) noexcept {
 }
 
 void BaselineTracker::absorb_noise(const Cell& cell) noexcept {
-  const double gain = std::max(1.0 / (noise_cells_ + 1.0), noise_gain_);
   noise_cells_ += 1.0;
+  const double gain = noise_gain_ * noise_cells_ < 1.0 ? 1.0 / noise_cells_ : noise_gain_;
   noise_variance_ += gain * (cell.mean_square - noise_variance_);
   baseline_variance_ += gain * (cell.miss_square - baseline_variance_);
-  const double kept = (1.0 - gain) * (1.0 - gain) / noise_weight_;
-  noise_weight_ = 1.0 / (kept + gain * gain / static_cast<double>(kCell));
+  noise_spread_ = square(1.0 - gain) * noise_spread_ + square(gain) / static_cast<double>(kCell);
 }
 
 }  // namespace kolsky

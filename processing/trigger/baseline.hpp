@@ -55,10 +55,10 @@ class BaselineTracker {
   /// Mean square of a sample about the predicted line, codes².
   [[nodiscard]] double noise_variance() const noexcept { return noise_variance_; }
   /// Variance of `noise_variance` over its square.
-  [[nodiscard]] double noise_relative_variance() const noexcept { return 2.0 / noise_weight_; }
+  [[nodiscard]] double noise_relative_variance() const noexcept { return 2.0 * noise_spread_; }
   /// Of the predicted line, codes².
   [[nodiscard]] double baseline_variance() const noexcept { return baseline_variance_; }
-  [[nodiscard]] bool known() const noexcept { return noise_weight_ > 0.0; }
+  [[nodiscard]] bool known() const noexcept { return noise_spread_ > 0.0; }
 
  private:
   struct Cell {
@@ -71,7 +71,8 @@ class BaselineTracker {
   void absorb(const Cell& cell) noexcept;
   void absorb_noise(const Cell& cell) noexcept;
 
-  double fade_;              ///< of the line, per cell
+  double level_gain_;  ///< least gains of the line, per cell
+  double slope_gain_;
   double noise_gain_;        ///< least gain of the mean squares, per cell
   std::vector<Cell> guard_;  ///< a ring, when the guard is longer than a cell
   std::size_t guard_start_ = 0;
@@ -82,7 +83,7 @@ class BaselineTracker {
   double cells_ = 0.0;  ///< the line rests on
   double noise_cells_ = 0.0;
   double noise_variance_ = 0.0;
-  double noise_weight_ = 0.0;  ///< independent samples the noise rests on
+  double noise_spread_ = 0.0;  ///< one over the independent samples that the noise rests on
   double baseline_variance_ = 0.0;
 };
 

@@ -106,12 +106,16 @@ std::optional<Window> find_window(std::span<const double> deviation, std::size_t
     const auto at =
         static_cast<std::ptrdiff_t>(std::floor(line.middle + std::clamp(away, -limit, limit)));
     const std::ptrdiff_t next = std::clamp(at, half - 1, size - 1 - half);
-    if (next != centre && moves++ < kMostMoves) {
+    const bool steep = climb >= kClimb * level;
+    // Of the steepest edges a line tells little; the samples on either side of the level tell all.
+    const bool caught = steep && half == 2 && deviation[window.first + 1] < level &&
+                        deviation[window.first + 2] >= level;
+    if (!caught && next != centre && moves++ < kMostMoves) {
       centre = next;
       continue;
     }
     found = window;
-    if (climb >= kClimb * level || half == widest) return found;
+    if (steep || half == widest) return found;
     moves = 0;
     const auto grown = static_cast<std::ptrdiff_t>(kGrowth * static_cast<double>(half));
     half = std::min(widest, std::max(half + 1, grown));
@@ -120,14 +124,19 @@ std::optional<Window> find_window(std::span<const double> deviation, std::size_t
   return found;
 }
 
-double root_between(const Cubic& fit, double level) {
-  double low = -1.0;
-  double high = 1.0;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (fit.at(middle) < level ? low : high) = middle;
+// In the middle half of the window where it is there, else anywhere in it.
+std::optional<double> root(const Cubic& fit, double level) {
+  for (double reach : {0.5, 1.0}) {
+    double low = -reach;
+    double high = reach;
+    if (fit.at(low) >= level || fit.at(high) <= level) continue;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (fit.at(middle) < level ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
   }
-  return 0.5 * (low + high);
+  return std::nullopt;
 }
 
 // An edge that jumps between two samples while their neighbours stand still could lie anywhere
@@ -149,20 +158,21 @@ std::optional<Crossing> fit_crossing(std::span<const double> deviation, std::siz
   const std::optional<Window> window = find_window(deviation, guess, level, reach);
   if (!window) return std::nullopt;
   const Cubic fit = fit_cubic(deviation, *window);
-  if (fit.at(-1.0) >= level || fit.at(1.0) <= level) return std::nullopt;
-  const double u = root_between(fit, level);
-  const double position = fit.middle + u * fit.half;
-  const double slope = fit.slope_at(u);
-  if (slope <= 0.0) return std::nullopt;
-  return Crossing{position, slope, fit.noise_share_at(u), unresolved(deviation, position, level),
-                  window->points};
+  const std::optional<double> u = root(fit, level);
+  if (!u || fit.slope_at(*u) <= 0.0) return std::nullopt;
+  const double position = fit.middle + *u * fit.half;
+  return Crossing{position, fit.slope_at(*u), fit.noise_share_at(*u),
+                  unresolved(deviation, position, level), window->points};
 }
 
 double block_noise_variance(std::span<double> quiet, std::size_t block, double limit) {
-  const Line line = fit_line(quiet, {0, quiet.size()});
-  for (std::size_t i = 0; i < quiet.size(); ++i) {
-    const double along = line.value + line.slope * (static_cast<double>(i) - line.middle);
-    quiet[i] = std::clamp(quiet[i] - along, -limit, limit);
+  // A second line makes good what spikes did to the first.
+  for (int round = 0; round < 2; ++round) {
+    const Line line = fit_line(quiet, {0, quiet.size()});
+    for (std::size_t i = 0; i < quiet.size(); ++i) {
+      const double along = line.value + line.slope * (static_cast<double>(i) - line.middle);
+      quiet[i] = std::clamp(quiet[i] - along, -limit, limit);
+    }
   }
   block = std::clamp<std::size_t>(block, 1, quiet.size() / 8);
   const std::size_t count = quiet.size() / block;

@@ -27,9 +27,9 @@ struct Crossing {
                                                    std::size_t guess, double level,
                                                    std::size_t reach);
 
-/// Variance of the mean of `block` successive samples, times `block`: for white noise the variance of one
-/// sample whatever the block, for coloured noise what a fit over that many samples sees of it. Blocks
-/// longer than an eighth of the span are shortened to that.
+/// Variance of the mean of `block` successive samples, times `block`: for white noise the variance
+/// of one sample whatever the block, for coloured noise what a fit over that many samples sees of
+/// it. Blocks longer than an eighth of the span are shortened to that.
 /// @param quiet  left without its line, and cut at the limit
 /// @param limit  deviations from the line beyond it are spikes and count as the limit
 /// @pre at least 32 samples

@@ -19,6 +19,7 @@ constexpr Tick kMostRises = 4;
 // A code is at best a rounded number: variance 1/12.
 constexpr double kRoundingVariance = 1.0 / 12.0;
 constexpr std::size_t kLeastQuiet = 64;
+constexpr double kPivotReach = 256.0;
 
 // Quiet samples from which the noise of the time is estimated.
 std::size_t quiet_samples(const TriggerOptions& options) {
@@ -35,6 +36,10 @@ std::size_t history_samples(const TriggerOptions& options) {
   return std::max(options.learn_samples, quiet_samples(options) + pulse_samples(options));
 }
 
+bool near(std::int32_t code, std::int32_t pivot) {
+  return std::abs(std::int64_t{code} - pivot) <= kNear;
+}
+
 Tick ticks(std::size_t samples) {
   return static_cast<Tick>(samples);
 }
@@ -48,7 +53,8 @@ struct IncidentTrigger::Run {
   Tick first;
   Tick end;
   std::span<const Code> codes;
-  const RunStatistics& statistics;
+  std::int32_t minimum;
+  std::int32_t maximum;
 
   [[nodiscard]] std::int32_t at(Tick tick) const {
     return tick >= first ? codes[static_cast<std::size_t>(tick - first)] : history.at(tick);
@@ -70,8 +76,7 @@ void IncidentTrigger::reset_run() {
   if (phase_ == Phase::settling) {
     // The pulse was certain; its time has to do with the samples there are.
     pulse_.fit_tick = next_tick_ - 1;
-    const RunStatistics nothing;
-    finish_pulse(Run<std::int16_t>{history_, next_tick_, next_tick_, {}, nothing});
+    finish_pulse(Run<std::int16_t>{history_, next_tick_, next_tick_, {}, 0, 0});
   }
   started_ = false;
 }
@@ -104,7 +109,8 @@ template <class Code>
 std::optional<TriggerEvent> IncidentTrigger::take(Tick first_tick, std::span<const Code> codes,
                                                   const RunStatistics& statistics) {
   if (!started_ || first_tick != next_tick_) start_run(first_tick);
-  const Run<Code> run{history_, first_tick, first_tick + ticks(codes.size()), codes, statistics};
+  const Run<Code> run{history_, first_tick,         first_tick + ticks(codes.size()),
+                      codes,    statistics.minimum, statistics.maximum};
   Tick tick = run.first;
   while (tick < run.end) {
     switch (phase_) {
@@ -151,6 +157,7 @@ Tick IncidentTrigger::learn(const Run<Code>& run, Tick from) {
   noisy_cells_ = 0;
   excursion_ = {};
   excursion_.low_tick = until - 1;
+  cell_ = {};
   start_cell(until);
   return std::max(from, until);
 }
@@ -162,17 +169,21 @@ void IncidentTrigger::start_cell(Tick tick) {
   cell_.band = options_.hysteresis_share * cell_.level;
   cell_.quiet = {};
   baseline_codes_ = line_at(cell_, 0.5 * static_cast<double>(kCell - 1));
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  cell_.pivot = static_cast<std::int32_t>(std::lround(std::clamp(baseline_codes_, -kMost, kMost)));
+  // The pivot need only be near: left alone, it lets the next sums begin before this line is done.
+  if (std::abs(baseline_codes_ - cell_.pivot) > kPivotReach) {
+    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+    cell_.pivot = static_cast<std::int32_t>(std::clamp(baseline_codes_, -kMost, kMost));
+  }
 }
 
 void IncidentTrigger::finish_cell() {
   const DeviationSums& quiet = cell_.quiet;
   if (quiet.count >= kQuietEnough) {
-    const auto count = static_cast<double>(quiet.count);
-    const double mean = static_cast<double>(quiet.sum) / count;
+    const double share =
+        quiet.count == kCell ? 1.0 / kCell : 1.0 / static_cast<double>(quiet.count);
+    const double mean = static_cast<double>(quiet.sum) * share;
     tracker_.take(cell_.pivot + mean,
-                  static_cast<double>(quiet.sum_of_squares) / count - mean * mean);
+                  static_cast<double>(quiet.sum_of_squares) * share - mean * mean);
     noisy_cells_ = 0;
   } else {
     tracker_.skip();
@@ -210,7 +221,10 @@ Tick IncidentTrigger::watch(const Run<Code>& run, Tick from) {
   const Tick cell_end = cell_.first_tick + kCell;
   const Tick end = std::min(run.end, cell_end);
   Tick reached = end;
-  const DeviationSums sums = deviation_sums(run.part(from, end), cell_.pivot);
+  const auto part = run.part(from, end);
+  const bool small = near(run.minimum, cell_.pivot) && near(run.maximum, cell_.pivot);
+  const DeviationSums sums =
+      small ? near_deviation_sums(part, cell_.pivot) : deviation_sums(part, cell_.pivot);
   if (excursion_.tainted == 0 && within_band(sums.minimum, sums.maximum, from, end)) {
     add_quiet(sums);
     excursion_.outside = 0;
@@ -245,7 +259,7 @@ Tick IncidentTrigger::look_closely(const Run<Code>& run, Tick from, Tick end) {
     if (side == 0) {
       now.outside = 0;
       now.tainted -= now.tainted > 0 ? 1 : 0;
-      add_quiet(deviation_sums(run.part(tick, tick + 1), cell_.pivot));
+      add_quiet(deviation_sums(code, cell_.pivot));
     } else {
       now.outside = side == now.side ? now.outside + 1 : 1;
       now.side = side;
@@ -314,7 +328,8 @@ TriggerEvent IncidentTrigger::fit(const Run<Code>& run) {
   double noise_variance = tracker_.noise_variance();
   if (quiet_end - quiet_first >= ticks(kLeastQuiet)) {
     const auto block = static_cast<std::size_t>(std::lround(1.0 / crossing->noise_share));
-    noise_variance = block_noise_variance(deviations(run, quiet_first, quiet_end), block, pulse_.cell.band);
+    noise_variance =
+        block_noise_variance(deviations(run, quiet_first, quiet_end), block, pulse_.cell.band);
   }
   const double level_variance =
       0.25 * pulse_.cell.level * pulse_.cell.level * tracker_.noise_relative_variance();

@@ -172,6 +172,43 @@ KOLSKY_WIDE DeviationSums wide_deviations(const std::int32_t* codes, std::size_t
   return sums;
 }
 
+// At most 512 squares of 2047 fit 32 bits.
+KOLSKY_WIDE DeviationSums narrow_near(const std::int16_t* codes, std::size_t size,
+                                      std::int32_t pivot) noexcept {
+  const auto middle = static_cast<std::uint16_t>(pivot);
+  std::int32_t sum = 0;
+  std::int32_t sum_of_squares = 0;
+  std::int16_t minimum = kNear;
+  std::int16_t maximum = -kNear;
+  for (std::size_t i = 0; i < size; ++i) {
+    // Modulo 2^16: exact, since the difference is small even where the pivot is off the codes'
+    // range.
+    const auto code = static_cast<std::uint16_t>(codes[i]);
+    const auto deviation = static_cast<std::int16_t>(static_cast<std::uint16_t>(code - middle));
+    sum += deviation;
+    sum_of_squares += static_cast<std::int32_t>(deviation) * deviation;
+    minimum = std::min(minimum, deviation);
+    maximum = std::max(maximum, deviation);
+  }
+  return {static_cast<std::int64_t>(size), sum, sum_of_squares, pivot + minimum, pivot + maximum};
+}
+
+KOLSKY_WIDE DeviationSums wide_near(const std::int32_t* codes, std::size_t size,
+                                    std::int32_t pivot) noexcept {
+  std::int32_t sum = 0;
+  std::int32_t sum_of_squares = 0;
+  std::int32_t minimum = kNear;
+  std::int32_t maximum = -kNear;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::int32_t deviation = codes[i] - pivot;
+    sum += deviation;
+    sum_of_squares += deviation * deviation;
+    minimum = std::min(minimum, deviation);
+    maximum = std::max(maximum, deviation);
+  }
+  return {static_cast<std::int64_t>(size), sum, sum_of_squares, pivot + minimum, pivot + maximum};
+}
+
 template <class Sums>
 RunStatistics statistics_of(std::size_t size, const Sums& sums) noexcept {
   if (size == 0) return {};
@@ -219,6 +256,16 @@ DeviationSums deviation_sums(std::span<const std::int16_t> codes, std::int32_t p
 DeviationSums deviation_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept {
   if (codes.empty()) return {};
   return wide_deviations(codes.data(), codes.size(), pivot);
+}
+
+DeviationSums near_deviation_sums(std::span<const std::int16_t> codes,
+                                  std::int32_t pivot) noexcept {
+  return narrow_near(codes.data(), codes.size(), pivot);
+}
+
+DeviationSums near_deviation_sums(std::span<const std::int32_t> codes,
+                                  std::int32_t pivot) noexcept {
+  return wide_near(codes.data(), codes.size(), pivot);
 }
 
 }  // namespace kolsky

@@ -42,9 +42,25 @@ struct DeviationSums {
   std::int32_t maximum = 0;
 };
 
+/// Of one code.
+[[nodiscard]] inline DeviationSums deviation_sums(std::int32_t code, std::int32_t pivot) noexcept {
+  const std::int64_t deviation = std::int64_t{code} - pivot;
+  const std::int64_t limit = std::int64_t{1} << 27;
+  const std::int64_t kept = deviation < -limit ? -limit : (deviation > limit ? limit : deviation);
+  return {1, kept, kept * kept, code, code};
+}
+
 [[nodiscard]] DeviationSums deviation_sums(std::span<const std::int16_t> codes,
                                            std::int32_t pivot) noexcept;
 [[nodiscard]] DeviationSums deviation_sums(std::span<const std::int32_t> codes,
                                            std::int32_t pivot) noexcept;
+
+/// The same, faster.
+/// @pre no code is further than kNear from the pivot
+inline constexpr std::int32_t kNear = 2047;
+[[nodiscard]] DeviationSums near_deviation_sums(std::span<const std::int16_t> codes,
+                                                std::int32_t pivot) noexcept;
+[[nodiscard]] DeviationSums near_deviation_sums(std::span<const std::int32_t> codes,
+                                                std::int32_t pivot) noexcept;
 
 }  // namespace kolsky

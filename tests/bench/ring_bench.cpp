@@ -1,5 +1,5 @@
-// The sample ring with the trigger behind it against a plain copy of the same bytes: quiet 16-bit noise,
-// buffers of the size of the ring, so that neither works from the first cache alone.
+// The sample ring with the trigger behind it against a plain copy of the same bytes: quiet 16-bit
+// noise, buffers of the size of the ring, so that neither works from the first cache alone.
 
 #include <benchmark/benchmark.h>
 
@@ -78,8 +78,12 @@ void write_ring(benchmark::State& state, std::size_t watched) {
   count_samples(state, channels * samples);
 }
 
-void ring_alone(benchmark::State& state) { write_ring(state, 0); }
-void ring_and_trigger(benchmark::State& state) { write_ring(state, 1); }
+void ring_alone(benchmark::State& state) {
+  write_ring(state, 0);
+}
+void ring_and_trigger(benchmark::State& state) {
+  write_ring(state, 1);
+}
 /// As the daemon does, which follows the baseline of every channel.
 void ring_and_trigger_on_all(benchmark::State& state) {
   write_ring(state, static_cast<std::size_t>(state.range(0)));

@@ -1,5 +1,6 @@
-// Prints how often the incident trigger misses a pulse and how often it fires without one, against the
-// ratio of the pulse's peak to the rms of the random noise. 1 MHz, the settings of TriggerOptions::for_rate.
+// Prints how often the incident trigger misses a pulse and how often it fires without one, against
+// the ratio of the pulse's peak to the rms of the random noise. 1 MHz, the settings of
+// TriggerOptions::for_rate.
 //   trigger_band [minutes of baseline per row, 10] [pulses per cell, 1000]
 
 #include <cstdint>
@@ -30,14 +31,19 @@ const std::vector<Row>& rows() {
       {"white noise", {.noise_codes = kNoise_codes}},
       {"coloured noise, 100 kHz", {.noise_codes = kNoise_codes, .memory = 0.53}},
       {"coloured noise, 10 kHz", {.noise_codes = kNoise_codes, .memory = 0.94}},
-      {"white, 50 Hz hum of 20 sigma", {.noise_codes = kNoise_codes, .hum_codes = 20 * kNoise_codes}},
+      {"white, 50 Hz hum of 20 sigma",
+       {.noise_codes = kNoise_codes, .hum_codes = 20 * kNoise_codes}},
       {"white, 50 Hz hum of 100 sigma and 250 Hz of 10",
-       {.noise_codes = kNoise_codes, .hum_codes = 100 * kNoise_codes,
+       {.noise_codes = kNoise_codes,
+        .hum_codes = 100 * kNoise_codes,
         .harmonic_codes = 10 * kNoise_codes}},
       {"white, drift to and fro, 2000 sigma per s",
        {.noise_codes = kNoise_codes, .hum_codes = 1000 * kNoise_codes, .hum_period = 3.14e6}},
       {"white, 100 spikes per s to 500 sigma, to 4 us",
-       {.noise_codes = kNoise_codes, .spikes = 1e-4, .spike_codes = 500 * kNoise_codes, .spike_samples = 4}},
+       {.noise_codes = kNoise_codes,
+        .spikes = 1e-4,
+        .spike_codes = 500 * kNoise_codes,
+        .spike_samples = 4}},
       {"white, 0.3 codes rms", {.noise_codes = 0.3, .offset_codes = 0.4}},
   };
   return kRows;
@@ -78,8 +84,8 @@ Score pulses(const signals::Background& background, double peak_sigma, int count
       codes[i] = signals::quantised(value);
     }
     const auto event = feed(trigger, first, codes);
-    const double error = event ? static_cast<double>(event->tick - first) + event->fraction - foot - crossing
-                               : 1e9;
+    const double error =
+        event ? static_cast<double>(event->tick - first) + event->fraction - foot - crossing : 1e9;
     if (shot >= 0 && std::abs(error) < 60.0) {
       ++score.fired;
       score.error += error;
@@ -111,7 +117,8 @@ int false_triggers(const signals::Background& background, double level_sigma, do
 
 void print_missed(int count) {
   const double peaks[] = {6, 7, 8, 8.5, 9, 10, 12, 15, 20, 40};
-  std::printf("Missed pulses in %% of %d (170 us long, 30 us rise), by peak over rms noise\n\n|", count);
+  std::printf("Missed pulses in %% of %d (170 us long, 30 us rise), by peak over rms noise\n\n|",
+              count);
   for (const double peak : peaks) std::printf(" | %g", peak);
   std::printf(" |\n|---|");
   for ([[maybe_unused]] const double peak : peaks) std::printf("---|");
@@ -139,7 +146,8 @@ void print_times(int count) {
       const Score score = pulses(row.background, peak, count);
       const double n = std::max(1, score.fired);
       const double bias = score.error / n;
-      std::printf(" | %+.2f, %.2f / %.2f", bias, std::sqrt(std::max(0.0, score.error_square / n - bias * bias)),
+      std::printf(" | %+.2f, %.2f / %.2f", bias,
+                  std::sqrt(std::max(0.0, score.error_square / n - bias * bias)),
                   std::sqrt(score.stated_square / n));
     }
     std::printf(" |\n");
@@ -148,14 +156,16 @@ void print_times(int count) {
 
 void print_false(double minutes) {
   const double levels[] = {3, 4, 5, 6, 8};
-  std::printf("\nFalse triggers in %g minutes of baseline (at 8 sigma) or %g (below), by level\n\n|", minutes,
-              minutes / 10.0);
+  std::printf(
+      "\nFalse triggers in %g minutes of baseline (at 8 sigma) or %g (below), by level\n\n|",
+      minutes, minutes / 10.0);
   for (const double level : levels) std::printf(" | %g", level);
   std::printf(" |\n|---|---|---|---|---|---|\n");
   for (const Row& row : rows()) {
     std::printf("| %s", row.name);
     for (const double level : levels) {
-      std::printf(" | %d", false_triggers(row.background, level, level < 8.0 ? minutes / 10.0 : minutes));
+      std::printf(" | %d",
+                  false_triggers(row.background, level, level < 8.0 ? minutes / 10.0 : minutes));
       std::fflush(stdout);
     }
     std::printf(" |\n");

@@ -13,14 +13,14 @@ namespace kolsky::signals {
 
 /// What a gauge channel shows without a shot, in codes and samples.
 struct Background {
-  double noise_codes = 20.0;   ///< rms of the random part
-  double memory = 0.0;         ///< correlation from one sample to the next, 0 white
-  double hum_codes = 0.0;      ///< amplitude
-  double hum_period = 20e3;    ///< in samples
-  double harmonic_codes = 0.0; ///< amplitude at five times the hum's frequency
-  double spikes = 0.0;         ///< probability per sample
-  double spike_codes = 0.0;    ///< largest, either sign
-  int spike_samples = 1;       ///< longest
+  double noise_codes = 20.0;    ///< rms of the random part
+  double memory = 0.0;          ///< correlation from one sample to the next, 0 white
+  double hum_codes = 0.0;       ///< amplitude
+  double hum_period = 20e3;     ///< in samples
+  double harmonic_codes = 0.0;  ///< amplitude at five times the hum's frequency
+  double spikes = 0.0;          ///< probability per sample
+  double spike_codes = 0.0;     ///< largest, either sign
+  int spike_samples = 1;        ///< longest
   double offset_codes = 0.0;
 };
 
