@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "clients/figure/layout.hpp"
 
 namespace kolsky::cli {
@@ -95,13 +98,16 @@ std::string store_line(const v1::Status& status) {
 }
 
 std::string channel_line(const v1::ChannelStatus& channel) {
-  std::string text = fmt::format("{}  at {}, noise {} rms", channel.gauge(),
-                                 with_unit(channel.baseline(), channel.unit()),
-                                 with_unit(channel.noise_rms(), channel.unit()));
+  const DisplayUnit unit =
+      display_unit(channel.unit(), std::max({std::abs(channel.baseline()), channel.noise_rms(),
+                                             std::abs(channel.trigger_level())}));
+  std::string text =
+      fmt::format("{}  at {:.4g}, noise {:.3g} rms", channel.gauge(),
+                  channel.baseline() * unit.factor, channel.noise_rms() * unit.factor);
   if (channel.trigger_level() != 0.0) {
-    text += ", level " + with_unit(channel.trigger_level(), channel.unit());
+    text += fmt::format(", level {:.4g}", channel.trigger_level() * unit.factor);
   }
-  return text;
+  return text + " " + unit.name;
 }
 
 std::string shot_line(const v1::ShotSummary& shot, bool colour) {
