@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "clients/cli/daemon_text.hpp"
@@ -58,6 +59,12 @@ Range range_of(const std::vector<double>& minimum, const std::vector<double>& ma
   return {middle - half, middle + half};
 }
 
+std::string view_text(Range range, const std::string& unit, double span_s) {
+  const DisplayUnit shown = display_unit(unit, std::max(std::abs(range.low), std::abs(range.high)));
+  return fmt::format(" · {}: {:.3g} to {:.3g} {}", with_unit(span_s, "s"), range.low * shown.factor,
+                     range.high * shown.factor, shown.name);
+}
+
 template <typename Lines>
 void append(std::vector<std::string>& to, const Lines& lines) {
   to.insert(to.end(), lines.begin(), lines.end());
@@ -77,11 +84,8 @@ std::vector<std::string> LiveView::trace_lines(const Terminal& terminal) const {
     const std::vector<double> low(trace->second.minimum.begin(), trace->second.minimum.end());
     const std::vector<double> high(trace->second.maximum.begin(), trace->second.maximum.end());
     const Range range = range_of(low, high, channel.noise_rms());
-    lines.push_back(
-        label + fmt::format(" · {}: {} to {}",
-                            with_unit(trace->second.step_s * static_cast<double>(low.size()), "s"),
-                            with_unit(range.low, trace->second.unit),
-                            with_unit(range.high, trace->second.unit)));
+    lines.push_back(label + view_text(range, trace->second.unit,
+                                      trace->second.step_s * static_cast<double>(low.size())));
     append(lines, lines_of(envelope_text(low, high, range, {terminal.columns, kTraceRows},
                                          terminal.colour)));
   }

@@ -131,7 +131,7 @@ TEST(LiveView, DrawsThePreview) {
   channel.mutable_maximum()->set_data(std::string("\x64\x00\x64\x00", 4));  // 100, 100
   static_cast<void>(view.take(message("preview", preview)));
   const std::string screen = view.screen({});
-  EXPECT_NE(screen.find("2 ms: -100 microstrain to 100 microstrain"), std::string::npos) << screen;
+  EXPECT_NE(screen.find("2 ms: -100 to 100 microstrain\n"), std::string::npos) << screen;
   EXPECT_NE(screen.find("⣿"), std::string::npos) << screen;
 }
 
