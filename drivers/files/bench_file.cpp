@@ -17,11 +17,15 @@ Measured equal_area_diameter(const Measured& side_m) {
 
 Bar read_bar(const TomlTable& table) {
   table.expect({"length_m", "diameter_m", "density_kg_m3", "poisson_ratio", "youngs_modulus_Pa",
-                "section", "side_m"});
+                "section", "side_m", "far_end"});
   Bar bar;
   if (table.has("section")) {
     constexpr std::array kSections{Section::round, Section::square};
     bar.section = kSections.at(table.choice("section", {"round", "square"}));
+  }
+  if (table.has("far_end")) {
+    constexpr std::array kFarEnds{FarEnd::free, FarEnd::matched};
+    bar.far_end = kFarEnds.at(table.choice("far_end", {"free", "matched"}));
   }
   bar.length_m = table.measured("length_m");
   bar.side_m = table.optional_measured("side_m");

@@ -16,6 +16,10 @@ enum class PositiveSense { compression, tension };
 
 enum class Section { round, square };
 
+/// What a wave meets at the end of a bar away from the specimen: nothing (it comes back inverted),
+/// or a momentum trap or further bar that takes it.
+enum class FarEnd { free, matched };
+
 /// One bar. Square bars keep their side in `side_m`; force uses the equal area and dispersion the
 /// radius b/sqrt(3), b half the side.
 struct Bar {
@@ -26,6 +30,7 @@ struct Bar {
   std::optional<Measured> youngs_modulus_Pa{};  ///< elastic bars only
   Section section = Section::round;
   std::optional<Measured> side_m{};  ///< square bars only
+  FarEnd far_end = FarEnd::free;     ///< of the output bar; the input bar's is the impacted one
 
   [[nodiscard]] double area_m2() const;
   [[nodiscard]] double dispersion_radius_m() const;

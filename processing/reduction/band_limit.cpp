@@ -9,7 +9,10 @@ namespace kolsky {
 namespace {
 
 constexpr std::size_t kBins = 24;  // averaged to judge the power at a frequency: noise alone then
-constexpr double kPowerOverNoise = 2.0;   // passes twice its mean once in some 10^5 places
+constexpr double kPowerOverNoise = 2.0;  // passes twice its mean once in some 10^5 places
+// Of the sampling rate. At half the rate a delay by a part of a sample jumps; the filter is down to
+// 1e-12 there, so that undamping the end of a record does not raise the jump above the signal.
+constexpr double kHighestShare = 0.2;
 constexpr double kStepsPerOctave = 12.0;  // limits are of a grid, so that filters can be kept
 constexpr std::size_t kMostFilters = 64;
 
@@ -31,7 +34,7 @@ BandLimit::BandLimit(const DampedTransform& transform, std::size_t pulse_samples
 }
 
 double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
-  const double highest_Hz = sampling_frequency_Hz_ / 4.0;
+  const double highest_Hz = sampling_frequency_Hz_ * kHighestShare;
   if (noise_rms <= 0.0) {
     return highest_Hz;
   }
@@ -70,12 +73,12 @@ const std::vector<Complex>& BandLimit::filter(double limit_Hz) {
   std::vector<Complex> filter(s_.size());
   for (std::size_t k = 0; k < s_.size(); ++k) {
     const Complex square = s_[k] * s_[k] / (wc * wc);
-    filter[k] = std::exp(-square * square);
+    filter[k] = std::exp(-square * square / 2.0);
   }
   return filters_.emplace(limit_Hz, std::move(filter)).first->second;
 }
 
-void BandLimit::apply(double limit_Hz, std::span<Complex> spectrum) {
+void BandLimit::apply_half(double limit_Hz, std::span<Complex> spectrum) {
   const std::vector<Complex>& gain = filter(limit_Hz);
   for (std::size_t k = 0; k < spectrum.size(); ++k) {
     spectrum[k] *= gain[k];

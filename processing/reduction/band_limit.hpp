@@ -21,14 +21,15 @@ class BandLimit {
   BandLimit(const DampedTransform& transform, std::size_t pulse_samples);
 
   /// The highest frequency [Hz] at which the pulse's power, averaged over neighbouring bins, is
-  /// twice that of white noise, so that pulse and noise are alike; at most a quarter of the
-  /// sampling rate. Of a noiseless pulse: that quarter.
+  /// twice that of white noise, so that pulse and noise are alike; at most a fifth of the
+  /// sampling rate. Of a noiseless pulse: that fifth.
   /// @param pulse      the samples that hold it, and little else; no more than `pulse_samples`
   /// @param noise_rms  of its samples
   [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms);
 
-  /// Multiplies a spectrum by the filter with this limit.
-  void apply(double limit_Hz, std::span<Complex> spectrum);
+  /// Multiplies a spectrum by the square root of the filter with this limit: a wave that is cut in
+  /// time between two steps is filtered before and after, others twice.
+  void apply_half(double limit_Hz, std::span<Complex> spectrum);
 
   /// Share of white noise's rms that the filter lets through.
   [[nodiscard]] double noise_share(double limit_Hz) const;

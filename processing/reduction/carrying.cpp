@@ -16,7 +16,8 @@ struct Stretches {
   Stretches(const BarWaves& bar, const BarMode& mode, Complex s) {
     const Complex gamma = mode.gamma;
     to_specimen = std::exp(-gamma * bar.gauge_to_specimen_m);
-    round_trip = std::exp(-2.0 * gamma * bar.gauge_to_far_end_m);
+    round_trip =
+        bar.far_end == FarEnd::free ? std::exp(-2.0 * gamma * bar.gauge_to_far_end_m) : 0.0;
     separation = 1.0 / (1.0 - round_trip);
     mean = mode.mean_over_surface;
     velocity = mean * s / gamma;
@@ -43,9 +44,9 @@ void multiply_add(const std::vector<Complex>& kernel, const std::vector<Complex>
 CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWaves& input,
                                  const BarWaves& output, double specimen_length_m, double delay_s) {
   const std::size_t bins = transform.bins();
-  for (auto* kernel : {&from_impact_, &force_of_incident_, &force_of_rest_, &force_of_output_,
-                       &rate_of_incident_, &rate_of_rest_, &rate_of_output_, &right_of_incident_,
-                       &right_of_rest_, &left_of_rest_, &right_of_output_}) {
+  for (auto* kernel : {&to_impact_, &from_impact_, &force_of_incident_, &force_of_rest_,
+                       &force_of_output_, &rate_of_incident_, &rate_of_rest_, &rate_of_output_,
+                       &right_of_incident_, &right_of_rest_, &left_of_rest_, &right_of_output_}) {
     kernel->resize(bins);
   }
   for (std::size_t k = 0; k < bins; ++k) {
@@ -56,6 +57,7 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
     const Complex front = s / input.front_speed_m_per_s;
     from_impact_[k] = std::exp(-(input.modes[k].gamma - front) * input.gauge_to_far_end_m) *
                       input.area_m2 / a.force;
+    to_impact_[k] = 1.0 / from_impact_[k];
     right_of_incident_[k] = a.mean * a.to_specimen;
     right_of_rest_[k] = a.mean * right_rest;
     left_of_rest_[k] = a.mean * left_rest;
@@ -81,9 +83,7 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
 }
 
 void CarryingKernels::push_from_incident(std::vector<Complex>& wave) const {
-  for (std::size_t k = 0; k < wave.size(); ++k) {
-    wave[k] /= from_impact_[k];
-  }
+  multiply(to_impact_, wave, wave);
 }
 
 void CarryingKernels::incident_from_push(std::vector<Complex>& wave) const {

@@ -15,6 +15,7 @@ struct BarWaves {
   double gauge_to_specimen_m = 0.0;
   /// To the impacted end of the input bar, to the free end of the output bar.
   double gauge_to_far_end_m = 0.0;
+  FarEnd far_end = FarEnd::free;
   double front_speed_m_per_s = 0.0;
   std::vector<BarMode> modes;  ///< one per bin of the transform
 };
@@ -65,6 +66,7 @@ class CarryingKernels {
   void right_going_back(const Inputs& in, std::vector<Complex>& out) const;
 
  private:
+  std::vector<Complex> to_impact_;
   std::vector<Complex> from_impact_;
   std::vector<Complex> force_of_incident_;
   std::vector<Complex> force_of_rest_;

@@ -18,6 +18,7 @@ constexpr double kSignalToNoiseFloor_dB = 15.0;
 constexpr double kOverlapLimit = 0.02;
 constexpr double kOverlapFloor = 0.10;
 constexpr double kClosureLimit = 0.10;
+constexpr double kSeparationLimit = 0.10;
 constexpr double kFewQuietSamples = 64;
 
 template <typename... Numbers>
@@ -162,6 +163,60 @@ Check front_back_lag(const Reduction& r, std::size_t end) {
   return check;
 }
 
+/// rms(front - back) after the returns begin, over the largest force before: both faces unload
+/// together, so what is left then is what the separation of the waves left.
+double separation_mismatch(const Reduction& r, std::size_t from) {
+  double largest = 0.0;
+  for (std::size_t n = 0; n < from; ++n) {
+    largest = std::max(largest, std::abs(r.force_back_N[n]));
+  }
+  double squares = 0.0;
+  for (std::size_t n = from; n < r.time_s.size(); ++n) {
+    squares += std::pow(r.force_front_N[n] - r.force_back_N[n], 2);
+  }
+  const auto count = static_cast<double>(r.time_s.size() - from);
+  return largest > 0.0 ? std::sqrt(squares / count) / largest : 1.0;
+}
+
+void shorten(Reduction& r, std::size_t count) {
+  for (auto* history : {&r.time_s, &r.stress_Pa, &r.strain, &r.strain_rate_per_s, &r.force_front_N,
+                        &r.force_back_N, &r.incident, &r.reflected, &r.transmitted}) {
+    history->resize(count);
+  }
+}
+
+/// Judges how the returns from the far ends were separated, and cuts the histories before them if
+/// badly.
+Check separate(const QualityInputs& in, Reduction& r) {
+  Check check{.name = "separation", .limit = kSeparationLimit, .unit = "1", .text = {}};
+  const auto after = std::lower_bound(r.time_s.begin(), r.time_s.end(), in.returns_from_s);
+  const auto from = static_cast<std::size_t>(after - r.time_s.begin());
+  constexpr std::size_t kFewest = 8;
+  if (from < kFewest || from + kFewest > r.time_s.size()) {
+    check.text = "the histories end before anything is back from the bars' far ends";
+    return check;
+  }
+  check.value = separation_mismatch(r, from);
+  if (check.value <= kSeparationLimit) {
+    check.text = text(
+        "waves back from the far ends, from %.0f us on, leave %.1f %% between front and back "
+        "(limit %.0f %%)",
+        1e6 * in.returns_from_s, 100 * check.value, 100 * kSeparationLimit);
+    return check;
+  }
+  check.verdict = Verdict::warn;
+  check.text = text(
+      "waves back from the far ends, from %.0f us on, leave %.0f %% between front and back: "
+      "lengths, wave "
+      "speed or the far ends are not as filed",
+      1e6 * in.returns_from_s, 100 * check.value);
+  if (in.may_shorten) {
+    shorten(r, from);
+    check.text += "; the histories end there";
+  }
+  return check;
+}
+
 Check quiet_start(const QualityInputs& in) {
   const auto samples = static_cast<double>(in.quiet_samples);
   Check check{.name = "quiet_start",
@@ -203,10 +258,15 @@ std::string unusable_because(const Shot& shot) {
 }
 
 void judge(const QualityInputs& inputs, Reduction& reduction) {
+  const Check separation = separate(inputs, reduction);
   const std::size_t end = loading_end(reduction.strain);
-  reduction.quality.checks = {equilibrium(reduction, end),  signal_to_noise(inputs),
-                              window_overlap(inputs),       clipping(),
-                              loop_closure(reduction, end), front_back_lag(reduction, end),
+  reduction.quality.checks = {equilibrium(reduction, end),
+                              signal_to_noise(inputs),
+                              window_overlap(inputs),
+                              clipping(),
+                              loop_closure(reduction, end),
+                              front_back_lag(reduction, end),
+                              separation,
                               quiet_start(inputs)};
 }
 

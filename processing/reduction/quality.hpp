@@ -18,13 +18,18 @@ struct QualityInputs {
   double input_noise_rms = 0.0;  ///< strain
   double output_peak = 0.0;      ///< at the output gauge within the histories' time
   double output_noise_rms = 0.0;
-  double push_left_share =
-      0.0;  ///< of the striker's push, of its peak, at the end of what is known of it
+  /// What is left of the striker's push, as a share of its peak, at the end of what is known of it.
+  double push_left_share = 0.0;
+  /// Time, as in the histories, from which a gauge holds waves that came back from a far end too.
+  double returns_from_s = 0.0;
+  bool may_shorten = true;        ///< nobody asked for a duration
   std::size_t quiet_samples = 0;  ///< before the pulse
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the
-/// lag between front and back. Limits and their reasons: docs/quality.md.
+/// lag between front and back, and whether the waves that come back from the far ends do so as the
+/// bench says. Where they do not, the histories are cut where those waves begin. Limits and their
+/// reasons: docs/quality.md.
 void judge(const QualityInputs& inputs, Reduction& reduction);
 
 }  // namespace kolsky

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/band_limit.hpp"
@@ -32,6 +33,7 @@ struct BarModel {
               bar.density_kg_m3,
               station.gauge_to_specimen_m,
               station.gauge_to_far_end_m,
+              bar.far_end,
               front_speed_m_per_s,
               {}} {}
 };
@@ -72,7 +74,7 @@ TableKey key_of(const Shot& shot, const Material& m, WaveTheory theory, const St
            b.output->area_m2(), b.output->density_kg_m3,
            b.output->youngs_modulus_Pa.value_or(Measured{}), in.gauge_to_specimen_m,
            in.gauge_to_far_end_m, out.gauge_to_specimen_m, out.gauge_to_far_end_m,
-           b.specimen->length_m}};
+           static_cast<double>(b.output->far_end), b.specimen->length_m}};
 }
 
 /// Seconds a front needs over a distance.
@@ -103,7 +105,7 @@ struct Tables {
   DampedTransform transform;
   BandLimit band;
   CarryingKernels kernels;
-  std::vector<double> input_strain, output_strain, incident_strain, history;
+  std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
   Tables(TableKey k, const Shot& shot, const Material& m, const Station& in, const Station& out)
@@ -118,6 +120,7 @@ struct Tables {
         output_strain(shot.samples()),
         incident_strain(shot.samples()),
         history(shot.samples() + delay),
+        scratch(shot.samples() + delay),
         incident(transform.bins()),
         rest(transform.bins()),
         output_spectrum(transform.bins()),
@@ -203,22 +206,22 @@ class Pass {
     const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
     const double round_trip_s = 2.0 * front_time_s(t_.input, in_.gauge_to_specimen_m);
     const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
-    read_station(shot_, in_, 0, t_.input_strain);
+    read_raw_station(shot_, in_, t_.input_strain);
     const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
     if (!rise) {
       return false;
     }
-    sense_ = rise->sense;
-    const auto half = rise->index;
-    double foot = rough_foot(half, reach);
+    double foot = rough_foot(*rise, reach);
     if (options_.arrival_s) {
       foot = *options_.arrival_s * rate_Hz_;
     }
     const auto clearance = kFootClearance_s * rate_Hz_;
     quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
-    // Once more, now that it is known how long the gauges are unstrained.
+    // Only now is it known how long the gauges are unstrained, which the bridges' equations start
+    // from.
     read_station(shot_, in_, quiet_, t_.input_strain);
     read_station(shot_, out_, quiet_, t_.output_strain);
+    sense_ = t_.input_strain[rise->index + 1] < 0.0 ? -1.0 : 1.0;
     input_noise_ = quiet_before(t_.input_strain, quiet_).noise_rms;
     output_noise_ = quiet_before(t_.output_strain, quiet_).noise_rms;
     gauge_foot_ = foot;
@@ -227,12 +230,13 @@ class Pass {
   }
 
   /// Foot at the gauge itself, from the unfiltered record.
-  double rough_foot(std::size_t half, std::size_t reach) {
+  double rough_foot(const Rise& rise, std::size_t reach) {
+    const std::size_t half = rise.index;
     const double baseline = quiet_before(t_.input_strain, std::min<std::size_t>(half, 32)).baseline;
     const std::size_t end = std::min(t_.input_strain.size(), half + reach);
-    auto& shifted = t_.history;
+    auto& shifted = t_.scratch;
     for (std::size_t n = 0; n < end; ++n) {
-      shifted[n] = sense_ * (t_.input_strain[n] - baseline);
+      shifted[n] = rise.sense * (t_.input_strain[n] - baseline);
     }
     const double peak = *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(half),
                                           shifted.begin() + static_cast<std::ptrdiff_t>(end));
@@ -250,8 +254,9 @@ class Pass {
                                : std::min(t_.band.from_noise(pulse, input_noise_), t_.highest_Hz);
     t_.transform.forward(t_.input_strain, t_.rest);
     t_.transform.forward(t_.output_strain, t_.output_spectrum);
-    for (auto* spectrum : {&t_.incident, &t_.rest, &t_.output_spectrum}) {
-      t_.band.apply(reduction_.band_limit_Hz, *spectrum);
+    for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
+      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
+      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
     }
     complete_incident();
     for (std::size_t k = 0; k < t_.rest.size(); ++k) {
@@ -262,6 +267,7 @@ class Pass {
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there.
   void complete_incident() {
+    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
     t_.kernels.push_from_incident(t_.incident);
     t_.transform.inverse(t_.incident, t_.history);
     const double known =
@@ -271,6 +277,7 @@ class Pass {
     std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
     t_.transform.forward(t_.history, t_.incident);
     t_.kernels.incident_from_push(t_.incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
   }
 
   /// How much of the push is left at the end of what is known of it, averaged over a few samples so
@@ -290,13 +297,13 @@ class Pass {
     t_.kernels.right_going_front(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
     const double travel = front_time_s(t_.input, in_.gauge_to_specimen_m) * rate_Hz_;
-    const auto begin = static_cast<std::size_t>(std::max(0.0, gauge_foot_ + travel * 0.5));
-    const auto end =
-        std::min(t_.history.size(), static_cast<std::size_t>(static_cast<double>(split_) + travel));
+    const double late = travel + static_cast<double>(t_.delay);
+    const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
+    const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
     for (std::size_t n = 0; n < end; ++n) {
-      t_.history[n] *= sense_;
+      t_.scratch[n] = sense_ * t_.history[n];
     }
-    const std::span<const double> pulse(t_.history.data(), end);
+    const std::span<const double> pulse(t_.scratch.data(), end);
     const auto peak =
         std::max_element(pulse.begin() + static_cast<std::ptrdiff_t>(begin), pulse.end());
     auto half = static_cast<std::size_t>(peak - pulse.begin());
@@ -321,7 +328,7 @@ class Pass {
     const double arrival = reduction_.arrival_s * rate_Hz_;
     first_ = static_cast<std::size_t>(std::ceil(arrival));
     const double first_return_s = 2.0 * std::min(front_time_s(t_.input, bench.input.length_m),
-                                                 front_time_s(t_.output, bench.output->length_m));
+                                                 far_end_time_s(bench.output->length_m));
     const double duration_s = options_.duration_s.value_or(first_return_s);
     const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const double last = std::min(arrival + duration_s * rate_Hz_,
@@ -334,6 +341,13 @@ class Pass {
     return true;
   }
 
+  /// Seconds a front needs over a stretch of the output bar that ends at its far end, if anything
+  /// comes back from there.
+  double far_end_time_s(double distance_m) const {
+    return t_.output.waves.far_end == FarEnd::free ? front_time_s(t_.output, distance_m)
+                                                   : std::numeric_limits<double>::infinity();
+  }
+
   CarryingKernels::Inputs inputs() const { return {t_.incident, t_.rest, t_.output_spectrum}; }
 
   using Kernel = void (CarryingKernels::*)(const CarryingKernels::Inputs&,
@@ -343,14 +357,20 @@ class Pass {
   std::vector<double> history(Kernel kernel) {
     (t_.kernels.*kernel)(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
+    return window();
+  }
+
+  /// What t_.history holds, within the window.
+  std::vector<double> window() const {
     const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.delay);
     return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
   }
 
+  /// @pre t_.history still holds the right-going wave at interface A
   void fill_histories() {
+    reduction_.incident = window();
     reduction_.force_front_N = history(&CarryingKernels::force_front);
     reduction_.force_back_N = history(&CarryingKernels::force_back);
-    reduction_.incident = history(&CarryingKernels::right_going_front);
     reduction_.reflected = history(&CarryingKernels::left_going_front);
     reduction_.transmitted = history(&CarryingKernels::right_going_back);
     reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
@@ -399,6 +419,9 @@ class Pass {
     q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
     q.output_noise_rms = output_noise_;
     q.push_left_share = push_left_share_;
+    q.returns_from_s = 2.0 * std::min(front_time_s(t_.input, in_.gauge_to_far_end_m),
+                                      far_end_time_s(out_.gauge_to_far_end_m));
+    q.may_shorten = !options_.duration_s;
     q.quiet_samples = quiet_;
     reduction_.quality.reducible = true;
     judge(q, reduction_);

@@ -46,6 +46,17 @@ Station station_on(const Bench& bench, const std::string& bar) {
   return station;
 }
 
+void read_raw_station(const Shot& shot, const Station& station, std::vector<double>& readings) {
+  std::fill(readings.begin(), readings.end(), 0.0);
+  const double share = 1.0 / static_cast<double>(station.channels.size());
+  for (const std::size_t index : station.channels) {
+    const ChannelRecord& channel = shot.channels[index];
+    for (std::size_t n = 0; n < readings.size(); ++n) {
+      readings[n] += share * channel.value(channel.codes[n]);
+    }
+  }
+}
+
 void read_station(const Shot& shot, const Station& station, std::size_t quiet,
                   std::vector<double>& strains) {
   std::fill(strains.begin(), strains.end(), 0.0);

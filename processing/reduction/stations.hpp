@@ -19,6 +19,10 @@ struct Station {
 /// @throws InputError where the bar has no gauge
 [[nodiscard]] Station station_on(const Bench& bench, const std::string& bar);
 
+/// The station's record as the digitiser has it, in the gauges' unit and averaged over them: enough
+/// to find a pulse in.
+void read_raw_station(const Shot& shot, const Station& station, std::vector<double>& readings);
+
 /// The station's record as strain, compression positive: each channel's codes through its bridge,
 /// less the mean of its first `quiet` samples, averaged over the station's gauges.
 /// @param strains  shot.samples() of them
