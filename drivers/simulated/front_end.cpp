@@ -59,8 +59,8 @@ void add_sine(double amplitude, double frequency_Hz, double phase, Tick first_ti
   }
 }
 
-// Beyond it doubles are whole numbers: adding and taking it away rounds to the nearest, and unlike a
-// call of the library it is done for several numbers at once.
+// Beyond it doubles are whole numbers: adding and taking it away rounds to the nearest, and unlike
+// a call of the library it is done for several numbers at once.
 constexpr double kRounding = 0x1.8p52;
 
 void check_not_negative(const char* setting, double value) {

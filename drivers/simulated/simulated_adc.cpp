@@ -126,13 +126,6 @@ int SimulatedAdc::set_rate(const std::string& value) {
   return 0;
 }
 
-void SimulatedAdc::lose(Tick samples, bool by_script) {
-  if (samples > 0) {
-    raise_overflow();
-    (by_script ? injected_lost_samples_ : overrun_lost_samples_) += samples;
-  }
-}
-
 void SimulatedAdc::note_fault(const FaultQueue::Due& due) {
   log(std::string("fault: ") + fault_name(due.fault.kind) + " at sample " +
       std::to_string(due.tick));
@@ -215,8 +208,9 @@ int SimulatedAdc::open_stream(const std::vector<std::uint32_t>& mask, std::uint6
   }
   stream = std::make_unique<AdcStream>(*this, mask, static_cast<Tick>(block_samples));
   stream_ = stream.get();
+  skip_faults(stream->read_until_);
   if (fault_gap_from_) {
-    injected_lost_samples_ += stream->position() - *fault_gap_from_;
+    injected_lost_samples_ += stream->read_until_ - *fault_gap_from_;
     fault_gap_from_.reset();
   }
   return 0;

@@ -119,7 +119,6 @@ class SimulatedAdc {
 
   void raise_overflow() noexcept;
   void note_overrun();
-  void lose(Tick samples, bool by_script);
   void note_fault(const FaultQueue::Due& due);
   void skip_faults(Tick until);
   void log(const std::string& text) const;
