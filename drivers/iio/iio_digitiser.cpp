@@ -9,6 +9,7 @@
 #include "drivers/iio/iio_uri.hpp"
 #include "drivers/iio/late_task.hpp"
 #include "drivers/iio/monotonic.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky {
 namespace {
@@ -33,7 +34,7 @@ bool fire_once(const std::string& uri, const DigitiserOptions& options) {
 }
 
 InputError too_slow(const std::string& uri) {
-  return Unreachable(uri, "does not answer in time", "check the connection with iio_info -u");
+  return InputError(uri, "does not answer in time", "check the connection with iio_info -u");
 }
 
 }  // namespace

@@ -7,14 +7,15 @@
 #include "drivers/iio/iio_attributes.hpp"
 #include "drivers/iio/iio_uri.hpp"
 #include "drivers/iio/sampling_rate.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky {
 namespace {
 
 constexpr double kLongestBlock_s = 0.2;
-constexpr double kKernelBuffers_s = 0.1;
+constexpr double kKernelBuffers_s = 0.2;
 constexpr double kFewestBuffers = 4;
-constexpr double kMostBuffers = 64;
+constexpr double kMostBuffers = 128;
 
 std::size_t block_samples(const DigitiserOptions& options, double rate_Hz) {
   const auto longest = static_cast<std::size_t>(std::max(1.0, kLongestBlock_s * rate_Hz));
@@ -36,14 +37,14 @@ SampleFormat narrowest(const std::vector<ScanChannel>& channels) {
 [[noreturn]] void throw_no_buffer(const std::string& uri, const std::string& device, int error) {
   const std::string reason = " (" + error_text(-error) + ")";
   if (error == EBUSY) {
-    throw Unreachable(uri, device + " is in use" + reason, "stop the other program that reads it");
+    throw InputError(uri, device + " is in use" + reason, "stop the other program that reads it");
   }
   if (error == ENOSYS || error == EPERM || error == EACCES || error == EINVAL) {
     throw InputError(uri, device + " does not stream" + reason,
                      "check with iio_readdev, also whether its channels may be read together");
   }
-  throw Unreachable(uri, device + " cannot be opened" + reason,
-                    "check the connection with iio_info -u");
+  throw InputError(uri, device + " cannot be opened" + reason,
+                   "check the connection with iio_info -u");
 }
 
 }  // namespace

@@ -18,12 +18,12 @@ namespace kolsky {
 /// one opened.
 class IioSession {
  public:
-  /// Connects, chooses device and channels, settles the rate. @throws Unreachable, InputError
+  /// Connects, chooses device and channels, settles the rate. @throws InputError
   IioSession(const std::string& uri, const DigitiserOptions& options);
 
   [[nodiscard]] const StreamInfo& info() const noexcept { return info_; }
 
-  /// Kernel buffers, channel enables, then the buffer, in that order. @throws Unreachable,
+  /// Kernel buffers, channel enables, then the buffer, in that order. @throws InputError,
   /// InputError
   void start();
 

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <vector>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 namespace {
 
@@ -84,13 +86,13 @@ ContextHandle open_context(const std::string& uri) {
   errno = 0;
   ContextHandle context(iio_create_context_from_uri(copy.data()));
   if (!context) {
-    throw Unreachable(uri, "no IIO device answers (" + error_text(-errno) + ")",
-                      "check that it is on and that iio_info -u shows it");
+    throw InputError(uri, "no IIO device answers (" + error_text(-errno) + ")",
+                     "check that it is on and that iio_info -u shows it");
   }
   const int error = iio_context_set_timeout(context.get(), kTimeout_ms);
   if (error < 0 && error != -ENOSYS) {
-    throw Unreachable(uri, "does not take a time-out (" + error_text(error) + ")",
-                      "check the connection with iio_info -u");
+    throw InputError(uri, "does not take a time-out (" + error_text(error) + ")",
+                     "check the connection with iio_info -u");
   }
   return context;
 }

@@ -131,7 +131,7 @@ std::size_t ReplayDigitiser::run_end() const noexcept {
 ReadStatus ReplayDigitiser::read(Block& block) {
   {
     const std::lock_guard lock(mutex_);
-    if (cancelled_) {
+    if (cancelled_ || next_capture_ == 0) {
       return ReadStatus::disconnected;
     }
   }
@@ -217,7 +217,7 @@ void ReplayDigitiser::cancel() {
 bool ReplayDigitiser::reconnect() {
   {
     const std::lock_guard lock(mutex_);
-    if (cancelled_) {
+    if (cancelled_ || next_capture_ == 0) {
       return false;
     }
   }

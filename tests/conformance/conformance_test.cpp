@@ -135,7 +135,10 @@ TEST_P(DigitiserContract, TicksRunOnFromZeroInBlocksOfAtMostTheSizeAnnounced) {
 }
 
 TEST_P(DigitiserContract, TwoSecondsAtTheRealRateLoseNothing) {
-  const auto digitiser = rig_->open(1.0);
+#ifdef KOLSKY_SANITIZED
+  GTEST_SKIP() << "a sanitizer's program is too slow for real time";
+#endif
+  const auto digitiser = rig_->open(1.0, 2'000'000);
   StreamCheck check(digitiser->info());
   const auto begin = Clock::now();
   digitiser->start();
@@ -156,7 +159,7 @@ TEST_P(DigitiserContract, ReadAllocatesNothing) {
   Block block;
   block.channels.reserve(Rig::kChannels);
   const std::uint64_t before = allocations_of_this_thread();
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 90; ++i) {  // within a capture: opening the next one does allocate
     ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
   }
   EXPECT_EQ(allocations_of_this_thread() - before, 0U);
@@ -222,7 +225,7 @@ TEST_P(DigitiserContract, AHoleIsAnnouncedCountedAndTakesItsTime) {
   }
   read_while(*digitiser, [&](const Block& after) {
     check(after);
-    return check.next_tick() < 400'000;
+    return check.next_tick() < Rig::kSamples;
   });
 }
 
@@ -264,14 +267,14 @@ TEST_P(DigitiserContract, AnEndIsReachedIfAnnouncedAndStays) {
   Tick samples = 0;
   const ReadStatus end = read_while(*digitiser, [&](const Block& block) {
     samples += static_cast<Tick>(block.samples);
-    return samples < 3'000'000;
+    return samples < 2 * Rig::kSamples;
   });
   if (!digitiser->info().ends) {
     EXPECT_EQ(end, ReadStatus::samples);
     return;
   }
   EXPECT_EQ(end, ReadStatus::end_of_capture);
-  EXPECT_EQ(samples, 2'000'000);
+  EXPECT_EQ(samples, Rig::kSamples);
   Block block;
   EXPECT_EQ(digitiser->read(block), ReadStatus::end_of_capture);
   EXPECT_EQ(digitiser->read(block), ReadStatus::end_of_capture);

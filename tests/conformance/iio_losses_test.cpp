@@ -179,7 +179,7 @@ TEST(FlaggedLosses, AreFlaggedByTheRegisterAndMarkEveryBlockThatMayHaveThem) {
   int overflows = 0;
   int marked = 0;
   int holes = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 800; ++i) {
     const ReadStatus status = digitiser->read(block);
     overflows += status == ReadStatus::overflow ? 1 : 0;
     if (status != ReadStatus::samples) {
@@ -194,8 +194,8 @@ TEST(FlaggedLosses, AreFlaggedByTheRegisterAndMarkEveryBlockThatMayHaveThem) {
   }
   EXPECT_GT(overflows, 0);
   EXPECT_GT(holes, 0);
-  EXPECT_GE(marked, 65);
-  EXPECT_LT(marked, 400) << "the marks must end";
+  EXPECT_GE(marked, 129);
+  EXPECT_LT(marked, 800) << "the marks must end";
 }
 
 TEST(FlaggedLosses, CostFewPolls) {
@@ -208,15 +208,15 @@ TEST(FlaggedLosses, CostFewPolls) {
   });
   const auto digitiser = open_started(server.uri());
   Block block;
-  constexpr int kBlocks = 660;
+  constexpr int kBlocks = 1300;
   for (int i = 0; i < kBlocks; ++i) {
     ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
   }
   const auto lines = server.lines();
   const auto polls =
       std::count(lines.begin(), lines.end(), "READ iio:device0 DEBUG direct_reg_access");
-  EXPECT_GE(polls, kBlocks / 33) << "every half queue at least";
-  EXPECT_LE(polls, kBlocks / 10);
+  EXPECT_GE(polls, kBlocks / 65) << "every half queue at least";
+  EXPECT_LE(polls, kBlocks / 20);
 }
 
 TEST(FlaggedLosses, NoOtherRegisterIsTakenForTheFlagOrWritten) {

@@ -125,14 +125,22 @@ TEST(IioTraps, SigpipeOfADroppedPeerIsTakenBack) {
   sigset_t pending;
   sigpending(&pending);
   EXPECT_EQ(sigismember(&pending, SIGPIPE), 0);
-  {
-    SimulatedDevice device;
-    const auto digitiser = open_digitiser(device.uri(), pattern_options());
-    digitiser->start();
-    device.switch_off();
-    EXPECT_EQ(read_while(*digitiser, [](const Block&) { return true; }), ReadStatus::disconnected);
-    EXPECT_FALSE(digitiser->reconnect());
-  }
+  std::signal(SIGPIPE, previous);
+}
+
+TEST(IioTraps, SigpipeDoesNotKillWhenTheDeviceIsSwitchedOff) {
+  const auto previous = std::signal(SIGPIPE, SIG_DFL);
+  AdcSettings settings = SimulatedDevice::pattern_settings();
+  settings.counter = false;  // so that the overflow register is polled: a write, then EXIT another
+  SimulatedDevice device(settings);
+  const auto digitiser = open_digitiser(device.uri(), pattern_options());
+  digitiser->start();
+  Block block;
+  ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
+  device.switch_off();
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(read_while(*digitiser, [](const Block&) { return true; }), ReadStatus::disconnected);
+  EXPECT_FALSE(digitiser->reconnect());
   std::signal(SIGPIPE, previous);
 }
 
@@ -282,7 +290,7 @@ TEST(IioTraps, KernelBuffersAndChannelsAreSetBeforeTheBufferIsMade) {
   };
   ASSERT_NE(line("OPEN"), lines.end());
   EXPECT_EQ(*line("OPEN"), "OPEN iio:device0 1024 00000003");
-  EXPECT_LT(line("SET iio:device0 BUFFERS_COUNT 64"), line("OPEN"));
+  EXPECT_LT(line("SET iio:device0 BUFFERS_COUNT 128"), line("OPEN"));
 }
 
 TEST(IioTraps, SecondBufferOfADeviceIsRefusedInWords) {

@@ -8,7 +8,6 @@
 namespace kolsky {
 namespace {
 
-constexpr Tick kTotal = 2'000'000;
 constexpr Tick kHoleAt = 30'000;
 constexpr Tick kHole = 777;
 
@@ -16,13 +15,13 @@ class ReplayRig final : public Rig {
  public:
   explicit ReplayRig(int captures) : captures_(captures) {}
 
-  std::unique_ptr<Digitiser> open(double speed) override {
-    write(false);
+  std::unique_ptr<Digitiser> open(double speed, Tick samples) override {
+    write(samples, false);
     return replay(speed);
   }
 
   std::unique_ptr<Digitiser> open_with_hole() override {
-    write(true);
+    write(kSamples, true);
     return replay(0.0);
   }
   [[nodiscard]] Tick hole_samples() const override { return kHole; }
@@ -41,8 +40,8 @@ class ReplayRig final : public Rig {
   [[nodiscard]] bool simulated() const override { return false; }
 
  private:
-  void write(bool with_hole) {
-    const Tick each = kTotal / captures_;
+  void write(Tick samples, bool with_hole) {
+    const Tick each = samples / captures_;
     for (int i = 0; i < captures_; ++i) {
       Shot shot = pattern_shot(i * each, static_cast<std::size_t>(each));
       if (with_hole && i == 0) {

@@ -23,8 +23,12 @@ class Rig {
   static constexpr double kScale_V[] = {1.0 / 4096.0, 2.0 / 4096.0};
   static constexpr double kOffset[] = {3.0, 4.0};
 
-  /// @param speed  factor on the real rate; 0: as fast as it is read
-  [[nodiscard]] virtual std::unique_ptr<Digitiser> open(double speed) = 0;
+  static constexpr Tick kSamples = 400'000;
+
+  /// @param speed    factor on the real rate; 0: as fast as it is read
+  /// @param samples  where the stream ends, if it does
+  [[nodiscard]] virtual std::unique_ptr<Digitiser> open(double speed, Tick samples) = 0;
+  [[nodiscard]] std::unique_ptr<Digitiser> open(double speed) { return open(speed, kSamples); }
 
   /// A stream of some known hole, of `hole_samples` where that is not 0.
   [[nodiscard]] virtual std::unique_ptr<Digitiser> open_with_hole() = 0;
