@@ -100,7 +100,8 @@ Station::Station(DaemonConfig config)
                  .journal = journal_,
                  .archivist = archivist_,
                  .publisher = publisher_,
-                 .store = store_},
+                 .store = store_,
+                 .real_time = !stream_.ends},
                 settings_) {}
 
 Station::~Station() {

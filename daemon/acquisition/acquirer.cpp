@@ -1,17 +1,15 @@
 #include "daemon/acquisition/acquirer.hpp"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+
+#include "daemon/thread_priority.hpp"
 
 namespace kolsky {
 
 namespace {
 
-constexpr int kPriority = 20;
 constexpr std::int64_t kFirstPause_ms = 100;
 constexpr std::int64_t kLongestPause_ms = 2000;
 
@@ -117,14 +115,12 @@ void Acquirer::run() {
 }
 
 void Acquirer::go_real_time() {
-  pthread_setname_np(pthread_self(), "kolsky-acquire");
+  constexpr const char* kName = "kolsky-acquire";
   if (stream_.ends) {
-    return;  // a replay takes what the processor gives; ahead of its own consumers it would only
-             // wait
+    name_thread(kName);  // a replay ahead of its own consumers would only wait for them
+  } else {
+    real_time_.store(run_in_real_time(kName, RealTime::reading));
   }
-  sched_param parameters{};
-  parameters.sched_priority = kPriority;
-  real_time_.store(pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0);
 }
 
 void Acquirer::take_plan() {

@@ -1,12 +1,11 @@
 #include "daemon/live/monitor.hpp"
 
-#include <pthread.h>
-
 #include <algorithm>
 
 #include "daemon/live/previewer.hpp"
 #include "daemon/live/sd_notify.hpp"
 #include "daemon/log.hpp"
+#include "daemon/thread_priority.hpp"
 
 namespace kolsky {
 
@@ -56,7 +55,7 @@ void Monitor::stop() {
 }
 
 void Monitor::run() {
-  pthread_setname_np(pthread_self(), "kolsky-monitor");
+  name_thread("kolsky-monitor");
   auto next = std::chrono::steady_clock::now();
   while (!stop_.load()) {
     turn(next);

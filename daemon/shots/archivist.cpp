@@ -1,7 +1,6 @@
 #include "daemon/shots/archivist.hpp"
 
 #include <fmt/format.h>
-#include <pthread.h>
 
 #include <chrono>
 #include <future>
@@ -9,6 +8,7 @@
 
 #include "daemon/log.hpp"
 #include "daemon/shots/summary.hpp"
+#include "daemon/thread_priority.hpp"
 #include "drivers/files/capture.hpp"
 #include "processing/base/error.hpp"
 
@@ -47,8 +47,11 @@ void Archivist::store(std::shared_ptr<const Shot> shot, CatalogueEntry entry) {
   {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return jobs_.size() < kMostWaiting; });
+    ++handed_over_;
+    jobs_.emplace_back(
+        [this, shot = std::move(shot), entry = std::move(entry)] { store_now(*shot, entry); });
   }
-  submit([this, shot = std::move(shot), entry = std::move(entry)] { store_now(*shot, entry); });
+  changed_.notify_all();
 }
 
 void Archivist::submit(Job job) {
@@ -60,7 +63,7 @@ void Archivist::submit(Job job) {
 }
 
 void Archivist::run() {
-  pthread_setname_np(pthread_self(), "kolsky-archive");
+  name_thread("kolsky-archive");
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
@@ -84,11 +87,18 @@ bool Archivist::idle() const {
   return jobs_.empty() && !busy_;
 }
 
+void Archivist::await_expected() {
+  const std::uint64_t expected = expected_.load();
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, kPatience, [&] { return handed_over_ >= expected; });
+}
+
 template <typename Ask>
 auto Archivist::ask(Ask question) -> decltype(question()) {
   // Shared with the job: the answer may come after the asker has given up.
   auto task = std::make_shared<std::packaged_task<decltype(question())()>>(std::move(question));
   auto answer = task->get_future();
+  await_expected();
   submit([task] { (*task)(); });
   if (answer.wait_for(kPatience) != std::future_status::ready) {
     throw InputError("store", "busy with other shots", "ask again");

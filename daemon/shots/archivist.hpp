@@ -42,7 +42,10 @@ class Archivist {
   /// Stores all that was handed over, then ends.
   void stop();
 
-  /// Hands over a journaled shot. Waits while `kMostWaiting` others wait.
+  /// One shot is about to be published and will be handed over: what is asked from now on is
+  /// answered after that, so that whoever has seen a result finds the shot in the list. Cheap.
+  void expect_shot() noexcept { expected_.fetch_add(1); }
+  /// Hands over the expected, journaled shot. Waits while `kMostWaiting` others wait.
   void store(std::shared_ptr<const Shot> shot, CatalogueEntry entry);
 
   /// Reads a capture back and reduces it with default options: what `kolsky reduce` does with that
@@ -66,6 +69,7 @@ class Archivist {
 
   void run();
   void submit(Job job);
+  void await_expected();
   template <typename Ask>
   auto ask(Ask question) -> decltype(question());
   void store_now(const Shot& shot, CatalogueEntry entry);
@@ -83,7 +87,9 @@ class Archivist {
   std::condition_variable changed_;
   std::deque<Job> jobs_;
   bool busy_ = false;
+  std::uint64_t handed_over_ = 0;
   bool stop_ = false;
+  std::atomic<std::uint64_t> expected_{0};
   std::atomic<std::uint64_t> stored_{0};
   std::atomic<std::uint64_t> failed_{0};
   std::atomic<std::uint64_t> progress_{0};

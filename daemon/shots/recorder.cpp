@@ -1,7 +1,6 @@
 #include "daemon/shots/recorder.hpp"
 
 #include <fmt/format.h>
-#include <pthread.h>
 
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "daemon/log.hpp"
 #include "daemon/shots/shot_context.hpp"
 #include "daemon/shots/summary.hpp"
+#include "daemon/thread_priority.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
 #include "proto/codec.hpp"
@@ -115,7 +115,11 @@ std::shared_ptr<const ShotSettings> ShotRecorder::settings() const {
 }
 
 void ShotRecorder::run() {
-  pthread_setname_np(pthread_self(), "kolsky-record");
+  if (parts_.real_time) {
+    run_in_real_time("kolsky-record", RealTime::recording);
+  } else {
+    name_thread("kolsky-record");
+  }
   AcquisitionEvent event;
   while (parts_.events.pop_wait(event)) {
     busy_.store(true);
@@ -214,6 +218,7 @@ void ShotRecorder::record(const Window& window) {
   wire::encode(reduction, shot->id, messages_->result);
   watch.lap("encode");
   put_timings(watch.laps(), messages_->result);
+  parts_.archivist.expect_shot();
   parts_.publisher.publish_result(messages_->result);
   watch.lap("publish");
   {
@@ -222,9 +227,9 @@ void ShotRecorder::record(const Window& window) {
     last_timings_ = watch.laps();
   }
   const CatalogueEntry entry = summarise(*shot, reduction, "");
+  parts_.archivist.store(shot, entry);
   log::info(fmt::format("shot {}: {}{}", shot->id, entry.verdict,
                         entry.reducible ? "" : ", not reducible: " + entry.reason));
-  parts_.archivist.store(shot, entry);
 }
 
 std::shared_ptr<Shot> ShotRecorder::cut(const Window& window) {

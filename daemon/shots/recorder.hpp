@@ -50,6 +50,7 @@ class ShotRecorder {
     Archivist& archivist;
     Publisher& publisher;
     const StoreLayout& store;
+    bool real_time = false;  ///< ask for real-time scheduling
   };
   ShotRecorder(const Parts& parts, std::shared_ptr<const ShotSettings> settings);
   ~ShotRecorder();

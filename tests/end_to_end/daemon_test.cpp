@@ -20,10 +20,10 @@ namespace kolsky {
 namespace {
 
 using scene::eventually;
+using scene::Installation;
 using scene::Lab;
 using scene::LabOptions;
 using scene::Listener;
-using scene::Installation;
 using std::chrono::milliseconds;
 
 /// A daemon on a simulated digitiser, armed.
@@ -166,8 +166,7 @@ TEST(Daemon, ReplaysAFolderShotByShotAsFastAsItCan) {
   const v1::ShotList list = listener.control().list_shots();
   ASSERT_EQ(list.shots_size(), 3);
   for (int i = 0; i < 3; ++i) {
-    const Shot replayed =
-        wire::decode(listener.control().get_shot(list.shots(2 - i).id()).shot());
+    const Shot replayed = wire::decode(listener.control().get_shot(list.shots(2 - i).id()).shot());
     EXPECT_EQ(replayed.channels, originals[static_cast<std::size_t>(i)].channels) << i;
   }
 }

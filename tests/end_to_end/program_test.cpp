@@ -105,8 +105,8 @@ TEST(Program, RefusesBadSettings) {
   {
     Installation unknown(lab.uri(), lab.bench());
     unknown.set("trigger", "levl_sigma = 8");
-    EXPECT_TRUE(
-        refused(run({"--config", unknown.write()}), {"kolskyd.toml:", "levl_sigma", "level_sigma"}));
+    EXPECT_TRUE(refused(run({"--config", unknown.write()}),
+                        {"kolskyd.toml:", "levl_sigma", "level_sigma"}));
   }
   {
     const Installation bench(lab.uri(), lab.bench());
@@ -154,10 +154,8 @@ TEST(Program, RefusesAPortInUse) {
   Process daemon(kolskyd({"--config", first.write()}), first.folder() / "output");
   ASSERT_TRUE(eventually([&] { return is_serving(daemon); })) << daemon.output();
   const EndpointConfig taken = endpoints_in(daemon.output());
-  for (const auto& [key, endpoint] :
-       std::vector<std::pair<std::string, std::string>>{{"results", taken.results},
-                                                        {"preview", taken.preview},
-                                                        {"control", taken.control}}) {
+  for (const auto& [key, endpoint] : std::vector<std::pair<std::string, std::string>>{
+           {"results", taken.results}, {"preview", taken.preview}, {"control", taken.control}}) {
     const Lab other;
     const Installation second(other.uri(), other.bench());
     std::string text;
@@ -269,8 +267,7 @@ TEST(Program, SurvivesADigitiserThatGoes) {
   Listener listener(endpoints_in(daemon.output()));
   listener.arm();
   lab.stop();
-  EXPECT_TRUE(
-      eventually([&] { return listener.control().status().state() == v1::DISCONNECTED; }));
+  EXPECT_TRUE(eventually([&] { return listener.control().status().state() == v1::DISCONNECTED; }));
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(kPatience), 0) << daemon.output();
 }

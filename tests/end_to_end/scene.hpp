@@ -44,8 +44,8 @@ struct LabOptions {
   std::function<void(FrontEndSettings&)> front_end{};
 };
 
-/// The simulated digitiser behind its IIOD server, and the bench file that goes with it. The model of a
-/// scenario is run once per process.
+/// The simulated digitiser behind its IIOD server, and the bench file that goes with it. The model
+/// of a scenario is run once per process.
 class Lab {
  public:
   explicit Lab(const LabOptions& options = {});
