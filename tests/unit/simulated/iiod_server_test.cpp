@@ -263,7 +263,11 @@ TEST_P(Pacing, KeepsTheRate) {
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(control.attribute("overrun_lost_samples"), std::to_string(missing));
-  EXPECT_NEAR((last - first) / took.count() / 1e6 / speed, 1.0, 0.1);
+  const double rate = (last - first) / took.count() / (1e6 * speed);
+  EXPECT_LT(rate, 1.05) << "blocks came before their last samples";
+#ifndef KOLSKY_SANITIZED
+  EXPECT_GT(rate, 0.8);
+#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, Pacing,
