@@ -77,6 +77,8 @@ Planned plan_shot(std::mt19937_64& random, double kill_share) {
   } else if (kind < 94) {
     shot.fault = "overflow";
   } else {
+    // The whole block that holds this sample is gone; the pulse must have been seen before it.
+    shot.at_sample = within(1900, 3000);
     shot.fault = "drop " + std::to_string(within(50, 300)) + "ms";
     shot.reducible = false;
   }
@@ -170,6 +172,7 @@ class Soak {
 
   void fire() {
     before_ = losses();
+    reconnects_before_ = status().reconnects();
     overruns_before_ = lab_.attribute("overrun_lost_samples");
     daemon_->listener().control().fire();
     if (lab_.attribute("shots_fired") != static_cast<std::int64_t>(number_)) {
@@ -186,6 +189,9 @@ class Soak {
     known_.insert(result->shot_id());
     ++stored_;
     check_stored(plan, *result);
+    if (plan.fault.starts_with("drop")) {
+      await_reconnection();
+    }
     check_losses();
   }
 
@@ -215,6 +221,13 @@ class Soak {
     }
   }
 
+  void await_reconnection() {
+    const auto before = reconnects_before_;
+    if (!eventually([&] { return status().reconnects() > before; })) {
+      fail("the digitiser was not reached again");
+    }
+  }
+
   /// The last of what was withheld may still be on its way.
   void check_losses() {
     Losses now;
@@ -239,7 +252,7 @@ class Soak {
     daemon_->process().signal(SIGKILL);
     daemon_->process().wait(milliseconds(5000));
     ++kills_;
-    const bool announced = daemon_->listener().next("shot", milliseconds(50)).has_value();
+    const bool announced = was_announced();
     daemon_.reset();
     be_ready();
     std::set<std::string> fresh;
@@ -259,6 +272,15 @@ class Soak {
     } else {
       ++cut_;
     }
+  }
+
+  /// Whether the killed daemon has published a shot that was not known before.
+  bool was_announced() {
+    bool announced = false;
+    while (const auto shot = daemon_->listener().next_message<v1::Shot>("shot", milliseconds(50))) {
+      announced = announced || !known_.contains(shot->id());
+    }
+    return announced;
   }
 
   void finish() {
@@ -298,6 +320,7 @@ class Soak {
   std::set<std::string> known_;
   Losses before_;
   std::int64_t overruns_before_ = 0;
+  std::uint64_t reconnects_before_ = 0;
   std::size_t number_ = 0;
   std::size_t stored_ = 0;
   std::size_t stored_in_spite_ = 0;
