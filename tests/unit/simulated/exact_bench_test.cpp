@@ -215,6 +215,9 @@ struct Window {
 class Grid : public ::testing::TestWithParam<Window> {};
 
 TEST_P(Grid, ErrorIsBelowATenthOfAMicrostrainAndFallsWithTheSquare) {
+#ifdef KOLSKY_SANITIZED
+  GTEST_SKIP() << "numbers, and slow ones: no sanitizer finds more in them than in the other tests";
+#endif
   const Scenario scenario = find_scenario(GetParam().scenario);
   const double step_s = 1.0 / kStepsPerSecond;
   std::vector<BenchHistory> shots;

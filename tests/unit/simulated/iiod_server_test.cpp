@@ -195,7 +195,7 @@ TEST(IiodServer, WideConvertersTravelIn32Bits) {
   EXPECT_NE(served.adc.context_xml().find("le:s24/32&gt;&gt;0"), std::string::npos);
   RawClient client(served);
   ASSERT_EQ(client.ask("OPEN iio:device0 16 00000003"), "0");
-  const BufferReply reply = read_buffer(client, 16 * 8);
+  const BufferReply reply = read_buffer(client, std::size_t{16} * 8);
   std::int32_t codes[2];
   std::memcpy(codes, reply.bytes.data() + 8, sizeof codes);
   EXPECT_EQ(codes[0], RampSource::ramp(0, 1));
@@ -263,7 +263,11 @@ TEST_P(Pacing, KeepsTheRate) {
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(control.attribute("overrun_lost_samples"), std::to_string(missing));
-  EXPECT_NEAR((last - first) / took.count() / 1e6 / speed, 1.0, 0.1);
+  const double rate = (last - first) / took.count() / (1e6 * speed);
+  EXPECT_LT(rate, 1.05) << "blocks came before their last samples";
+#ifndef KOLSKY_SANITIZED
+  EXPECT_GT(rate, 0.8);
+#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, Pacing,
