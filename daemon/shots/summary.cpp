@@ -1,0 +1,40 @@
+#include "daemon/shots/summary.hpp"
+
+#include <algorithm>
+
+namespace kolsky {
+
+namespace {
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::warn:
+      return "warn";
+    case Verdict::fail:
+      break;
+  }
+  return "fail";
+}
+
+}  // namespace
+
+CatalogueEntry summarise(const Shot& shot, const Reduction& reduction, const std::string& capture) {
+  CatalogueEntry entry;
+  entry.id = shot.id;
+  entry.utc_ns = shot.utc_ns;
+  entry.capture = capture;
+  entry.verdict = name_of(reduction.quality.verdict());
+  entry.reducible = reduction.quality.reducible;
+  entry.reason = reduction.quality.reason;
+  entry.peak_stress_Pa = largest(reduction.stress_Pa);
+  entry.peak_strain = largest(reduction.strain);
+  return entry;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,271 @@
+#include "processing/trigger/run_statistics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+// One binary for any x86-64: the loader picks the version for the machine it starts on. Its
+// resolver runs before a sanitizer has set itself up, so sanitized builds have the plain version
+// only.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(KOLSKY_SANITIZED)
+#define KOLSKY_WIDE __attribute__((target_clones("default", "avx2")))
+#else
+#define KOLSKY_WIDE
+#endif
+
+namespace kolsky {
+namespace {
+
+constexpr std::int32_t kDeviationLimit = 1 << 27;
+
+struct NarrowSums {
+  std::int64_t sum = 0;
+  std::int64_t sum_of_squares = 0;
+  std::int16_t minimum = std::numeric_limits<std::int16_t>::max();
+  std::int16_t maximum = std::numeric_limits<std::int16_t>::min();
+};
+
+// Squares are summed by the two bytes of a code, x = 256 h + l, so that every product sum of a tile
+// fits 32 bits: that is what the compiler turns into multiply-and-add of 16-bit lanes.
+constexpr std::size_t kTile = 4096;
+
+struct ByteSums {
+  std::int32_t sum = 0;
+  std::int32_t high_high = 0;
+  std::int32_t high_low = 0;
+  std::int32_t low_low = 0;
+
+  [[gnu::always_inline]] void take(std::int16_t code) noexcept {
+    const auto high = static_cast<std::int16_t>(code >> 8);
+    const auto low = static_cast<std::int16_t>(code & 0xff);
+    sum += code;
+    high_high += static_cast<std::int32_t>(high) * high;
+    high_low += static_cast<std::int32_t>(high) * low;
+    low_low += static_cast<std::int32_t>(low) * low;
+  }
+  [[gnu::always_inline]] void add_to(NarrowSums& sums) const noexcept {
+    sums.sum += sum;
+    sums.sum_of_squares +=
+        std::int64_t{65536} * high_high + std::int64_t{512} * high_low + std::int64_t{low_low};
+  }
+};
+
+KOLSKY_WIDE NarrowSums narrow_sums(const std::int16_t* codes, std::size_t size) noexcept {
+  NarrowSums total;
+  for (std::size_t start = 0; start < size; start += kTile) {
+    const std::size_t end = std::min(size, start + kTile);
+    ByteSums tile;
+    std::int16_t minimum = total.minimum;
+    std::int16_t maximum = total.maximum;
+    for (std::size_t i = start; i < end; ++i) {
+      const std::int16_t code = codes[i];
+      tile.take(code);
+      minimum = std::min(minimum, code);
+      maximum = std::max(maximum, code);
+    }
+    tile.add_to(total);
+    total.minimum = minimum;
+    total.maximum = maximum;
+  }
+  return total;
+}
+
+KOLSKY_WIDE NarrowSums narrow_copy(const std::int16_t* __restrict from, std::int16_t* __restrict to,
+                                   std::size_t size) noexcept {
+  NarrowSums total;
+  for (std::size_t start = 0; start < size; start += kTile) {
+    const std::size_t end = std::min(size, start + kTile);
+    ByteSums tile;
+    std::int16_t minimum = total.minimum;
+    std::int16_t maximum = total.maximum;
+    for (std::size_t i = start; i < end; ++i) {
+      const std::int16_t code = from[i];
+      to[i] = code;
+      tile.take(code);
+      minimum = std::min(minimum, code);
+      maximum = std::max(maximum, code);
+    }
+    tile.add_to(total);
+    total.minimum = minimum;
+    total.maximum = maximum;
+  }
+  return total;
+}
+
+struct WideSums {
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  std::int32_t minimum = std::numeric_limits<std::int32_t>::max();
+  std::int32_t maximum = std::numeric_limits<std::int32_t>::min();
+};
+
+// Floating sums keep their order unless told otherwise, so the lanes are spelled out.
+constexpr std::size_t kLanes = 8;
+
+struct WideLanes {
+  std::array<double, kLanes> sum{};
+  std::array<double, kLanes> sum_of_squares{};
+  WideSums total;
+
+  [[gnu::always_inline]] void take(std::size_t lane, std::int32_t code) noexcept {
+    const double value = code;
+    sum[lane] += value;
+    sum_of_squares[lane] += value * value;
+    total.minimum = std::min(total.minimum, code);
+    total.maximum = std::max(total.maximum, code);
+  }
+  [[gnu::always_inline]] WideSums joined() noexcept {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      total.sum += sum[lane];
+      total.sum_of_squares += sum_of_squares[lane];
+    }
+    return total;
+  }
+};
+
+KOLSKY_WIDE WideSums wide_sums(const std::int32_t* codes, std::size_t size) noexcept {
+  WideLanes lanes;
+  std::size_t i = 0;
+  for (; i + kLanes <= size; i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes.take(lane, codes[i + lane]);
+  }
+  for (; i < size; ++i) lanes.take(0, codes[i]);
+  return lanes.joined();
+}
+
+KOLSKY_WIDE WideSums wide_copy(const std::int32_t* __restrict from, std::int32_t* __restrict to,
+                               std::size_t size) noexcept {
+  WideLanes lanes;
+  std::size_t i = 0;
+  for (; i + kLanes <= size; i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      to[i + lane] = from[i + lane];
+      lanes.take(lane, from[i + lane]);
+    }
+  }
+  for (; i < size; ++i) {
+    to[i] = from[i];
+    lanes.take(0, from[i]);
+  }
+  return lanes.joined();
+}
+
+KOLSKY_WIDE DeviationSums wide_deviations(const std::int32_t* codes, std::size_t size,
+                                          std::int32_t pivot) noexcept {
+  DeviationSums sums;
+  std::int32_t minimum = std::numeric_limits<std::int32_t>::max();
+  std::int32_t maximum = std::numeric_limits<std::int32_t>::min();
+  const std::int64_t low = std::int64_t{pivot} - kDeviationLimit;
+  const std::int64_t high = std::int64_t{pivot} + kDeviationLimit;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::int32_t code = codes[i];
+    const auto deviation =
+        static_cast<std::int32_t>(std::clamp(std::int64_t{code}, low, high) - pivot);
+    sums.sum += deviation;
+    sums.sum_of_squares += std::int64_t{deviation} * deviation;
+    minimum = std::min(minimum, code);
+    maximum = std::max(maximum, code);
+  }
+  sums.count = static_cast<std::int64_t>(size);
+  sums.minimum = minimum;
+  sums.maximum = maximum;
+  return sums;
+}
+
+// At most 512 squares of 2047 fit 32 bits.
+KOLSKY_WIDE DeviationSums narrow_near(const std::int16_t* codes, std::size_t size,
+                                      std::int32_t pivot) noexcept {
+  const auto middle = static_cast<std::uint16_t>(pivot);
+  std::int32_t sum = 0;
+  std::int32_t sum_of_squares = 0;
+  std::int16_t minimum = kNear;
+  std::int16_t maximum = -kNear;
+  for (std::size_t i = 0; i < size; ++i) {
+    // Modulo 2^16: exact, since the difference is small even where the pivot is off the codes'
+    // range.
+    const auto code = static_cast<std::uint16_t>(codes[i]);
+    const auto deviation = static_cast<std::int16_t>(static_cast<std::uint16_t>(code - middle));
+    sum += deviation;
+    sum_of_squares += static_cast<std::int32_t>(deviation) * deviation;
+    minimum = std::min(minimum, deviation);
+    maximum = std::max(maximum, deviation);
+  }
+  return {static_cast<std::int64_t>(size), sum, sum_of_squares, pivot + minimum, pivot + maximum};
+}
+
+KOLSKY_WIDE DeviationSums wide_near(const std::int32_t* codes, std::size_t size,
+                                    std::int32_t pivot) noexcept {
+  std::int32_t sum = 0;
+  std::int32_t sum_of_squares = 0;
+  std::int32_t minimum = kNear;
+  std::int32_t maximum = -kNear;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::int32_t deviation = codes[i] - pivot;
+    sum += deviation;
+    sum_of_squares += deviation * deviation;
+    minimum = std::min(minimum, deviation);
+    maximum = std::max(maximum, deviation);
+  }
+  return {static_cast<std::int64_t>(size), sum, sum_of_squares, pivot + minimum, pivot + maximum};
+}
+
+template <class Sums>
+RunStatistics statistics_of(std::size_t size, const Sums& sums) noexcept {
+  if (size == 0) return {};
+  return {static_cast<std::int64_t>(size), static_cast<double>(sums.sum),
+          static_cast<double>(sums.sum_of_squares), sums.minimum, sums.maximum};
+}
+
+}  // namespace
+
+RunStatistics RunStatistics::joined(const RunStatistics& other) const noexcept {
+  if (count == 0) return other;
+  if (other.count == 0) return *this;
+  return {count + other.count, sum + other.sum, sum_of_squares + other.sum_of_squares,
+          std::min(minimum, other.minimum), std::max(maximum, other.maximum)};
+}
+
+RunStatistics run_statistics(std::span<const std::int16_t> codes) noexcept {
+  return statistics_of(codes.size(), narrow_sums(codes.data(), codes.size()));
+}
+
+RunStatistics run_statistics(std::span<const std::int32_t> codes) noexcept {
+  return statistics_of(codes.size(), wide_sums(codes.data(), codes.size()));
+}
+
+RunStatistics copy_with_statistics(std::span<const std::int16_t> from,
+                                   std::span<std::int16_t> to) noexcept {
+  return statistics_of(from.size(), narrow_copy(from.data(), to.data(), from.size()));
+}
+
+RunStatistics copy_with_statistics(std::span<const std::int32_t> from,
+                                   std::span<std::int32_t> to) noexcept {
+  return statistics_of(from.size(), wide_copy(from.data(), to.data(), from.size()));
+}
+
+DeviationSums deviation_sums(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept {
+  if (codes.empty()) return {};
+  const NarrowSums sums = narrow_sums(codes.data(), codes.size());
+  const auto count = static_cast<std::int64_t>(codes.size());
+  const std::int64_t shift = pivot;
+  return {count, sums.sum - count * shift,
+          sums.sum_of_squares - 2 * shift * sums.sum + count * shift * shift, sums.minimum,
+          sums.maximum};
+}
+
+DeviationSums deviation_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept {
+  if (codes.empty()) return {};
+  return wide_deviations(codes.data(), codes.size(), pivot);
+}
+
+DeviationSums near_deviation_sums(std::span<const std::int16_t> codes,
+                                  std::int32_t pivot) noexcept {
+  return narrow_near(codes.data(), codes.size(), pivot);
+}
+
+DeviationSums near_deviation_sums(std::span<const std::int32_t> codes,
+                                  std::int32_t pivot) noexcept {
+  return wide_near(codes.data(), codes.size(), pivot);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace kolsky {
+
+/// Sum, sum of squares and extremes of a run of codes: what tells a quiet run from one worth a
+/// look. Of 16-bit codes the sums are exact (runs of up to 2^23 samples); of 32-bit codes the sum
+/// is exact below 2^53 and the squares are to double precision. All zero for an empty run.
+struct RunStatistics {
+  std::int64_t count = 0;
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  std::int32_t minimum = 0;
+  std::int32_t maximum = 0;
+
+  /// Of this run and another together.
+  [[nodiscard]] RunStatistics joined(const RunStatistics& other) const noexcept;
+  friend bool operator==(const RunStatistics&, const RunStatistics&) = default;
+};
+
+[[nodiscard]] RunStatistics run_statistics(std::span<const std::int16_t> codes) noexcept;
+[[nodiscard]] RunStatistics run_statistics(std::span<const std::int32_t> codes) noexcept;
+
+/// The same while copying, at little more than the cost of the copy. The runs do not overlap.
+/// @pre equal sizes
+RunStatistics copy_with_statistics(std::span<const std::int16_t> from,
+                                   std::span<std::int16_t> to) noexcept;
+RunStatistics copy_with_statistics(std::span<const std::int32_t> from,
+                                   std::span<std::int32_t> to) noexcept;
+
+/// Exact sums of a short run's deviations from a whole number near its mean, and its extremes.
+/// Being integers they add up to the same whatever the pieces a run came in. Deviations beyond 2^27
+/// count as 2^27; at most 512 samples.
+struct DeviationSums {
+  std::int64_t count = 0;
+  std::int64_t sum = 0;
+  std::int64_t sum_of_squares = 0;
+  std::int32_t minimum = 0;
+  std::int32_t maximum = 0;
+};
+
+/// Of one code.
+[[nodiscard]] inline DeviationSums deviation_sums(std::int32_t code, std::int32_t pivot) noexcept {
+  const std::int64_t deviation = std::int64_t{code} - pivot;
+  const std::int64_t limit = std::int64_t{1} << 27;
+  const std::int64_t kept = deviation < -limit ? -limit : (deviation > limit ? limit : deviation);
+  return {1, kept, kept * kept, code, code};
+}
+
+[[nodiscard]] DeviationSums deviation_sums(std::span<const std::int16_t> codes,
+                                           std::int32_t pivot) noexcept;
+[[nodiscard]] DeviationSums deviation_sums(std::span<const std::int32_t> codes,
+                                           std::int32_t pivot) noexcept;
+
+/// The same, faster.
+/// @pre no code is further than kNear from the pivot
+inline constexpr std::int32_t kNear = 2047;
+[[nodiscard]] DeviationSums near_deviation_sums(std::span<const std::int16_t> codes,
+                                                std::int32_t pivot) noexcept;
+[[nodiscard]] DeviationSums near_deviation_sums(std::span<const std::int32_t> codes,
+                                                std::int32_t pivot) noexcept;
+
+}  // namespace kolsky

@@ -1,0 +1,106 @@
+// The sample ring with the trigger behind it against a plain copy of the same bytes: quiet 16-bit
+// noise, buffers of the size of the ring, so that neither works from the first cache alone.
+
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "daemon/acquisition/sample_ring.hpp"
+#include "processing/trigger/incident_trigger.hpp"
+
+namespace {
+
+using namespace kolsky;
+
+constexpr std::size_t kCapacity = std::size_t{1} << 22;  ///< samples per channel
+constexpr double kNoise_codes = 20.0;
+
+std::vector<std::int16_t> quiet_noise(std::size_t samples) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(100.0, kNoise_codes);
+  std::vector<std::int16_t> codes(samples);
+  for (std::int16_t& code : codes) code = static_cast<std::int16_t>(std::lround(noise(random)));
+  return codes;
+}
+
+const std::vector<std::int16_t>& noise() {
+  static const std::vector<std::int16_t> kNoise = quiet_noise(kCapacity);
+  return kNoise;
+}
+
+void count_samples(benchmark::State& state, std::size_t per_round) {
+  const auto samples = static_cast<double>(state.iterations()) * static_cast<double>(per_round);
+  state.counters["samples"] = benchmark::Counter(samples, benchmark::Counter::kIsRate);
+}
+
+// range(0): channels, range(1): samples per block.
+void plain_copy(benchmark::State& state) {
+  const auto channels = static_cast<std::size_t>(state.range(0));
+  const auto block = static_cast<std::size_t>(state.range(1));
+  std::vector<std::int16_t> ring(channels * kCapacity);
+  std::size_t at = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      std::memcpy(ring.data() + channel * kCapacity + at, noise().data() + at,
+                  block * sizeof(std::int16_t));
+    }
+    benchmark::ClobberMemory();
+    at = (at + block) % kCapacity;
+  }
+  count_samples(state, channels * block);
+}
+
+void write_ring(benchmark::State& state, std::size_t watched) {
+  const auto channels = static_cast<std::size_t>(state.range(0));
+  const auto samples = static_cast<std::size_t>(state.range(1));
+  SampleRing ring(SampleFormat::int16, channels, kCapacity);
+  std::vector<IncidentTrigger> triggers(watched, IncidentTrigger(TriggerOptions::for_rate(1e6)));
+  std::vector<RunStatistics> statistics(channels);
+  Block block;
+  block.samples = samples;
+  block.channels.resize(channels);
+  std::size_t at = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    const std::span<const std::int16_t> codes(noise().data() + at, samples);
+    for (auto& channel : block.channels) channel = std::as_bytes(codes);
+    ring.write(block, statistics);
+    for (std::size_t i = 0; i < watched; ++i) {
+      if (triggers[i].feed(block.first_tick, codes, statistics[i])) state.SkipWithError("fired");
+    }
+    block.first_tick += static_cast<Tick>(samples);
+    at = (at + samples) % kCapacity;
+  }
+  count_samples(state, channels * samples);
+}
+
+void ring_alone(benchmark::State& state) {
+  write_ring(state, 0);
+}
+void ring_and_trigger(benchmark::State& state) {
+  write_ring(state, 1);
+}
+/// As the daemon does, which follows the baseline of every channel.
+void ring_and_trigger_on_all(benchmark::State& state) {
+  write_ring(state, static_cast<std::size_t>(state.range(0)));
+}
+
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"channels", "block"});
+  for (const std::int64_t channels : {2, 4}) {
+    for (const std::int64_t block : {256, 4096, 65536}) bench->Args({channels, block});
+  }
+}
+
+BENCHMARK(plain_copy)->Apply(sizes);
+BENCHMARK(ring_alone)->Apply(sizes);
+BENCHMARK(ring_and_trigger)->Apply(sizes);
+BENCHMARK(ring_and_trigger_on_all)->Apply(sizes);
+
+}  // namespace
+
+BENCHMARK_MAIN();
