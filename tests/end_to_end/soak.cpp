@@ -148,6 +148,17 @@ class Soak {
     std::printf("shot %zu (%s at %d%s): %s\n", number_,
                 shot.fault.empty() ? "no fault" : shot.fault.c_str(), shot.at_sample,
                 shot.killed ? ", killed" : "", what.c_str());
+    if (daemon_) {
+      print_log_end();
+    }
+  }
+
+  /// What the daemon has said last.
+  void print_log_end() {
+    constexpr std::size_t kMost = 1500;
+    const std::string log = daemon_->process().output();
+    const std::size_t from = log.size() > kMost ? log.find('\n', log.size() - kMost) + 1 : 0;
+    std::printf("%s\n", log.c_str() + from);
   }
 
   void be_ready() {
@@ -191,6 +202,8 @@ class Soak {
     check_stored(plan, *result);
     if (plan.fault.starts_with("drop")) {
       await_reconnection();
+    } else if (status().reconnects() != reconnects_before_) {
+      fail("made the digitiser drop out");
     }
     check_losses();
   }
