@@ -49,6 +49,8 @@ struct Planned {
   bool reducible = true;
   bool killed = false;
   milliseconds kill_after{0};
+  bool killed_at_start = false;  ///< and once more while it recovers
+  milliseconds start_lasts{0};
 };
 
 Planned plan_shot(std::mt19937_64& random, double kill_share) {
@@ -86,6 +88,8 @@ Planned plan_shot(std::mt19937_64& random, double kill_share) {
   }
   shot.killed = std::uniform_real_distribution<double>(0.0, 1.0)(random) < kill_share;
   shot.kill_after = milliseconds(within(0, 25));
+  shot.killed_at_start = within(0, 3) == 0;
+  shot.start_lasts = milliseconds(within(0, 150));
   return shot;
 }
 
@@ -288,6 +292,9 @@ class Soak {
     ++kills_;
     const bool announced = was_announced();
     daemon_.reset();
+    if (plan.killed_at_start) {
+      kill_at_start(plan.start_lasts);
+    }
     be_ready();
     std::set<std::string> fresh;
     const v1::ShotList list = daemon_->listener().control().list_shots();
@@ -306,6 +313,15 @@ class Soak {
     } else {
       ++cut_;
     }
+  }
+
+  void kill_at_start(milliseconds after) {
+    scene::Process recovering(scene::kolskyd({"--config", installation_.write().string()}),
+                              installation_.folder() / "output-of-start");
+    std::this_thread::sleep_for(after);
+    recovering.signal(SIGKILL);
+    recovering.wait(milliseconds(5000));
+    ++kills_;
   }
 
   /// Whether the killed daemon has published a shot that was not known before.
