@@ -162,28 +162,49 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
-TEST_F(RecorderTest, PublishesNothingThatIsNotDurableAndStillTriesToFileIt) {
-  constexpr int kShots = 90;
-  fill(4096);
-  window(0, 4096);
-  while (archivist_.stored() < 1) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  {
-    // A record takes 17 kB of the journal, so that it is past this size after 70 shots; a capture is
-    // written in steps of a megabyte.
+class FullJournalTest : public RecorderTest {
+ protected:
+  static constexpr std::uint64_t kShots = 90;
+
+  /// Records more shots than the journal takes: a record has 17 kB, so that it is past this size
+  /// after 70 shots. A capture is written in steps of a megabyte.
+  void record_beyond_the_limit() {
     const FileSizeLimit limit(1'200'000);
-    for (int i = 1; i < kShots; ++i) {
+    for (std::uint64_t i = 0; i < kShots; ++i) {
       window(0, 4096);
     }
     finish();
   }
+};
+
+TEST_F(FullJournalTest, GoesOnInAnotherJournal) {
+  fill(4096);
+  record_beyond_the_limit();
+  EXPECT_EQ(recorder_->counters().shots_journaled, kShots);
+  EXPECT_EQ(recorder_->counters().journal_failures, 0U);
+  std::size_t journaled = 0;
+  std::size_t journals = 0;
+  for (const auto& file : std::filesystem::directory_iterator(store_.journals())) {
+    const JournalContents contents = read_journal(file.path());
+    journaled += contents.shots.size();
+    EXPECT_TRUE(contents.problems.empty());
+    ++journals;
+  }
+  EXPECT_EQ(journaled, kShots);
+  EXPECT_EQ(journals, 2U);
+}
+
+TEST_F(FullJournalTest, PublishesNothingThatIsNotDurableAndStillTriesToFileIt) {
+  fill(4096);
+  // No other journal can be made either.
+  std::filesystem::rename(store_.journals(), store_.root / "elsewhere");
+  record_beyond_the_limit();
   const ShotRecorder::Counters counters = recorder_->counters();
   EXPECT_GT(counters.shots_journaled, 1U);
   EXPECT_GT(counters.journal_failures, 1U);
-  EXPECT_EQ(counters.shots_journaled + counters.journal_failures, std::uint64_t{kShots});
-  EXPECT_EQ(archivist_.stored(), std::uint64_t{kShots});
-  EXPECT_EQ(captures_in(store_.shots()).size(), std::size_t{kShots});
+  EXPECT_EQ(counters.shots_journaled + counters.journal_failures, kShots);
+  EXPECT_EQ(archivist_.stored(), kShots);
+  EXPECT_EQ(captures_in(store_.shots()).size(), kShots);
   EXPECT_EQ(snapshot().last_fault().kind(), "store");
   EXPECT_EQ(snapshot().last_sequence().at("shot"), counters.shots_journaled);
   EXPECT_EQ(snapshot().last_sequence().at("result"), counters.shots_journaled);
