@@ -115,7 +115,7 @@ StoredShot Archivist::get(const std::string& id) {
     const std::filesystem::path capture = store_.shots() / entry->capture;
     StoredShot stored;
     stored.shot = read_capture(capture);
-    stored.reduction = reducer_.reduce(stored.shot);
+    stored.reduction = reduce_or_say_why(reducer_, stored.shot);
     stored.capture = capture.string();
     return stored;
   });
@@ -136,14 +136,13 @@ void Archivist::store_now(const Shot& shot, CatalogueEntry entry) {
   try {
     const std::filesystem::path capture = store_.capture_of(shot.id);
     write_capture(shot, capture);
-    journal_.append_stored(shot.id, capture);
     stored_.fetch_add(1);
     entry.capture = capture.filename().string();
     catalogue().put(entry);
+    journal_.append_stored(shot.id, capture);
   } catch (const std::exception& error) {
     failed_.fetch_add(1);
-    fault_(
-        fmt::format("shot {} is in the journal but could not be filed: {}", shot.id, error.what()));
+    fault_(fmt::format("shot {}: {}", shot.id, error.what()));
   }
 }
 
@@ -171,7 +170,8 @@ void Archivist::complete_catalogue() {
 void Archivist::enter(const std::filesystem::path& capture) {
   try {
     const Shot shot = read_capture(capture);
-    catalogue().put(summarise(shot, reducer_.reduce(shot), capture.filename().string()));
+    catalogue().put(
+        summarise(shot, reduce_or_say_why(reducer_, shot), capture.filename().string()));
   } catch (const InputError& error) {
     fault_(error.what());
   }

@@ -84,6 +84,9 @@ void ShotRecorder::change(std::shared_ptr<const ShotSettings> settings) {
 }
 
 void ShotRecorder::rehearse(const ShotSettings& settings) {
+  if (settings.blank.bench.kind != BenchKind::shpb) {
+    return;  // nothing is reduced live
+  }
   const Shot shot = rehearsal_shot(settings.blank, settings.pre_samples, settings.post_samples);
   v1::Shot shot_message;
   v1::Result result_message;
@@ -136,6 +139,7 @@ void ShotRecorder::handle(const AcquisitionEvent& event) {
       break;
     case AcquisitionEvent::Kind::gap:
       gaps_.add(event.gap);
+      gaps_.forget_before(event.tick - static_cast<Tick>(parts_.ring.capacity_samples()));
       report_loss(event);
       break;
     case AcquisitionEvent::Kind::triggered:
@@ -205,15 +209,12 @@ void ShotRecorder::record(const Window& window) {
   }
   watch.lap("copy");
   if (!journal(*shot)) {
+    file_unjournaled(shot);
     return;
   }
   watch.lap("journal");
   announce(*shot, watch);
-  Reduction reduction;
-  {
-    const std::lock_guard lock(reducer_mutex_);
-    reduction = reducer_.reduce(*shot);
-  }
+  const Reduction reduction = reduce(*shot);
   watch.lap("reduce");
   wire::encode(reduction, shot->id, messages_->result);
   watch.lap("encode");
@@ -252,6 +253,18 @@ std::shared_ptr<Shot> ShotRecorder::cut(const Window& window) {
   return shot;
 }
 
+Reduction ShotRecorder::reduce(const Shot& shot) {
+  const std::lock_guard lock(reducer_mutex_);
+  return reduce_or_say_why(reducer_, shot);
+}
+
+/// Its capture may still find room where the journal did not. It is in the list then, but not
+/// published: that is for what is durable.
+void ShotRecorder::file_unjournaled(const std::shared_ptr<Shot>& shot) {
+  parts_.archivist.expect_shot();
+  parts_.archivist.store(shot, summarise(*shot, reduce(*shot), ""));
+}
+
 bool ShotRecorder::journal(const Shot& shot) {
   try {
     parts_.journal.append_shot(shot);
@@ -260,7 +273,8 @@ bool ShotRecorder::journal(const Shot& shot) {
   } catch (const std::exception& error) {
     journal_failures_.fetch_add(1);
     fault("store",
-          fmt::format("shot {} could not be journaled and is lost: {}", shot.id, error.what()),
+          fmt::format("shot {} could not be journaled; trying to file it directly: {}", shot.id,
+                      error.what()),
           shot.trigger->tick, shot.samples());
     return false;
   }

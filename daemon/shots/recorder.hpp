@@ -89,6 +89,8 @@ class ShotRecorder {
   void record(const Window& window);
   [[nodiscard]] std::shared_ptr<Shot> cut(const Window& window);
   [[nodiscard]] bool journal(const Shot& shot);
+  [[nodiscard]] Reduction reduce(const Shot& shot);
+  void file_unjournaled(const std::shared_ptr<Shot>& shot);
   void announce(const Shot& shot, Stopwatch& watch);
   void report_loss(const AcquisitionEvent& event);
   void fault(const char* kind, const std::string& text, Tick tick, std::uint64_t samples);

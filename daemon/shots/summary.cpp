@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -23,6 +25,16 @@ const char* name_of(Verdict verdict) {
 }
 
 }  // namespace
+
+Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot) {
+  try {
+    return reducer.reduce(shot);
+  } catch (const InputError& error) {
+    Reduction reduction;
+    reduction.quality.reason = error.what();
+    return reduction;
+  }
+}
 
 CatalogueEntry summarise(const Shot& shot, const Reduction& reduction, const std::string& capture) {
   CatalogueEntry entry;

@@ -345,6 +345,19 @@ TEST(Daemon, LeavesAStoreInUseAlone) {
   EXPECT_THROW(Daemon second(run.setup.read()), InputError);
 }
 
+TEST(Daemon, KeepsTheShotsOfABarThatIsOnlyCharacterised) {
+  Running run({.scenario = "bar"});
+  const v1::Result result = run.shoot();
+  EXPECT_FALSE(result.quality().reducible());
+  EXPECT_NE(result.quality().reason().find("specimen"), std::string::npos)
+      << result.quality().reason();
+  const Shot shot = run.stored(result.shot_id());
+  EXPECT_EQ(shot.channels.size(), 4U);
+  EXPECT_EQ(shot.bench.kind, BenchKind::bar);
+  EXPECT_EQ(run.listener->control().get_shot(result.shot_id()).result().quality().reason(),
+            result.quality().reason());
+}
+
 TEST(Daemon, HasOneOperatorAtATime) {
   Running run;
   run.listener->arm();
