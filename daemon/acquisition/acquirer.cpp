@@ -153,11 +153,8 @@ void Acquirer::take(const Block& block) {
 }
 
 void Acquirer::note_missing(const Block& block) {
-  Missing missing = block.missing_before;
-  if (missing.kind == Missing::Kind::none && overflow_pending_) {
-    missing.kind = Missing::Kind::unknown;
-  }
-  overflow_pending_ = false;
+  const Missing& missing = block.missing_before;
+  overflow_pending_ = false;  // the block says what the overflow came to
   // Before a capture of a replay nothing is missing but the world between two captures.
   const bool between = block.starts_capture && missing.kind == Missing::Kind::unknown;
   if (missing.kind == Missing::Kind::none || between) {

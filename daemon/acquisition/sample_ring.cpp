@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 // Planes a power of two apart would share cache sets; an odd number of lines between them does not.
-constexpr std::size_t kStagger = 3 * 64;
+constexpr std::size_t kStagger = 192;
 
 std::size_t power_of_two(std::size_t channels, std::size_t capacity_samples) {
   if (channels == 0) throw InputError("channels", "the ring has none", "enable a channel");

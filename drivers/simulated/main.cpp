@@ -79,7 +79,9 @@ void declare(CLI::App& app, Options& o) {
   app.add_option("--period", o.period_s, "seconds from shot to shot; 0: on demand only")
       ->capture_default_str();
   app.add_option("--faults", o.faults, "fault script, see below");
-  app.add_option("--seed", o.seed, "of the noise")->capture_default_str();
+  app.add_option("--seed", o.seed, "of the noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--bits", o.bits, "resolution, 12 to 24");
   app.add_option("--noise-microstrain", o.noise_microstrain, "white noise, rms");
   app.add_option("--hum-microstrain", o.hum_microstrain, "mains hum, amplitude");

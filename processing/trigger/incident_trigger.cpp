@@ -78,6 +78,7 @@ void IncidentTrigger::reset_run() {
     pulse_.fit_tick = next_tick_ - 1;
     finish_pulse(Run<std::int16_t>{history_, next_tick_, next_tick_, {}, 0, 0});
   }
+  if (phase_ != Phase::holding) phase_ = Phase::learning;
   started_ = false;
 }
 
@@ -109,8 +110,9 @@ template <class Code>
 std::optional<TriggerEvent> IncidentTrigger::take(Tick first_tick, std::span<const Code> codes,
                                                   const RunStatistics& statistics) {
   if (!started_ || first_tick != next_tick_) start_run(first_tick);
-  const Run<Code> run{history_, first_tick,         first_tick + ticks(codes.size()),
-                      codes,    statistics.minimum, statistics.maximum};
+  const auto size = static_cast<std::int64_t>(codes.size());
+  const RunStatistics known = statistics.count == size ? statistics : run_statistics(codes);
+  const Run<Code> run{history_, first_tick, first_tick + size, codes, known.minimum, known.maximum};
   Tick tick = run.first;
   while (tick < run.end) {
     switch (phase_) {
@@ -138,7 +140,8 @@ void IncidentTrigger::start_run(Tick tick) {
   reset_run();
   started_ = true;
   run_start_ = tick;
-  if (phase_ != Phase::holding || tick >= hold_until_) start_learning(tick);
+  const bool still_held = tick >= pulse_.found_tick && tick < hold_until_;
+  if (phase_ != Phase::holding || !still_held) start_learning(tick);
 }
 
 void IncidentTrigger::start_learning(Tick tick) {

@@ -14,14 +14,16 @@
 
 #include "drivers/files/capture.hpp"
 #include "drivers/files/store.hpp"
-#include "tests/end_to_end/process.hpp"
+#include "tests/end_to_end/daemon_process.hpp"
 #include "tests/end_to_end/scene.hpp"
 
 namespace kolsky {
 namespace {
 
+using scene::DaemonProcess;
 using scene::eventually;
 using scene::Installation;
+using scene::kolskyd;
 using scene::Lab;
 using scene::LabOptions;
 using scene::Listener;
@@ -35,36 +37,11 @@ struct Ended {
   std::string output;
 };
 
-std::vector<std::string> kolskyd(const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{KOLSKYD};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  return command;
-}
-
 Ended run(const std::vector<std::string>& arguments) {
   const scene::Folder folder;
   Process process(kolskyd(arguments), folder / "output");
   const std::optional<int> code = process.wait(kPatience);
   return {code.value_or(-1), process.output()};
-}
-
-/// The endpoints that a running daemon has logged.
-EndpointConfig endpoints_in(const std::string& output) {
-  const auto after = [&](const std::string& word) {
-    const std::size_t at = output.find(word + " tcp://");
-    if (at == std::string::npos) {
-      return std::string();
-    }
-    const std::size_t begin = at + word.size() + 1;
-    return output.substr(begin, output.find_first_of(",\n", begin) - begin);
-  };
-  return {.results = after("results"), .preview = after("preview"), .control = after("control")};
-}
-
-bool is_serving(const Process& process) {
-  const std::string output = process.output();
-  const std::size_t at = output.find("control tcp://");
-  return at != std::string::npos && output.find('\n', at) != std::string::npos;
 }
 
 /// Exit code 2 and one line of the daemon's, which names all of these.
@@ -151,9 +128,9 @@ TEST(Program, RefusesBadSettings) {
 TEST(Program, RefusesAPortInUse) {
   const Lab lab;
   const Installation first(lab.uri(), lab.bench());
-  Process daemon(kolskyd({"--config", first.write()}), first.folder() / "output");
-  ASSERT_TRUE(eventually([&] { return is_serving(daemon); })) << daemon.output();
-  const EndpointConfig taken = endpoints_in(daemon.output());
+  first.write();
+  const DaemonProcess daemon(first);
+  const EndpointConfig& taken = daemon.endpoints();
   for (const auto& [key, endpoint] : std::vector<std::pair<std::string, std::string>>{
            {"results", taken.results}, {"preview", taken.preview}, {"control", taken.control}}) {
     const Lab other;
@@ -252,24 +229,24 @@ TEST(Program, TellsTheServiceManager) {
 TEST(Program, EndsWhenAClientAsksForIt) {
   const Lab lab;
   const Installation installation(lab.uri(), lab.bench());
-  Process daemon(kolskyd({"--config", installation.write()}), installation.folder() / "output");
-  ASSERT_TRUE(eventually([&] { return is_serving(daemon); })) << daemon.output();
-  Listener listener(endpoints_in(daemon.output()));
+  installation.write();
+  DaemonProcess daemon(installation);
+  Listener& listener = daemon.listener();
   listener.control().stop();
-  EXPECT_EQ(daemon.wait(kPatience), 0) << daemon.output();
+  EXPECT_EQ(daemon.process().wait(kPatience), 0) << daemon.process().output();
 }
 
 TEST(Program, SurvivesADigitiserThatGoes) {
   Lab lab;
   const Installation installation(lab.uri(), lab.bench());
-  Process daemon(kolskyd({"--config", installation.write()}), installation.folder() / "output");
-  ASSERT_TRUE(eventually([&] { return is_serving(daemon); })) << daemon.output();
-  Listener listener(endpoints_in(daemon.output()));
+  installation.write();
+  DaemonProcess daemon(installation);
+  Listener& listener = daemon.listener();
   listener.arm();
   lab.stop();
   EXPECT_TRUE(eventually([&] { return listener.control().status().state() == v1::DISCONNECTED; }));
-  daemon.signal(SIGTERM);
-  EXPECT_EQ(daemon.wait(kPatience), 0) << daemon.output();
+  daemon.process().signal(SIGTERM);
+  EXPECT_EQ(daemon.process().wait(kPatience), 0) << daemon.process().output();
 }
 
 TEST(Program, RecoversWhatItHadJournaledWhenItIsKilled) {
@@ -277,27 +254,27 @@ TEST(Program, RecoversWhatItHadJournaledWhenItIsKilled) {
   const Installation installation(lab.uri(), lab.bench());
   std::string id;
   {
-    Process daemon(kolskyd({"--config", installation.write()}), installation.folder() / "output");
-    ASSERT_TRUE(eventually([&] { return is_serving(daemon); })) << daemon.output();
-    Listener listener(endpoints_in(daemon.output()));
+    installation.write();
+    DaemonProcess daemon(installation);
+    Listener& listener = daemon.listener();
     listener.arm();
     listener.control().fire();
     // The shot is announced once it is journaled; its capture is not written yet, or just being.
     const auto shot = listener.next_message<v1::Shot>("shot");
-    daemon.signal(SIGKILL);
-    EXPECT_EQ(daemon.wait(kPatience), 128 + SIGKILL);
+    daemon.process().signal(SIGKILL);
+    EXPECT_EQ(daemon.process().wait(kPatience), 128 + SIGKILL);
     ASSERT_TRUE(shot);
     id = shot->id();
   }
-  Process daemon(kolskyd({"--config", installation.write()}), installation.folder() / "output");
-  ASSERT_TRUE(eventually([&] { return is_serving(daemon); })) << daemon.output();
-  Listener listener(endpoints_in(daemon.output()));
+  installation.write();
+  DaemonProcess daemon(installation);
+  Listener& listener = daemon.listener();
   const v1::ShotList list = listener.control().list_shots();
   ASSERT_EQ(list.shots_size(), 1);
   EXPECT_EQ(list.shots(0).id(), id);
   EXPECT_TRUE(list.shots(0).reducible());
-  daemon.signal(SIGTERM);
-  EXPECT_EQ(daemon.wait(kPatience), 0);
+  daemon.process().signal(SIGTERM);
+  EXPECT_EQ(daemon.process().wait(kPatience), 0);
   EXPECT_TRUE(verify_store({installation.store()}).problems.empty());
 }
 

@@ -160,17 +160,27 @@ TEST_F(AcquirerTest, TellsAKnownGapBeforeTheWindowThatHoldsIt) {
   EXPECT_EQ(codes[0], digitiser_.code(0, 5375));
 }
 
-TEST_F(AcquirerTest, CountsAnOverflowWithoutANumberAsAGapOfUnknownLength) {
+TEST_F(AcquirerTest, BelievesTheBlockAfterAnOverflow) {
   digitiser_.deliver(1024);
   digitiser_.add({.status = ReadStatus::overflow});
-  digitiser_.deliver(1024);
+  digitiser_.deliver(1024);  // a device that counts: nothing was lost after all
+  digitiser_.add({.status = ReadStatus::overflow});
   digitiser_.add({.samples = 256, .missing = {Missing::Kind::unknown, 0}});
   const auto told = run();
-  ASSERT_EQ(kinds(told), (std::vector{Kind::overflow, Kind::gap, Kind::gap}));
-  EXPECT_EQ(told[1].gap, (Gap{.first_tick = 1024, .samples = 0, .known = false}));
+  ASSERT_EQ(kinds(told), (std::vector{Kind::overflow, Kind::overflow, Kind::gap}));
   EXPECT_EQ(told[2].gap, (Gap{.first_tick = 2048, .samples = 0, .known = false}));
-  EXPECT_EQ(acquirer_->counters().overflows, 1U);
-  EXPECT_EQ(acquirer_->counters().gaps_of_unknown_length, 2U);
+  EXPECT_EQ(acquirer_->counters().overflows, 2U);
+  EXPECT_EQ(acquirer_->counters().gaps_of_unknown_length, 1U);
+}
+
+TEST_F(AcquirerTest, TakesAnOverflowAtTheEndForAHoleThere) {
+  digitiser_.add_pulse(3500);
+  digitiser_.deliver(4100);
+  digitiser_.add({.status = ReadStatus::overflow});
+  digitiser_.end_after_script();
+  const auto told = run();
+  ASSERT_EQ(kinds(told), (std::vector{Kind::overflow, Kind::window, Kind::end_of_capture}));
+  EXPECT_EQ(told[1].window.end, WindowEnd::interrupted);
 }
 
 TEST_F(AcquirerTest, ClosesTheWindowWhenTheDeviceGoesAndReachesItAgain) {

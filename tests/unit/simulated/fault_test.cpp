@@ -45,7 +45,7 @@ class Faults : public ::testing::Test {
     ASSERT_EQ(stream->ask("OPEN iio:device0 100 00000007"), "0");
   }
   BufferReply read() {
-    const BufferReply reply = read_buffer(*stream, kBlockBytes);
+    BufferReply reply = read_buffer(*stream, kBlockBytes);
     if (reply.error == 0 && reply.mask == "00000007") {
       account.add(reply.scans());
     }

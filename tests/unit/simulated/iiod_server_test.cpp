@@ -195,7 +195,7 @@ TEST(IiodServer, WideConvertersTravelIn32Bits) {
   EXPECT_NE(served.adc.context_xml().find("le:s24/32&gt;&gt;0"), std::string::npos);
   RawClient client(served);
   ASSERT_EQ(client.ask("OPEN iio:device0 16 00000003"), "0");
-  const BufferReply reply = read_buffer(client, 16 * 8);
+  const BufferReply reply = read_buffer(client, std::size_t{16} * 8);
   std::int32_t codes[2];
   std::memcpy(codes, reply.bytes.data() + 8, sizeof codes);
   EXPECT_EQ(codes[0], RampSource::ramp(0, 1));

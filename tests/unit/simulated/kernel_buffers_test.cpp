@@ -22,7 +22,7 @@ TEST(KernelBuffers, HoldAsManyBlocksAsThereAreBuffers) {
   KernelBuffers buffers(0, 4);
   EXPECT_FALSE(buffers.overrun(400, 100));
   EXPECT_TRUE(buffers.overrun(401, 100));
-  for (int block = 0; block < 4; ++block) {
+  for (Tick block = 0; block < 4; ++block) {
     buffers.finish_block(100 * (block + 1), 400);
     EXPECT_EQ(buffers.lost_before(), 0);
   }
@@ -33,7 +33,7 @@ TEST(KernelBuffers, LoseWhatCameWhileAllWereFull) {
   // The client sleeps until 1000. Blocks 0 to 3 hold ticks 0 to 399; the fifth begins when the
   // first buffer came back, at 1000, so 600 are gone.
   KernelBuffers buffers(0, 4);
-  for (int block = 0; block < 3; ++block) {
+  for (Tick block = 0; block < 3; ++block) {
     buffers.finish_block(100 * (block + 1), 1000);
     EXPECT_EQ(buffers.lost_before(), 0);
   }

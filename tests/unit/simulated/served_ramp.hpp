@@ -132,7 +132,7 @@ class RawClient {
 
   /// An attribute's text, or the errno.
   std::string attribute(const std::string& name) {
-    const std::string length = ask("READ iio:device0 " + name);
+    std::string length = ask("READ iio:device0 " + name);
     if (length.empty() || length.front() == '-') {
       return length;
     }
