@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "drivers/files/nearest_name.hpp"
 #include "processing/base/error.hpp"
@@ -34,14 +33,10 @@ std::string one_line(std::string text) {
 }
 
 // CLI11 indents the lines of a help text but does not break them.
-std::string wrapped(const std::string& text) {
+std::string broken_into_lines(const std::string& text) {
   std::string lines;
-  std::size_t column = 0;
-  std::istringstream stream(text);
-  for (std::string word; stream >> word;) {
-    const bool fits = column + 1 + word.size() <= kHelpColumns - kNameColumns;
-    lines += (column == 0 ? "" : fits ? " " : "\n") + word;
-    column = fits && column > 0 ? column + 1 + word.size() : word.size();
+  for (const std::string& line : wrapped(text, kHelpColumns - kNameColumns)) {
+    lines += (lines.empty() ? "" : "\n") + line;
   }
   return lines;
 }
@@ -51,7 +46,7 @@ std::string refuse_negative(const std::string& count) {
 }
 
 CLI::Option* add(CLI::App& app, const Argument& argument) {
-  const std::string help = wrapped(argument.help);
+  const std::string help = broken_into_lines(argument.help);
   CLI::Option* option = std::visit(
       [&](auto* target) {
         using Value = std::remove_pointer_t<decltype(target)>;

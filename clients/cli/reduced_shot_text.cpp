@@ -13,6 +13,7 @@ namespace kolsky::cli {
 namespace {
 
 constexpr std::size_t kNameColumns = 18;
+constexpr std::size_t kVerdictColumns = 6;
 constexpr int kPlotColumns = 100;  // wider gives no better view
 constexpr int kLoopRows = 16;
 constexpr int kForceRows = 9;
@@ -49,15 +50,25 @@ std::string numbers(const Reduction& reduction) {
          row("band", "up to " + with_unit(reduction.band_limit_Hz, "Hz"));
 }
 
-std::string verdicts(const Quality& quality, bool colour) {
+std::string check_text(const Check& check, const Terminal& terminal) {
+  const std::size_t indent = 2 + kNameColumns + kVerdictColumns;
+  const auto columns = static_cast<std::size_t>(std::clamp(terminal.columns, 60, kPlotColumns));
+  const std::vector<std::string> lines = wrapped(check.text, columns - indent);
+  std::string text = inked(padded_right(verdict_name(check.verdict), kVerdictColumns),
+                           verdict_ink(check.verdict), terminal.colour);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += (i == 0 ? "" : "\n" + std::string(indent, ' ')) + lines[i];
+  }
+  return row("  " + check.name, text);
+}
+
+std::string verdicts(const Quality& quality, const Terminal& terminal) {
   const Verdict worst = quality.verdict();
   std::string text = row("verdict", inked(quality.reducible ? verdict_name(worst) : "not reducible",
-                                          verdict_ink(worst), colour) +
+                                          verdict_ink(worst), terminal.colour) +
                                         (quality.reducible ? "" : ": " + quality.reason));
   for (const Check& check : quality.checks) {
-    text += row("  " + check.name, inked(padded_right(verdict_name(check.verdict), 6),
-                                         verdict_ink(check.verdict), colour) +
-                                       check.text);
+    text += check_text(check, terminal);
   }
   return text;
 }
@@ -79,7 +90,7 @@ std::string report(const ReducedShot& reduced, const Terminal& terminal) {
   if (has_loop) {
     text += numbers(reduced.reduction);
   }
-  text += verdicts(reduced.reduction.quality, terminal.colour);
+  text += verdicts(reduced.reduction.quality, terminal);
   return has_loop ? text + plots(reduced.reduction, terminal) : text;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <sstream>
 
 namespace kolsky {
 namespace {
@@ -86,6 +87,19 @@ std::string padded_right(std::string_view text, std::size_t columns) {
 std::string padded_left(std::string_view text, std::size_t columns) {
   const std::size_t taken = columns_of(text);
   return std::string(columns > taken ? columns - taken : 0, ' ').append(text);
+}
+
+std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) {
+    if (!lines.empty() && columns_of(lines.back()) + 1 + columns_of(word) <= columns) {
+      lines.back() += " " + word;
+    } else {
+      lines.push_back(word);
+    }
+  }
+  return lines;
 }
 
 }  // namespace kolsky

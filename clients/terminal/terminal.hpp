@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kolsky {
 
@@ -31,5 +32,8 @@ enum class Ink { plain, dim, bold, good, doubtful, bad, first, second, third };
 /// The text padded with blanks on the right (or left) to a width.
 [[nodiscard]] std::string padded_right(std::string_view text, std::size_t columns);
 [[nodiscard]] std::string padded_left(std::string_view text, std::size_t columns);
+
+/// The words of a text in lines of at most so many columns; a longer word has a line of its own.
+[[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
 
 }  // namespace kolsky

@@ -142,6 +142,12 @@ TEST(Terminal, CountsColumnsNotBytesNorEscapes) {
   EXPECT_EQ(padded_right("µ", 3), "µ  ");
 }
 
+TEST(Terminal, WrapsAtWordsByColumns) {
+  EXPECT_EQ(wrapped("µs of loading", 5), (std::vector<std::string>{"µs of", "loading"}));
+  EXPECT_EQ(wrapped("  a  b\nc ", 80), (std::vector<std::string>{"a b c"}));
+  EXPECT_TRUE(wrapped("", 10).empty());
+}
+
 TEST(Terminal, APipeIsEightyColumnsWithoutColour) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
