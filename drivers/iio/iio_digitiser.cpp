@@ -165,16 +165,6 @@ ReadStatus IioDigitiser::read(Block& block) {
 }
 
 ReadStatus IioDigitiser::refill() {
-  switch (poll_overflow()) {
-    case OverflowRegister::Answer::overflow:
-      suspect_blocks_ = session_->kernel_buffers() + 1;
-      return ReadStatus::overflow;
-    case OverflowRegister::Answer::failed:
-      drop_session();
-      return ReadStatus::disconnected;
-    default:
-      break;
-  }
   watchdog_.begin();
   const ssize_t bytes = session_->refill();
   watchdog_.end();
@@ -185,9 +175,9 @@ ReadStatus IioDigitiser::refill() {
   return take_scans();
 }
 
-/// A flag is seen before the hole it speaks of: the samples that were queued when it was raised
-/// come first. With a poll at least every half queue, the hole is in what comes next, at most a
-/// queue away.
+/// What is lost when the queue is full is missing behind the queue, a whole queue after the flag;
+/// what is lost on the way to it is missing in what was just read. With a poll at least every half
+/// queue the first kind cannot have passed unseen.
 OverflowRegister::Answer IioDigitiser::poll_overflow() {
   OverflowRegister* flag = session_->overflow_register();
   if (flag == nullptr) {
@@ -198,6 +188,10 @@ OverflowRegister::Answer IioDigitiser::poll_overflow() {
   const OverflowRegister::Answer answer = flag->poll(monotonic_ns(), half_a_queue);
   if (answer != OverflowRegister::Answer::not_due) {
     blocks_since_poll_ = 0;
+  }
+  if (answer == OverflowRegister::Answer::overflow) {
+    suspect_blocks_ = session_->kernel_buffers() + 1;
+    announced_ = false;
   }
   return answer;
 }
@@ -233,6 +227,10 @@ ReadStatus IioDigitiser::take_scans() {
     session_->decode(i, scans_, codes_[i].data());
   }
   run_begin_ = 0;
+  if (poll_overflow() == OverflowRegister::Answer::failed) {
+    drop_session();
+    return ReadStatus::disconnected;
+  }
   look_at_run();
   if (loss_by_clock_ && loss_by_clock_->note(scans_.count, refill_ns_)) {
     missing_.kind = Missing::Kind::unknown;

@@ -1,7 +1,5 @@
 #include "drivers/iio/overflow_register.hpp"
 
-#include <algorithm>
-
 #include "drivers/iio/monotonic.hpp"
 
 namespace kolsky {
@@ -10,8 +8,7 @@ namespace {
 constexpr std::uint32_t kStatusRegister = 0x80000088;
 constexpr std::uint32_t kDefinedBits = 0x7;
 constexpr std::uint32_t kOverflow = 0x4;
-constexpr std::int64_t kLeastPeriod_ns = 20'000'000;
-constexpr std::int64_t kPeriodPerDuration = 50;
+constexpr std::int64_t kPausePerDuration = 2;
 
 }  // namespace
 
@@ -42,7 +39,7 @@ OverflowRegister::Answer OverflowRegister::poll(std::int64_t now_ns, bool at_onc
     error = iio_device_reg_write(device_, kStatusRegister, kOverflow);
   }
   const std::int64_t done_ns = monotonic_ns();
-  next_ns_ = done_ns + std::max(kLeastPeriod_ns, kPeriodPerDuration * (done_ns - now_ns));
+  next_ns_ = done_ns + kPausePerDuration * (done_ns - now_ns);
   if (error != 0) {
     return Answer::failed;
   }

@@ -7,12 +7,15 @@
 namespace kolsky {
 
 /// The receive status register of ADI's FPGA converter cores, 0x80000088, through the device's
-/// debug access: its value 4 says that the DMA had nowhere to put samples. It is the only overflow
-/// report there is. One poll is two round trips on the control connection (a write of the address,
-/// a read of the value), so polls are at least 20 ms and 50 polls' duration apart: 2 % of the
-/// reading thread's time at most, and the device goes on filling its kernel buffers meanwhile.
-/// Polled on the reading thread because a USB device has but one connection, and because then it is
-/// known which blocks were read before the flag was last seen clear.
+/// debug access: its value 4 says that samples had nowhere to go. It is the only overflow report
+/// there is.
+///
+/// A poll is two round trips on the control connection (a write of the address, a read of the
+/// value), so polls take at most a third of the reading thread's time, most of which it waits
+/// anyway; near the digitiser (0.1 ms a poll) that is one for every block of a millisecond. They
+/// belong between a refill and the delivery of its samples: then a flag is known before the samples
+/// after the loss are handed on. They are made by the reading thread because a USB device has but
+/// one connection, which libiio shares out under a lock.
 class OverflowRegister {
  public:
   /// Probes the register: there, with no bit set that the cores do not define, and cleared by

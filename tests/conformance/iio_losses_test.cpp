@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "drivers/digitiser/open.hpp"
+#include "drivers/iio/iio_uri.hpp"
+#include "drivers/iio/monotonic.hpp"
+#include "drivers/iio/overflow_register.hpp"
 #include "tests/conformance/pattern.hpp"
 #include "tests/conformance/reading.hpp"
 #include "tests/conformance/rig.hpp"
@@ -198,25 +202,59 @@ TEST(FlaggedLosses, AreFlaggedByTheRegisterAndMarkEveryBlockThatMayHaveThem) {
   EXPECT_LT(marked, 800) << "the marks must end";
 }
 
-TEST(FlaggedLosses, CostFewPolls) {
-  ScriptedDevice device;
-  device.debug_attributes = {"direct_reg_access"};
-  device.texts["DEBUG/direct_reg_access"] = "0x0";
-  device.sticks = false;
-  ScriptedIiod server(device, [](ScriptedClient& client, std::size_t bytes, int) {
-    client.send(first_chunk(3, pattern_scans(0, bytes / 4)));
-  });
-  const auto digitiser = open_started(server.uri());
-  Block block;
-  constexpr int kBlocks = 1300;
-  for (int i = 0; i < kBlocks; ++i) {
-    ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
+TEST(FlaggedLosses, OnTheWayToTheQueueAreMarkedAtMostHalfAQueueLate) {
+  AdcSettings settings = without_counter();
+  for (int i = 1; i <= 5; ++i) {
+    settings.faults.push_back({.kind = FaultKind::lose, .time_s = 0.2 * i, .samples = 100 + i});
   }
-  const auto lines = server.lines();
-  const auto polls =
-      std::count(lines.begin(), lines.end(), "READ iio:device0 DEBUG direct_reg_access");
-  EXPECT_GE(polls, kBlocks / 65) << "every half queue at least";
-  EXPECT_LE(polls, kBlocks / 20);
+  SimulatedDevice device(settings);
+  const auto digitiser = open_started(device.uri());
+  std::optional<Tick> next;
+  int holes = 0;
+  int unmarked_blocks = 0;  ///< since the last hole that is not marked yet
+  int overflows = 0;
+  Block block;
+  while (!next || block.first_tick < 1'300'000) {
+    const ReadStatus status = digitiser->read(block);
+    overflows += status == ReadStatus::overflow ? 1 : 0;
+    ASSERT_NE(status, ReadStatus::disconnected);
+    for (std::size_t i = 0; status == ReadStatus::samples && i < block.samples; ++i) {
+      const Tick tick = pattern_tick(code_at(digitiser->info(), block, 0, i));
+      const bool hole = next && tick != *next % 65'536;
+      holes += hole ? 1 : 0;
+      unmarked_blocks += hole ? 1 : 0;
+      next = tick + 1;
+    }
+    if (status == ReadStatus::samples) {
+      const bool marked = block.missing_before.kind == Missing::Kind::unknown;
+      unmarked_blocks = marked ? 0 : unmarked_blocks + (unmarked_blocks > 0 ? 1 : 0);
+      EXPECT_LE(unmarked_blocks, 64);
+    }
+  }
+  EXPECT_GE(overflows, 5);
+  EXPECT_GE(holes, 5);
+}
+
+TEST(FlaggedLosses, PollsTakeAThirdOfTheTimeAtMostAndAreMade) {
+  SimulatedDevice device(without_counter());
+  const ContextHandle context = open_context(device.uri());
+  OverflowRegister flag(iio_context_get_device(context.get(), 0));
+  ASSERT_TRUE(flag.works());
+  const std::int64_t begin_ns = monotonic_ns();
+  std::int64_t polling_ns = 0;
+  int polls = 0;
+  std::int64_t now_ns = begin_ns;
+  while (now_ns - begin_ns < 200'000'000) {
+    const bool polled = flag.poll(now_ns, false) != OverflowRegister::Answer::not_due;
+    const std::int64_t done_ns = monotonic_ns();
+    polling_ns += polled ? done_ns - now_ns : 0;
+    polls += polled ? 1 : 0;
+    now_ns = done_ns;
+  }
+  EXPECT_LT(static_cast<double>(polling_ns), 0.4 * static_cast<double>(now_ns - begin_ns));
+  EXPECT_GT(polls, 10);
+  EXPECT_EQ(flag.poll(now_ns, true), OverflowRegister::Answer::clear) << "at once, if asked";
+  EXPECT_EQ(flag.poll(now_ns, true), OverflowRegister::Answer::clear);
 }
 
 TEST(FlaggedLosses, NoOtherRegisterIsTakenForTheFlagOrWritten) {
