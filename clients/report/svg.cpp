@@ -222,9 +222,9 @@ std::string render_svg(const Figure& figure) {
                        escaped(figure.notes[i]));
   }
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const std::size_t row = i / across;
     const Frame outer{kPageMargin + kPanelWidth * static_cast<double>(i % across),
-                      head + kPanelHeight * static_cast<double>(i / across), kPanelWidth,
-                      kPanelHeight};
+                      head + kPanelHeight * static_cast<double>(row), kPanelWidth, kPanelHeight};
     out += PanelDrawing(figure.panels[i], outer).text(i);
   }
   return out + "</svg>\n";

@@ -23,13 +23,13 @@ std::string braille(std::uint8_t dots) {
 }  // namespace
 
 BrailleCanvas::BrailleCanvas(int columns, int rows)
-    : columns_(columns), rows_(rows), cells_(static_cast<std::size_t>(columns * rows)) {}
+    : columns_(columns), rows_(rows), cells_(index(0, rows)) {}
 
 void BrailleCanvas::dot(int x, int y, Ink ink) {
   if (x < 0 || y < 0 || x >= width() || y >= height()) {
     return;
   }
-  Cell& target = cells_[static_cast<std::size_t>((y / 4) * columns_ + x / 2)];
+  Cell& target = cells_[index(x / 2, y / 4)];
   target.dots |= kDotBits.at(static_cast<std::size_t>(x % 2)).at(static_cast<std::size_t>(y % 4));
   target.ink = ink;
 }
@@ -38,14 +38,14 @@ bool BrailleCanvas::lit(int x, int y) const {
   if (x < 0 || y < 0 || x >= width() || y >= height()) {
     return false;
   }
-  return (cell(x / 2, y / 4).dots &
+  return (cells_[index(x / 2, y / 4)].dots &
           kDotBits.at(static_cast<std::size_t>(x % 2)).at(static_cast<std::size_t>(y % 4))) != 0;
 }
 
 std::string BrailleCanvas::row(int row, bool colour) const {
   std::string text;
   for (int column = 0; column < columns_; ++column) {
-    const Cell& shown = cell(column, row);
+    const Cell& shown = cells_[index(column, row)];
     text += shown.dots == 0 ? std::string(" ") : inked(braille(shown.dots), shown.ink, colour);
   }
   return text;

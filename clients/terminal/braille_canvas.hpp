@@ -32,8 +32,9 @@ class BrailleCanvas {
     std::uint8_t dots = 0;
     Ink ink = Ink::plain;
   };
-  [[nodiscard]] const Cell& cell(int column, int row) const {
-    return cells_[static_cast<std::size_t>(row * columns_ + column)];
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
   }
 
   int columns_;

@@ -21,6 +21,22 @@ std::vector<Gap> GapLog::within(Tick first_tick, Tick end_tick) const {
   return found;
 }
 
+Window GapLog::without_holes_at_ends(Window window) const {
+  for (const Gap& gap : gaps_) {
+    const Tick gap_end = gap.first_tick + gap.samples;
+    if (gap.first_tick <= window.first_tick && gap_end > window.first_tick &&
+        gap_end <= window.trigger.tick) {
+      window.first_tick = gap_end;
+    }
+    if (gap.first_tick > window.trigger.tick && gap.first_tick < window.end_tick &&
+        gap_end >= window.end_tick) {
+      window.end_tick = gap.first_tick;
+      window.end = WindowEnd::interrupted;
+    }
+  }
+  return window;
+}
+
 void GapLog::forget_before(Tick tick) {
   while (!gaps_.empty() && gaps_.front().first_tick + gaps_.front().samples < tick) {
     gaps_.pop_front();

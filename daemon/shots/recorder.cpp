@@ -233,7 +233,8 @@ void ShotRecorder::record(const Window& window) {
                         entry.reducible ? "" : ", not reducible: " + entry.reason));
 }
 
-std::shared_ptr<Shot> ShotRecorder::cut(const Window& window) {
+std::shared_ptr<Shot> ShotRecorder::cut(const Window& whole) {
+  const Window window = gaps_.without_holes_at_ends(whole);
   auto shot = std::make_shared<Shot>(settings()->blank);
   const SampleRing::CopyStatus status = cut_window(parts_.ring, window, *shot);
   if (status != SampleRing::CopyStatus::copied) {
@@ -245,7 +246,7 @@ std::shared_ptr<Shot> ShotRecorder::cut(const Window& window) {
   shot->gaps = gaps_.within(window.first_tick, window.end_tick);
   gaps_.forget_before(window.end_tick - static_cast<Tick>(parts_.ring.capacity_samples()));
   if (window.end == WindowEnd::interrupted) {
-    shot->gaps.push_back({.first_tick = window.end_tick, .samples = 0, .known = false});
+    mark_interrupted(*shot);
   }
   shot->monotonic_ns = window.trigger_monotonic_ns;
   shot->utc_ns = utc_of_ns(window.trigger_monotonic_ns);

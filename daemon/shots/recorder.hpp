@@ -87,7 +87,7 @@ class ShotRecorder {
   void run();
   void handle(const AcquisitionEvent& event);
   void record(const Window& window);
-  [[nodiscard]] std::shared_ptr<Shot> cut(const Window& window);
+  [[nodiscard]] std::shared_ptr<Shot> cut(const Window& whole);
   [[nodiscard]] bool journal(const Shot& shot);
   [[nodiscard]] Reduction reduce(const Shot& shot);
   void file_unjournaled(const std::shared_ptr<Shot>& shot);

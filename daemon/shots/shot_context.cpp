@@ -83,6 +83,14 @@ SampleRing::CopyStatus cut_window(const SampleRing& ring, const Window& window, 
   return SampleRing::CopyStatus::copied;
 }
 
+void mark_interrupted(Shot& shot) {
+  const Tick end_tick = shot.first_tick + static_cast<Tick>(shot.samples());
+  for (ChannelRecord& channel : shot.channels) {
+    channel.codes.push_back(channel.codes.back());
+  }
+  shot.gaps.push_back({.first_tick = end_tick, .samples = 0, .known = false});
+}
+
 Shot rehearsal_shot(const Shot& blank, std::int64_t pre_samples, std::int64_t post_samples) {
   constexpr double kPulse_s = 170e-6;
   Shot shot = blank;

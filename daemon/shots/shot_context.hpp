@@ -21,6 +21,11 @@ namespace kolsky {
 /// from the stream's start.
 SampleRing::CopyStatus cut_window(const SampleRing& ring, const Window& window, Shot& shot);
 
+/// Says that what should follow the shot's last sample is missing: one sample is added that repeats
+/// the last code, and a hole of unknown length stands before it. A gap lies between samples, here
+/// as everywhere, so that a replay has it too.
+void mark_interrupted(Shot& shot);
+
 /// A shot like those to come, with pulses at the times the bench's bars give: what plans, tables
 /// and buffers are made for before the first real one.
 [[nodiscard]] Shot rehearsal_shot(const Shot& blank, std::int64_t pre_samples,

@@ -14,8 +14,8 @@ constexpr double kMedianEfficiency = 0.6;
 // A newly learned variance up to so many times the known one is the same noise, known less well.
 constexpr double kSameNoise = 2.25;
 
-// After so many memories the weights of the noise no longer change.
-constexpr double kSettled = 8.0;
+// Once the noise's memory is full the noise is renewed by so many cells at a time.
+constexpr double kNoiseBatch = 4.0;
 
 struct Group {
   double centre = 0.0;  ///< samples before the end of the stretch, negative
@@ -109,11 +109,13 @@ QuietEstimate estimate_quiet(std::span<const double> samples) {
 BaselineTracker::BaselineTracker(const BaselineMemory& memory)
     : level_gain_(1.0 - square(fade(memory))),
       slope_gain_(square(1.0 - fade(memory))),
-      noise_gain_(1.0 / std::max(1.0, static_cast<double>(memory.noise_samples) / kCell)),
+      noise_gain_(1.0 /
+                  std::max(2.0 * kNoiseBatch, static_cast<double>(memory.noise_samples) / kCell)),
       guard_(memory.guard_samples / kCell) {}
 
 void BaselineTracker::start(const QuietEstimate& quiet, std::size_t samples) {
   guard_size_ = 0;
+  waiting_ = {};
   const double half_cell = 0.5 * static_cast<double>(kCell + 1);
   slope_ = quiet.line.slope_codes * static_cast<double>(kCell);
   level_ = quiet.line.value_codes - quiet.line.slope_codes * half_cell;
@@ -128,6 +130,7 @@ void BaselineTracker::start(const QuietEstimate& quiet, std::size_t samples) {
 
 void BaselineTracker::forget() {
   guard_size_ = 0;
+  waiting_ = {};
   noise_spread_ = 0.0;
   noise_variance_ = 0.0;
   baseline_variance_ = 0.0;
@@ -182,12 +185,20 @@ void BaselineTracker::absorb(const Cell& cell) noexcept {
 }
 
 void BaselineTracker::absorb_noise(const Cell& cell) noexcept {
-  noise_cells_ += 1.0;
-  const double gain = noise_gain_ * noise_cells_ < 1.0 ? 1.0 / noise_cells_ : noise_gain_;
-  noise_variance_ += gain * (cell.mean_square - noise_variance_);
-  baseline_variance_ += gain * (cell.miss_square - baseline_variance_);
-  if (noise_gain_ * noise_cells_ > kSettled) return;
-  noise_spread_ = square(1.0 - gain) * noise_spread_ + square(gain) / static_cast<double>(kCell);
+  waiting_.cells += 1.0;
+  waiting_.mean_square += cell.mean_square;
+  waiting_.miss_square += cell.miss_square;
+  const bool full = noise_gain_ * noise_cells_ >= 1.0;
+  if (full && waiting_.cells < kNoiseBatch) return;
+
+  const double cells = waiting_.cells;
+  noise_cells_ += cells;
+  const double gain = full ? cells * noise_gain_ : cells / noise_cells_;
+  noise_variance_ += gain * (waiting_.mean_square / cells - noise_variance_);
+  baseline_variance_ += gain * (waiting_.miss_square / cells - baseline_variance_);
+  noise_spread_ =
+      square(1.0 - gain) * noise_spread_ + square(gain) / (cells * static_cast<double>(kCell));
+  waiting_ = {};
 }
 
 }  // namespace kolsky

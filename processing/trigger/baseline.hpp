@@ -67,6 +67,11 @@ class BaselineTracker {
     double mean_square = 0.0;  ///< of a sample about the prediction
     double miss_square = 0.0;  ///< of the mean about the prediction
   };
+  struct Squares {
+    double cells = 0.0;
+    double mean_square = 0.0;
+    double miss_square = 0.0;
+  };
   void push(const Cell& cell) noexcept;
   void absorb(const Cell& cell) noexcept;
   void absorb_noise(const Cell& cell) noexcept;
@@ -81,6 +86,7 @@ class BaselineTracker {
   double level_ = 0.0;  ///< of the line at the middle of the last absorbed cell
   double slope_ = 0.0;  ///< per cell
   double cells_ = 0.0;  ///< the line rests on
+  Squares waiting_;     ///< sums of cells whose squares are not yet in the noise
   double noise_cells_ = 0.0;
   double noise_variance_ = 0.0;
   double noise_spread_ = 0.0;  ///< one over the independent samples that the noise rests on

@@ -163,6 +163,7 @@ Tick IncidentTrigger::learn(const Run<Code>& run, Tick from) {
   excursion_ = {};
   excursion_.low_tick = until - 1;
   cell_ = {};
+  level_variance_ = -1.0;
   start_cell(until);
   return std::max(from, until);
 }
@@ -170,8 +171,11 @@ Tick IncidentTrigger::learn(const Run<Code>& run, Tick from) {
 void IncidentTrigger::start_cell(Tick tick) {
   cell_.first_tick = tick;
   cell_.line = tracker_.next_cell();
-  cell_.level = level_codes();
-  cell_.band = options_.hysteresis_share * cell_.level;
+  if (tracker_.noise_variance() != level_variance_) {
+    level_variance_ = tracker_.noise_variance();
+    cell_.level = level_codes();
+    cell_.band = options_.hysteresis_share * cell_.level;
+  }
   cell_.quiet = {};
   baseline_codes_ = line_at(cell_, 0.5 * static_cast<double>(kCell - 1));
   // The pivot need only be near: left alone, it lets the next sums begin before this line is done.
@@ -226,15 +230,19 @@ template <class Code>
 bool IncidentTrigger::pass_over(const Run<Code>& run, Tick from, Tick end) {
   if (excursion_.tainted > 0) return false;
   const auto part = run.part(from, end);
-  if (near(run.minimum, cell_.pivot) && near(run.maximum, cell_.pivot)) {
-    const NearSums sums = near_sums(part, cell_.pivot);
-    if (!within_band(cell_.pivot + sums.lowest, cell_.pivot + sums.highest, from, end))
-      return false;
-    add_quiet(end - from, sums.sum, sums.sum_of_squares);
-  } else {
+  if (!near(run.minimum, cell_.pivot) || !near(run.maximum, cell_.pivot)) {
     const DeviationSums sums = deviation_sums(part, cell_.pivot);
     if (!within_band(sums.minimum, sums.maximum, from, end)) return false;
     add_quiet(sums.count, sums.sum, sums.sum_of_squares);
+  } else if (within_band(run.minimum, run.maximum, from, end)) {
+    const NearSums sums = near_sums(part, cell_.pivot);
+    add_quiet(end - from, sums.sum, sums.sum_of_squares);
+  } else {
+    const NearDeviations found = near_deviations(part, cell_.pivot);
+    if (!within_band(cell_.pivot + found.lowest, cell_.pivot + found.highest, from, end)) {
+      return false;
+    }
+    add_quiet(end - from, found.sums.sum, found.sums.sum_of_squares);
   }
   excursion_.outside = 0;
   excursion_.low_tick = end - 1;

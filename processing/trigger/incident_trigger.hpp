@@ -157,7 +157,8 @@ class IncidentTrigger {
   Tick phase_start_ = 0;  ///< learning
   Tick hold_until_ = 0;   ///< holding
   Cell cell_;
-  std::size_t noisy_cells_ = 0;  ///< successive cells with few quiet samples
+  double level_variance_ = -1.0;  ///< of the noise, that the cell's level is for
+  std::size_t noisy_cells_ = 0;   ///< successive cells with few quiet samples
   Excursion excursion_;
   Pulse pulse_;
   double baseline_codes_ = 0.0;

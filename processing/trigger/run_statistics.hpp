@@ -55,17 +55,27 @@ struct DeviationSums {
 [[nodiscard]] DeviationSums deviation_sums(std::span<const std::int32_t> codes,
                                            std::int32_t pivot) noexcept;
 
-/// The same in a form that is quick to make and to hand on, of codes known to be near the pivot.
+/// The sums alone and quickly, of a run whose extremes are known to be near the pivot.
 struct NearSums {
   std::int32_t sum = 0;
   std::int32_t sum_of_squares = 0;
+};
+
+/// @pre at most 512 codes, none further than kNear from the pivot
+inline constexpr std::int32_t kNear = 2047;
+[[nodiscard]] NearSums near_sums(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept;
+[[nodiscard]] NearSums near_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept;
+
+struct NearDeviations {
+  NearSums sums;
   std::int16_t lowest = 0;  ///< deviation
   std::int16_t highest = 0;
 };
 
-/// @pre at least one code and at most 512, none further than kNear from the pivot
-inline constexpr std::int32_t kNear = 2047;
-[[nodiscard]] NearSums near_sums(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept;
-[[nodiscard]] NearSums near_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept;
+/// With the extremes of this part of the run. @pre at least one code, else as near_sums
+[[nodiscard]] NearDeviations near_deviations(std::span<const std::int16_t> codes,
+                                             std::int32_t pivot) noexcept;
+[[nodiscard]] NearDeviations near_deviations(std::span<const std::int32_t> codes,
+                                             std::int32_t pivot) noexcept;
 
 }  // namespace kolsky

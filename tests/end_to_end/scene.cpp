@@ -18,6 +18,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A sanitizer makes everything slower but the clock.
+#ifdef KOLSKY_SANITIZED
+constexpr double kSpeed = 0.1;
+#else
+constexpr double kSpeed = 1.0;
+#endif
+
 const BenchHistory& shot_of(const Scenario& scenario) {
   static std::map<std::string, BenchHistory> shots;
   auto found = shots.find(scenario.name);
@@ -70,6 +77,7 @@ Lab::Lab(const LabOptions& options) : scenario_(find_scenario(options.scenario))
   const BenchHistory& shot = shot_of(scenario_);
   truth_ = shot.specimen.value_or(SpecimenHistory{});
   AdcSettings settings = adc_settings(scenario_);
+  settings.speed = kSpeed;
   settings.period_s = options.period_s;
   settings.faults = script(options.faults);
   adc_ = std::make_unique<SimulatedAdc>(std::move(settings),

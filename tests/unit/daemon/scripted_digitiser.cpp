@@ -1,52 +1,11 @@
 #include "tests/unit/daemon/scripted_digitiser.hpp"
 
 #include <chrono>
-#include <cstdlib>
-#include <new>
 #include <thread>
 
-namespace {
-
-std::atomic<std::uint64_t> allocations{0};
-thread_local bool counted = false;
-
-void* counting_allocate(std::size_t size) {
-  if (counted) {
-    allocations.fetch_add(1);
-  }
-  void* memory = std::malloc(size == 0 ? 1 : size);
-  if (memory == nullptr) {
-    throw std::bad_alloc();
-  }
-  return memory;
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return counting_allocate(size);
-}
-void* operator new[](std::size_t size) {
-  return counting_allocate(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/unit/daemon/allocation_count.hpp"
 
 namespace kolsky {
-
-std::uint64_t allocations_while_reading() {
-  return allocations.load();
-}
 
 ScriptedDigitiser::ScriptedDigitiser() : codes_(kChannels, std::vector<std::int16_t>(kBlock)) {
   info_.uri = "scripted:";
@@ -85,7 +44,7 @@ std::int16_t ScriptedDigitiser::code(std::size_t channel, Tick tick) const {
 }
 
 ReadStatus ScriptedDigitiser::read(Block& block) {
-  counted = next_ > 0;
+  count_allocations(next_ > 0);
   if (cancelled_.load()) {
     return ReadStatus::disconnected;
   }

@@ -10,7 +10,8 @@
 
 namespace kolsky {
 
-/// A digitiser that delivers, read by read, what a test writes down.
+/// A digitiser that delivers, read by read, what a test writes down. From the second read on the
+/// allocations of the thread that reads are counted.
 class ScriptedDigitiser final : public Digitiser {
  public:
   struct Step {
@@ -67,8 +68,5 @@ class ScriptedDigitiser final : public Digitiser {
   std::atomic<bool> cancelled_{false};
   std::atomic<bool> done_{false};
 };
-
-/// How often the thread that reads a ScriptedDigitiser has allocated since its second read.
-[[nodiscard]] std::uint64_t allocations_while_reading();
 
 }  // namespace kolsky

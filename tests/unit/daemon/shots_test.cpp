@@ -77,6 +77,41 @@ TEST(GapLog, CountsAHoleOfUnknownLengthOnlyBetweenSamplesOfTheWindow) {
   EXPECT_EQ(log.within(99, 101).size(), 1U);
 }
 
+TEST(GapLog, TakesHolesOffTheEndsOfAWindow) {
+  const Window window{.trigger = {.tick = 250}, .first_tick = 200, .end_tick = 300};
+  const auto fitted = [&](const Gap& gap) {
+    GapLog log;
+    log.add(gap);
+    return log.without_holes_at_ends(window);
+  };
+  const auto known = [](Tick first, std::int64_t samples) {
+    return Gap{.first_tick = first, .samples = samples, .known = true};
+  };
+  EXPECT_EQ(fitted(known(195, 10)).first_tick, 205);
+  EXPECT_EQ(fitted(known(195, 5)).first_tick, 200);
+  EXPECT_EQ(fitted(known(200, 1)).first_tick, 201);
+  EXPECT_EQ(fitted(known(201, 1)).first_tick, 200);
+
+  EXPECT_EQ(fitted(known(290, 9)).end_tick, 300);
+  EXPECT_EQ(fitted(known(290, 9)).end, WindowEnd::full);
+  EXPECT_EQ(fitted(known(290, 10)).end_tick, 290);
+  EXPECT_EQ(fitted(known(290, 1000)).end, WindowEnd::interrupted);
+  EXPECT_EQ(fitted(known(300, 1000)).end_tick, 300);
+  EXPECT_EQ(fitted({.first_tick = 290, .samples = 0, .known = false}).end_tick, 300);
+}
+
+TEST(Interruption, IsAHoleBeforeOneRepeatedSample) {
+  Shot shot;
+  shot.first_tick = 100;
+  shot.channels.resize(2);
+  shot.channels[0].codes = {1, 2, 3};
+  shot.channels[1].codes = {4, 5, 6};
+  mark_interrupted(shot);
+  EXPECT_EQ(shot.channels[0].codes, (std::vector<std::int32_t>{1, 2, 3, 3}));
+  EXPECT_EQ(shot.channels[1].codes, (std::vector<std::int32_t>{4, 5, 6, 6}));
+  EXPECT_EQ(shot.gaps, (std::vector{Gap{.first_tick = 103, .samples = 0, .known = false}}));
+}
+
 TEST(StoreLock, KeepsASecondDaemonOut) {
   const Folder folder;
   {

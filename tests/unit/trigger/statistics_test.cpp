@@ -124,21 +124,28 @@ TEST(NearSums, AreTheSameOfCodesNearThePivot) {
     const auto narrow = random_codes<std::int16_t>(size, kPivot - kNear, 32767);
     const auto wide = random_codes<std::int32_t>(size, kPivot - kNear, kPivot + kNear);
     for (const auto& [near, any] :
-         {std::pair(near_sums(narrow, kPivot), deviation_sums(narrow, kPivot)),
-          std::pair(near_sums(wide, kPivot), deviation_sums(wide, kPivot))}) {
-      EXPECT_EQ(near.sum, any.sum);
-      EXPECT_EQ(near.sum_of_squares, any.sum_of_squares);
+         {std::pair(near_deviations(narrow, kPivot), deviation_sums(narrow, kPivot)),
+          std::pair(near_deviations(wide, kPivot), deviation_sums(wide, kPivot))}) {
+      EXPECT_EQ(near.sums.sum, any.sum);
+      EXPECT_EQ(near.sums.sum_of_squares, any.sum_of_squares);
       EXPECT_EQ(kPivot + near.lowest, any.minimum);
       EXPECT_EQ(kPivot + near.highest, any.maximum);
+    }
+    for (const auto& [sums, any] :
+         {std::pair(near_sums(narrow, kPivot), deviation_sums(narrow, kPivot)),
+          std::pair(near_sums(wide, kPivot), deviation_sums(wide, kPivot))}) {
+      EXPECT_EQ(sums.sum, any.sum);
+      EXPECT_EQ(sums.sum_of_squares, any.sum_of_squares);
     }
   }
   for (const std::int32_t edge : {-kNear, kNear}) {
     const std::vector<std::int16_t> codes(512, static_cast<std::int16_t>(edge));
-    const NearSums sums = near_sums(codes, 0);
-    EXPECT_EQ(sums.sum, 512 * edge);
-    EXPECT_EQ(sums.sum_of_squares, 512 * kNear * kNear);
-    EXPECT_EQ(sums.lowest, edge);
-    EXPECT_EQ(sums.highest, edge);
+    for (const NearSums& sums : {near_sums(codes, 0), near_deviations(codes, 0).sums}) {
+      EXPECT_EQ(sums.sum, 512 * edge);
+      EXPECT_EQ(sums.sum_of_squares, 512 * kNear * kNear);
+    }
+    EXPECT_EQ(near_deviations(codes, 0).lowest, edge);
+    EXPECT_EQ(near_deviations(codes, 0).highest, edge);
   }
 }
 
