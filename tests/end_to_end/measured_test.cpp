@@ -1,0 +1,155 @@
+// Records that other laboratories measured, all the way: table, capture, replay through the daemon,
+// published result.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "daemon/daemon.hpp"
+#include "drivers/files/capture.hpp"
+#include "drivers/files/table_import.hpp"
+#include "processing/reduction/reducer.hpp"
+#include "proto/codec.hpp"
+#include "tests/end_to_end/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+using scene::Folder;
+using scene::Listener;
+
+struct Measured {
+  const char* name;
+  const char* bench;                ///< in docs/benches
+  std::vector<std::string> tables;  ///< in the shared data
+  const char* trigger;
+  int pre_samples;
+  int post_samples;
+  // What the material is known for at such rates, as engineering stress; docs/measured.md says from
+  // where.
+  double least_peak_Pa;
+  double most_peak_Pa;
+};
+
+std::filesystem::path shared(const std::string& name) {
+  return std::filesystem::path(KOLSKY_SHARED_DATA) / "real" / name;
+}
+
+/// The shot's published result, after it went through a daemon of its own.
+struct Outcome {
+  Reduction published;
+  Reduction again;  ///< the stored capture, reduced anew
+};
+
+Outcome replayed(const Measured& set) {
+  const Folder folder;
+  TableImport request;
+  request.bench = std::filesystem::path(KOLSKY_SOURCE_DIR) / "docs/benches" / set.bench;
+  for (const std::string& table : set.tables) {
+    request.tables.push_back(shared(table));
+  }
+  write_capture(import_tables(request), folder / "imported.h5");
+  folder.write("kolskyd.toml",
+               "bench = \"" + request.bench.string() + "\"\n[digitiser]\nuri = \"replay:" +
+                   (folder / "imported.h5").string() + "\"\n[trigger]\nchannel = \"" + set.trigger +
+                   "\"\npre_samples = " + std::to_string(set.pre_samples) +
+                   "\npost_samples = " + std::to_string(set.post_samples) +
+                   "\n[store]\nfolder = \"store\"\n[endpoints]\nresults = \"tcp://127.0.0.1:*\"\n"
+                   "preview = \"tcp://127.0.0.1:*\"\ncontrol = \"tcp://127.0.0.1:*\"\n");
+  Daemon daemon(read_config(folder / "kolskyd.toml"));
+  daemon.start();
+  if (!scene::eventually([&] { return daemon.finished(); })) {
+    throw std::runtime_error("the replay does not end");
+  }
+  Listener listener(daemon.endpoints());
+  const v1::ShotList list = listener.control().list_shots();
+  if (list.shots_size() != 1) {
+    throw std::runtime_error(std::to_string(list.shots_size()) + " shots of one record");
+  }
+  const std::string id = list.shots(0).id();
+  const v1::ShotAndResult got = listener.control().get_shot(id);
+  return {wire::decode(got.result()),
+          Reducer().reduce(read_capture(folder / "store" / "shots" / (id + ".h5")))};
+}
+
+double peak(const std::vector<double>& history) {
+  return history.empty() ? 0.0 : *std::max_element(history.begin(), history.end());
+}
+
+class MeasuredRecords : public ::testing::TestWithParam<Measured> {};
+
+TEST_P(MeasuredRecords, ReachAPublishedResultThatTheMaterialIsKnownFor) {
+  const Measured& set = GetParam();
+  if (!std::filesystem::exists(shared(set.tables.front()))) {
+    GTEST_SKIP() << "the measured records are not beside the project";
+  }
+  const Outcome outcome = replayed(set);
+  ASSERT_TRUE(outcome.published.quality.reducible) << outcome.published.quality.reason;
+  EXPECT_EQ(outcome.published.stress_Pa, outcome.again.stress_Pa);
+  EXPECT_EQ(outcome.published.strain, outcome.again.strain);
+  EXPECT_EQ(outcome.published.time_s, outcome.again.time_s);
+  EXPECT_GT(peak(outcome.published.stress_Pa), set.least_peak_Pa);
+  EXPECT_LT(peak(outcome.published.stress_Pa), set.most_peak_Pa);
+  std::printf("%s: peak stress %.1f MPa, largest strain %.4f\n", set.name,
+              peak(outcome.published.stress_Pa) / 1e6, peak(outcome.published.strain));
+}
+
+Measured steel(int shot) {
+  return {"945 steel",
+          "steel-945.toml",
+          {"steel-20mm-bars/steel-945/945steel_compression_0" + std::to_string(shot) + ".csv"},
+          "incident",
+          1500,
+          17000,
+          900e6,
+          1300e6};
+}
+
+Measured epoxy(int shot) {
+  return {"epoxy",
+          "epoxy.toml",
+          {"steel-20mm-bars/epoxy/sample_0" + std::to_string(shot) + "_voltage.csv"},
+          "incident",
+          2000,
+          17500,
+          180e6,
+          330e6};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OtherLaboratories, MeasuredRecords,
+    ::testing::Values(Measured{"OFE copper",
+                               "lanl-copper.toml",
+                               {"lanl-ti-bar-copper/20061201_1148HE_CuOFE_273K.raw"},
+                               "incident",
+                               400,
+                               4500,
+                               250e6,
+                               380e6},
+                      Measured{"PMMA",
+                               "lanl-pmma.toml",
+                               {"lanl-mini-kolsky-pmma/180303_171828_Ch1.csv",
+                                "lanl-mini-kolsky-pmma/180303_171828_Ch2.csv",
+                                "lanl-mini-kolsky-pmma/180303_171828_Ch3.csv",
+                                "lanl-mini-kolsky-pmma/180303_171828_Ch4.csv"},
+                               "incident-1",
+                               5000,
+                               35000,
+                               120e6,
+                               300e6},
+                      epoxy(1), epoxy(2), steel(1), steel(2), steel(3), steel(4), steel(5),
+                      steel(6)));
+
+TEST(MeasuredPairs, RepeatWithinThemselves) {
+  if (!std::filesystem::exists(shared("steel-20mm-bars"))) {
+    GTEST_SKIP() << "the measured records are not beside the project";
+  }
+  for (const int first : {1, 3, 5}) {
+    const double a = peak(replayed(steel(first)).published.stress_Pa);
+    const double b = peak(replayed(steel(first + 1)).published.stress_Pa);
+    EXPECT_LT(std::abs(a - b) / (a + b) * 2.0, 0.05) << "shots " << first << " and " << first + 1;
+  }
+}
+
+}  // namespace
+}  // namespace kolsky
