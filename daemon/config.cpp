@@ -18,8 +18,9 @@ namespace {
 constexpr std::int64_t kLongestWindow = std::int64_t{1} << 26;
 constexpr std::string_view kReplay = "replay:";
 
+// Absolute, because clients that run elsewhere are told of it.
 std::filesystem::path beside(const std::filesystem::path& file, const std::filesystem::path& path) {
-  return path.is_absolute() ? path : (file.parent_path() / path).lexically_normal();
+  return (std::filesystem::absolute(file).parent_path() / path).lexically_normal();
 }
 
 double number_within(const TomlTable& table, const std::string& key, double otherwise, double least,

@@ -47,7 +47,7 @@ struct EndpointConfig {
   friend bool operator==(const EndpointConfig&, const EndpointConfig&) = default;
 };
 
-/// What KOLSKYD.toml says. Paths are absolute or relative to where the daemon runs; in the file
+/// What KOLSKYD.toml says. Paths are absolute; in the file
 /// they are relative to the file.
 struct DaemonConfig {
   std::filesystem::path file;

@@ -75,6 +75,8 @@ void Controller::status(v1::Status& status) {
   status.set_software_version(KOLSKY_VERSION);
   status.set_bench_path(station_.settings()->bench_path);
   status.set_store_folder(station_.store().root.string());
+  status.set_results_endpoint(station_.publisher().results_endpoint());
+  status.set_preview_endpoint(station_.publisher().preview_endpoint());
   for (const StageDuration& lap : station_.recorder().last_timings()) {
     v1::StageTiming& timing = *status.add_timings();
     timing.set_stage(lap.stage);

@@ -181,8 +181,8 @@ struct Subscriber::State {
     socket.set(zmq::sockopt::heartbeat_timeout, kHeartbeatTimeout_ms);
     socket.set(zmq::sockopt::reconnect_ivl_max, kReconnectMost_ms);
     // The status topic last: its first message proves that the other subscriptions have arrived.
-    std::ranges::stable_partition(
-        topics, [](const std::string& topic) { return topic != wire::kStatusTopic; });
+    std::stable_partition(topics.begin(), topics.end(),
+                          [](const std::string& topic) { return topic != wire::kStatusTopic; });
     for (const std::string& topic : topics) {
       socket.set(zmq::sockopt::subscribe, topic);
     }

@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 // Planes a power of two apart would share cache sets; an odd number of lines between them does not.
-constexpr std::size_t kStagger = 3 * 64;
+constexpr std::size_t kStagger = 192;
 
 std::size_t power_of_two(std::size_t channels, std::size_t capacity_samples) {
   if (channels == 0) throw InputError("channels", "the ring has none", "enable a channel");
-  constexpr std::size_t kMost = std::size_t{1} << 40;
+  constexpr std::size_t kMost = std::size_t{1} << 34;
   if (capacity_samples == 0 || capacity_samples > kMost / channels) {
     throw InputError(
         "capacity_samples", std::to_string(capacity_samples) + " cannot be held",

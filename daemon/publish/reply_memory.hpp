@@ -1,10 +1,10 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <deque>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace kolsky {
@@ -17,7 +17,9 @@ using Route = std::vector<std::string>;
 struct RequestKey {
   std::string client_id;
   std::string request_id;
-  friend auto operator<=>(const RequestKey&, const RequestKey&) = default;
+  friend bool operator<(const RequestKey& a, const RequestKey& b) {
+    return std::tie(a.client_id, a.request_id) < std::tie(b.client_id, b.request_id);
+  }
 };
 
 /// The requests under way and the replies given lately, so that none is carried out twice. Requests

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::string_view kPrefix = "\nKOLSKY CAPTURE SEAL 1 sha256 ";
 constexpr std::size_t kSealBytes = kPrefix.size() + 64 + 1;
-/// HDF5's signature, and the version of its format from which objects carry checksums: what Kolsky writes.
+/// HDF5's signature, and the version of its format from which objects carry checksums: what Kolsky
+/// writes.
 constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n\x02";
 
 std::string seal_line(const std::string& digest) {

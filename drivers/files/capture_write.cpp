@@ -23,6 +23,7 @@ namespace layout = capture_layout;
 std::vector<std::string> link_names(const std::vector<ChannelRecord>& channels) {
   std::set<std::string> used{layout::kTime};
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const ChannelRecord& channel : channels) {
     names.push_back(hdf5::link_name(channel.gauge, used));
   }

@@ -139,6 +139,7 @@ void put_attribute(hid_t object, const std::string& name, const std::string& tex
 void put_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts) {
   const Type type = utf8_type(H5T_VARIABLE);
   std::vector<const char*> pointers;
+  pointers.reserve(texts.size());
   for (const std::string& text : texts) {
     pointers.push_back(text.c_str());
   }

@@ -14,6 +14,9 @@ constexpr double kMedianEfficiency = 0.6;
 // A newly learned variance up to so many times the known one is the same noise, known less well.
 constexpr double kSameNoise = 2.25;
 
+// After so many memories the weights of the noise no longer change.
+constexpr double kSettled = 8.0;
+
 struct Group {
   double centre = 0.0;  ///< samples before the end of the stretch, negative
   double mean = 0.0;
@@ -183,6 +186,7 @@ void BaselineTracker::absorb_noise(const Cell& cell) noexcept {
   const double gain = noise_gain_ * noise_cells_ < 1.0 ? 1.0 / noise_cells_ : noise_gain_;
   noise_variance_ += gain * (cell.mean_square - noise_variance_);
   baseline_variance_ += gain * (cell.miss_square - baseline_variance_);
+  if (noise_gain_ * noise_cells_ > kSettled) return;
   noise_spread_ = square(1.0 - gain) * noise_spread_ + square(gain) / static_cast<double>(kCell);
 }
 

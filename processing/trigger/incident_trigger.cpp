@@ -20,6 +20,8 @@ constexpr Tick kMostRises = 4;
 constexpr double kRoundingVariance = 1.0 / 12.0;
 constexpr std::size_t kLeastQuiet = 64;
 constexpr double kPivotReach = 256.0;
+// Samples of a restless cell that are judged together before each is looked at.
+constexpr Tick kPiece = 32;
 
 // Quiet samples from which the noise of the time is estimated.
 std::size_t quiet_samples(const TriggerOptions& options) {
@@ -78,6 +80,7 @@ void IncidentTrigger::reset_run() {
     pulse_.fit_tick = next_tick_ - 1;
     finish_pulse(Run<std::int16_t>{history_, next_tick_, next_tick_, {}, 0, 0});
   }
+  if (phase_ != Phase::holding) phase_ = Phase::learning;
   started_ = false;
 }
 
@@ -109,8 +112,9 @@ template <class Code>
 std::optional<TriggerEvent> IncidentTrigger::take(Tick first_tick, std::span<const Code> codes,
                                                   const RunStatistics& statistics) {
   if (!started_ || first_tick != next_tick_) start_run(first_tick);
-  const Run<Code> run{history_, first_tick,         first_tick + ticks(codes.size()),
-                      codes,    statistics.minimum, statistics.maximum};
+  const auto size = static_cast<std::int64_t>(codes.size());
+  const RunStatistics known = statistics.count == size ? statistics : run_statistics(codes);
+  const Run<Code> run{history_, first_tick, first_tick + size, codes, known.minimum, known.maximum};
   Tick tick = run.first;
   while (tick < run.end) {
     switch (phase_) {
@@ -138,7 +142,8 @@ void IncidentTrigger::start_run(Tick tick) {
   reset_run();
   started_ = true;
   run_start_ = tick;
-  if (phase_ != Phase::holding || tick >= hold_until_) start_learning(tick);
+  const bool still_held = tick >= pulse_.found_tick && tick < hold_until_;
+  if (phase_ != Phase::holding || !still_held) start_learning(tick);
 }
 
 void IncidentTrigger::start_learning(Tick tick) {
@@ -210,30 +215,46 @@ bool IncidentTrigger::within_band(std::int32_t minimum, std::int32_t maximum, Ti
          maximum - std::min(first, last) < cell_.band;
 }
 
-void IncidentTrigger::add_quiet(const DeviationSums& sums) {
-  cell_.quiet.count += sums.count;
-  cell_.quiet.sum += sums.sum;
-  cell_.quiet.sum_of_squares += sums.sum_of_squares;
+void IncidentTrigger::add_quiet(std::int64_t count, std::int64_t sum, std::int64_t sum_of_squares) {
+  cell_.quiet.count += count;
+  cell_.quiet.sum += sum;
+  cell_.quiet.sum_of_squares += sum_of_squares;
+}
+
+// Over samples that are all within the band, if they are.
+template <class Code>
+bool IncidentTrigger::pass_over(const Run<Code>& run, Tick from, Tick end) {
+  if (excursion_.tainted > 0) return false;
+  const auto part = run.part(from, end);
+  if (near(run.minimum, cell_.pivot) && near(run.maximum, cell_.pivot)) {
+    const NearSums sums = near_sums(part, cell_.pivot);
+    if (!within_band(cell_.pivot + sums.lowest, cell_.pivot + sums.highest, from, end))
+      return false;
+    add_quiet(end - from, sums.sum, sums.sum_of_squares);
+  } else {
+    const DeviationSums sums = deviation_sums(part, cell_.pivot);
+    if (!within_band(sums.minimum, sums.maximum, from, end)) return false;
+    add_quiet(sums.count, sums.sum, sums.sum_of_squares);
+  }
+  excursion_.outside = 0;
+  excursion_.low_tick = end - 1;
+  return true;
 }
 
 template <class Code>
 Tick IncidentTrigger::watch(const Run<Code>& run, Tick from) {
   const Tick cell_end = cell_.first_tick + kCell;
   const Tick end = std::min(run.end, cell_end);
-  Tick reached = end;
-  const auto part = run.part(from, end);
-  const bool small = near(run.minimum, cell_.pivot) && near(run.maximum, cell_.pivot);
-  const DeviationSums sums =
-      small ? near_deviation_sums(part, cell_.pivot) : deviation_sums(part, cell_.pivot);
-  if (excursion_.tainted == 0 && within_band(sums.minimum, sums.maximum, from, end)) {
-    add_quiet(sums);
-    excursion_.outside = 0;
-    excursion_.low_tick = end - 1;
+  if (!pass_over(run, from, end)) {
+    while (from < end && phase_ == Phase::watching) {
+      const Tick piece_end = std::min(end, from + kPiece);
+      from = pass_over(run, from, piece_end) ? piece_end : look_closely(run, from, piece_end);
+    }
   } else {
-    reached = look_closely(run, from, end);
+    from = end;
   }
-  if (phase_ == Phase::watching && reached == cell_end) finish_cell();
-  return reached;
+  if (phase_ == Phase::watching && from == cell_end) finish_cell();
+  return from;
 }
 
 double IncidentTrigger::mean_deviation(Tick tick) const {
@@ -259,7 +280,8 @@ Tick IncidentTrigger::look_closely(const Run<Code>& run, Tick from, Tick end) {
     if (side == 0) {
       now.outside = 0;
       now.tainted -= now.tainted > 0 ? 1 : 0;
-      add_quiet(deviation_sums(code, cell_.pivot));
+      const std::int64_t off = held_deviation(code, cell_.pivot);
+      add_quiet(1, off, off * off);
     } else {
       now.outside = side == now.side ? now.outside + 1 : 1;
       now.side = side;

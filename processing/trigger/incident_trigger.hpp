@@ -121,6 +121,8 @@ class IncidentTrigger {
   template <class Code>
   Tick watch(const Run<Code>& run, Tick from);
   template <class Code>
+  bool pass_over(const Run<Code>& run, Tick from, Tick end);
+  template <class Code>
   Tick look_closely(const Run<Code>& run, Tick from, Tick end);
   template <class Code>
   Tick settle(const Run<Code>& run, Tick from);
@@ -135,7 +137,7 @@ class IncidentTrigger {
   void start_learning(Tick tick);
   void start_cell(Tick tick);
   void finish_cell();
-  void add_quiet(const DeviationSums& sums);
+  void add_quiet(std::int64_t count, std::int64_t sum, std::int64_t sum_of_squares);
   [[nodiscard]] double line_at(const Cell& cell, double samples_after_first) const;
   [[nodiscard]] double mean_deviation(Tick tick) const;
   [[nodiscard]] bool within_band(std::int32_t minimum, std::int32_t maximum, Tick from,

@@ -16,8 +16,6 @@
 namespace kolsky {
 namespace {
 
-constexpr std::int32_t kDeviationLimit = 1 << 27;
-
 struct NarrowSums {
   std::int64_t sum = 0;
   std::int64_t sum_of_squares = 0;
@@ -155,12 +153,9 @@ KOLSKY_WIDE DeviationSums wide_deviations(const std::int32_t* codes, std::size_t
   DeviationSums sums;
   std::int32_t minimum = std::numeric_limits<std::int32_t>::max();
   std::int32_t maximum = std::numeric_limits<std::int32_t>::min();
-  const std::int64_t low = std::int64_t{pivot} - kDeviationLimit;
-  const std::int64_t high = std::int64_t{pivot} + kDeviationLimit;
   for (std::size_t i = 0; i < size; ++i) {
     const std::int32_t code = codes[i];
-    const auto deviation =
-        static_cast<std::int32_t>(std::clamp(std::int64_t{code}, low, high) - pivot);
+    const std::int32_t deviation = held_deviation(code, pivot);
     sums.sum += deviation;
     sums.sum_of_squares += std::int64_t{deviation} * deviation;
     minimum = std::min(minimum, code);
@@ -173,40 +168,38 @@ KOLSKY_WIDE DeviationSums wide_deviations(const std::int32_t* codes, std::size_t
 }
 
 // At most 512 squares of 2047 fit 32 bits.
-KOLSKY_WIDE DeviationSums narrow_near(const std::int16_t* codes, std::size_t size,
-                                      std::int32_t pivot) noexcept {
+KOLSKY_WIDE NearSums narrow_near(const std::int16_t* codes, std::size_t size,
+                                 std::int32_t pivot) noexcept {
   const auto middle = static_cast<std::uint16_t>(pivot);
-  std::int32_t sum = 0;
-  std::int32_t sum_of_squares = 0;
-  std::int16_t minimum = kNear;
-  std::int16_t maximum = -kNear;
+  NearSums sums{0, 0, kNear, -kNear};
   for (std::size_t i = 0; i < size; ++i) {
     // Modulo 2^16: exact, since the difference is small even where the pivot is off the codes'
     // range.
     const auto code = static_cast<std::uint16_t>(codes[i]);
     const auto deviation = static_cast<std::int16_t>(static_cast<std::uint16_t>(code - middle));
-    sum += deviation;
-    sum_of_squares += static_cast<std::int32_t>(deviation) * deviation;
-    minimum = std::min(minimum, deviation);
-    maximum = std::max(maximum, deviation);
+    sums.sum += deviation;
+    sums.sum_of_squares += static_cast<std::int32_t>(deviation) * deviation;
+    sums.lowest = std::min(sums.lowest, deviation);
+    sums.highest = std::max(sums.highest, deviation);
   }
-  return {static_cast<std::int64_t>(size), sum, sum_of_squares, pivot + minimum, pivot + maximum};
+  return sums;
 }
 
-KOLSKY_WIDE DeviationSums wide_near(const std::int32_t* codes, std::size_t size,
-                                    std::int32_t pivot) noexcept {
+KOLSKY_WIDE NearSums wide_near(const std::int32_t* codes, std::size_t size,
+                               std::int32_t pivot) noexcept {
   std::int32_t sum = 0;
   std::int32_t sum_of_squares = 0;
-  std::int32_t minimum = kNear;
-  std::int32_t maximum = -kNear;
+  std::int32_t lowest = kNear;
+  std::int32_t highest = -kNear;
   for (std::size_t i = 0; i < size; ++i) {
     const std::int32_t deviation = codes[i] - pivot;
     sum += deviation;
     sum_of_squares += deviation * deviation;
-    minimum = std::min(minimum, deviation);
-    maximum = std::max(maximum, deviation);
+    lowest = std::min(lowest, deviation);
+    highest = std::max(highest, deviation);
   }
-  return {static_cast<std::int64_t>(size), sum, sum_of_squares, pivot + minimum, pivot + maximum};
+  return {sum, sum_of_squares, static_cast<std::int16_t>(lowest),
+          static_cast<std::int16_t>(highest)};
 }
 
 template <class Sums>
@@ -258,13 +251,11 @@ DeviationSums deviation_sums(std::span<const std::int32_t> codes, std::int32_t p
   return wide_deviations(codes.data(), codes.size(), pivot);
 }
 
-DeviationSums near_deviation_sums(std::span<const std::int16_t> codes,
-                                  std::int32_t pivot) noexcept {
+NearSums near_sums(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept {
   return narrow_near(codes.data(), codes.size(), pivot);
 }
 
-DeviationSums near_deviation_sums(std::span<const std::int32_t> codes,
-                                  std::int32_t pivot) noexcept {
+NearSums near_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept {
   return wide_near(codes.data(), codes.size(), pivot);
 }
 

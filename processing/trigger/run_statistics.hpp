@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,6 +32,13 @@ RunStatistics copy_with_statistics(std::span<const std::int16_t> from,
 RunStatistics copy_with_statistics(std::span<const std::int32_t> from,
                                    std::span<std::int32_t> to) noexcept;
 
+/// The deviation of one code from a pivot as DeviationSums counts it.
+[[nodiscard]] constexpr std::int32_t held_deviation(std::int32_t code,
+                                                    std::int32_t pivot) noexcept {
+  constexpr std::int64_t kLimit = std::int64_t{1} << 27;
+  return static_cast<std::int32_t>(std::clamp(std::int64_t{code} - pivot, -kLimit, kLimit));
+}
+
 /// Exact sums of a short run's deviations from a whole number near its mean, and its extremes.
 /// Being integers they add up to the same whatever the pieces a run came in. Deviations beyond 2^27
 /// count as 2^27; at most 512 samples.
@@ -42,25 +50,22 @@ struct DeviationSums {
   std::int32_t maximum = 0;
 };
 
-/// Of one code.
-[[nodiscard]] inline DeviationSums deviation_sums(std::int32_t code, std::int32_t pivot) noexcept {
-  const std::int64_t deviation = std::int64_t{code} - pivot;
-  const std::int64_t limit = std::int64_t{1} << 27;
-  const std::int64_t kept = deviation < -limit ? -limit : (deviation > limit ? limit : deviation);
-  return {1, kept, kept * kept, code, code};
-}
-
 [[nodiscard]] DeviationSums deviation_sums(std::span<const std::int16_t> codes,
                                            std::int32_t pivot) noexcept;
 [[nodiscard]] DeviationSums deviation_sums(std::span<const std::int32_t> codes,
                                            std::int32_t pivot) noexcept;
 
-/// The same, faster.
-/// @pre no code is further than kNear from the pivot
+/// The same in a form that is quick to make and to hand on, of codes known to be near the pivot.
+struct NearSums {
+  std::int32_t sum = 0;
+  std::int32_t sum_of_squares = 0;
+  std::int16_t lowest = 0;  ///< deviation
+  std::int16_t highest = 0;
+};
+
+/// @pre at least one code and at most 512, none further than kNear from the pivot
 inline constexpr std::int32_t kNear = 2047;
-[[nodiscard]] DeviationSums near_deviation_sums(std::span<const std::int16_t> codes,
-                                                std::int32_t pivot) noexcept;
-[[nodiscard]] DeviationSums near_deviation_sums(std::span<const std::int32_t> codes,
-                                                std::int32_t pivot) noexcept;
+[[nodiscard]] NearSums near_sums(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept;
+[[nodiscard]] NearSums near_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept;
 
 }  // namespace kolsky

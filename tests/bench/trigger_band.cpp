@@ -135,7 +135,10 @@ void print_missed(int count) {
 
 void print_times(int count) {
   const double peaks[] = {10, 12, 15, 20, 40, 100, 300};
-  std::printf("\nTime of the crossing of 8 sigma, us: bias, scatter / stated sigma\n\n|");
+  std::printf(
+      "\nTime of the crossing in us, by peak over rms noise: mean after the true crossing of 8 "
+      "sigma, "
+      "scatter / stated sigma\n\n|");
   for (const double peak : peaks) std::printf(" | %g", peak);
   std::printf(" |\n|---|");
   for ([[maybe_unused]] const double peak : peaks) std::printf("---|");
@@ -157,15 +160,16 @@ void print_times(int count) {
 void print_false(double minutes) {
   const double levels[] = {3, 4, 5, 6, 8};
   std::printf(
-      "\nFalse triggers in %g minutes of baseline (at 8 sigma) or %g (below), by level\n\n|",
+      "\nFalse triggers per hour of baseline, by level in sigma; counted over %g minutes at 8, %g "
+      "below\n\n|",
       minutes, minutes / 10.0);
   for (const double level : levels) std::printf(" | %g", level);
   std::printf(" |\n|---|---|---|---|---|---|\n");
   for (const Row& row : rows()) {
     std::printf("| %s", row.name);
     for (const double level : levels) {
-      std::printf(" | %d",
-                  false_triggers(row.background, level, level < 8.0 ? minutes / 10.0 : minutes));
+      const double counted = level < 8.0 ? minutes / 10.0 : minutes;
+      std::printf(" | %.0f", false_triggers(row.background, level, counted) * 60.0 / counted);
       std::fflush(stdout);
     }
     std::printf(" |\n");

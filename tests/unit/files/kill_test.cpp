@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <random>
@@ -20,6 +21,7 @@ using testing::make_shot;
 using testing::TemporaryFolder;
 
 constexpr int kRounds = 30;
+constexpr int kTornRounds = 15;
 const testing::ShotShape kShape{2, 4000, 16};
 
 /// What the daemon does with shots, until it is killed. Says which are journaled.
@@ -47,13 +49,15 @@ std::vector<std::uint32_t> acknowledged(int pipe) {
 }
 
 /// One life of the daemon, cut at a random moment. @return the shots it said were journaled
-std::vector<std::uint32_t> live_and_die(const StoreLayout& store, int round, std::mt19937& random) {
+template <typename Record>
+std::vector<std::uint32_t> live_and_die(const StoreLayout& store, int round, const Record& record,
+                                        std::mt19937& random) {
   int ends[2] = {};
   EXPECT_EQ(::pipe(ends), 0);
   const pid_t child = ::fork();
   if (child == 0) {
     ::close(ends[0]);
-    record_shots(store, round, ends[1]);
+    record(store, round, ends[1]);
   }
   ::close(ends[1]);
   // Every third one may die before its first shot, the others after it.
@@ -80,7 +84,7 @@ TEST(Kill, EveryJournaledShotIsRecoveredWhateverTheMoment) {
   std::size_t recovered = 0;
   std::size_t temporary = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const auto seeds = live_and_die(store, round, random);
+    const auto seeds = live_and_die(store, round, record_shots, random);
     journaled.insert(journaled.end(), seeds.begin(), seeds.end());
     const auto report = recover_store(store);
     for (const auto& problem : report.problems) {
@@ -103,6 +107,51 @@ TEST(Kill, EveryJournaledShotIsRecoveredWhateverTheMoment) {
   std::cout << journaled.size() << " shots in " << kRounds << " lives, " << recovered
             << " captures recovered, " << temporary << " half-written ones removed, "
             << report.bytes_ignored << " torn bytes\n";
+}
+
+/// Large records and nothing else, so that most kills come while one is written.
+[[noreturn]] void journal_large_shots(const StoreLayout& store, int round, int acknowledge) {
+  Journal journal(store.journals() / (std::to_string(round) + ".kj"));
+  Shot shot = make_shot(0, {1, 1'000'000, 16});
+  for (std::uint32_t i = 0;; ++i) {
+    shot.id = "large-" + std::to_string(round) + "-" + std::to_string(i);
+    shot.channels[0].codes[0] = static_cast<std::int32_t>(i);
+    journal.append_shot(shot);
+    if (::write(acknowledge, &i, sizeof i) != sizeof i) {
+      ::_exit(1);
+    }
+  }
+}
+
+TEST(Kill, ATornRecordCostsNoOther) {
+  // In memory, where nothing waits for a disk, most of the time goes into writing.
+  const std::filesystem::path memory = "/dev/shm";
+  const TemporaryFolder folder(
+      std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path());
+  const StoreLayout store{folder / "store"};
+  store.create();
+  std::mt19937 random(1);
+  const auto codes = make_shot(0, {1, 1'000'000, 16}).channels[0].codes;
+  std::uint64_t torn_bytes = 0;
+  for (int round = 0; round < kTornRounds; ++round) {
+    const auto acknowledged_shots = live_and_die(store, round, journal_large_shots, random);
+    const auto path = store.journals() / (std::to_string(round) + ".kj");
+    if (acknowledged_shots.empty() && !std::filesystem::exists(path)) {
+      continue;
+    }
+    const auto contents = read_journal(path);
+    EXPECT_TRUE(contents.problems.empty());
+    EXPECT_GE(contents.shots.size(), acknowledged_shots.size());
+    EXPECT_LE(contents.shots.size(), acknowledged_shots.size() + 1);
+    torn_bytes += contents.bytes_ignored;
+    for (std::size_t i = 0; i < contents.shots.size(); ++i) {
+      const auto& read = contents.shots[i].channels[0].codes;
+      EXPECT_EQ(read[0], static_cast<std::int32_t>(i));
+      EXPECT_TRUE(std::equal(read.begin() + 1, read.end(), codes.begin() + 1, codes.end()));
+    }
+    std::filesystem::remove(path);
+  }
+  std::cout << torn_bytes << " torn bytes in " << kTornRounds << " lives\n";
 }
 
 }  // namespace

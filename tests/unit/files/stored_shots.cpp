@@ -11,8 +11,8 @@
 
 namespace kolsky::testing {
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "kolsky-files-XXXXXX").string();
+TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
+  std::string name = (parent / "kolsky-files-XXXXXX").string();
   path_ = ::mkdtemp(name.data());
 }
 
@@ -79,6 +79,27 @@ Shot make_shot(std::uint32_t seed, const ShotShape& shape) {
   shot.utc_ns = 1'709'210'096'123'456'789 + seed;
   shot.monotonic_ns = 98'765'432'101'234 + seed;
   shot.software_version = "0.1.0 (β)";
+  return shot;
+}
+
+Shot make_golden_shot() {
+  Shot shot;
+  shot.id = "golden-1";
+  shot.bench_toml = bench_text(2);
+  shot.bench = parse_bench(shot.bench_toml, "bench");
+  shot.bar_model =
+      Material{{1180.0, 0.0}, {0.36, 0.01}, {5.5e9, 1e7}, {37e9, 0.0}, {1.8e6, 0.0}, "β"};
+  shot.rate = {1'000'000, 1};
+  shot.first_tick = 123'456'789'012;
+  shot.trigger = TriggerEvent{123'456'789'014, 0.25, 0.05, TriggerKind::marked};
+  shot.channels = {
+      {"g1", "strain", 1e-7, -0.5, 16, -32768, 32767, {-32768, -1, 0, 1, 32767}},
+      {"g2", "strain", 2e-9, 0.0, 24, -8388608, 8388607, {-8388608, 5, 6, 7, 8388607}}};
+  shot.gaps = {{123'456'789'013, 1, true}, {123'456'789'016, 0, false}};
+  shot.meta = {{"a/b", "slash"}, {"specimen", "PA6"}, {"empty", ""}};
+  shot.utc_ns = 1'709'210'096'123'456'789;
+  shot.monotonic_ns = 42;
+  shot.software_version = "0.1.0";
   return shot;
 }
 

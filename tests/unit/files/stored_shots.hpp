@@ -15,7 +15,8 @@ namespace kolsky::testing {
 /// A folder of its own for a test, gone with it.
 class TemporaryFolder {
  public:
-  TemporaryFolder();
+  explicit TemporaryFolder(
+      const std::filesystem::path& parent = std::filesystem::temp_directory_path());
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -39,6 +40,9 @@ struct ShotShape {
 
 /// A shot with every field set, all of it following from the seed.
 [[nodiscard]] Shot make_shot(std::uint32_t seed, const ShotShape& shape = {});
+
+/// The shot in golden/, with numbers written out and not drawn.
+[[nodiscard]] Shot make_golden_shot();
 
 /// Every field but the parsed bench, bit for bit.
 void expect_same(const Shot& actual, const Shot& expected);

@@ -209,7 +209,7 @@ TEST(SampleRing, RefusesSizesThatAreNone) {
   EXPECT_THROW(SampleRing(SampleFormat::int32, 2, std::numeric_limits<std::size_t>::max()),
                InputError);
   EXPECT_THROW(SampleRing(SampleFormat::int32, 2, std::size_t{1} << 39), InputError)
-      << "4 TiB are not to be had";
+      << "no machine has 4 TiB to spare";
 }
 
 }  // namespace

@@ -133,6 +133,7 @@ TEST(SampleRingThreads, AWaitingReaderWakesWhenItsTickIsThere) {
 TEST(SampleRingThreads, StopWakesAllAndForGood) {
   SampleRing ring(SampleFormat::int16, 1, kCapacity);
   std::vector<std::thread> readers;
+  readers.reserve(3);
   for (int i = 0; i < 3; ++i) readers.emplace_back([&] { ring.wait_past(1'000'000); });
   std::this_thread::sleep_for(milliseconds(20));
   ring.stop_waiting();

@@ -85,6 +85,7 @@ TEST_P(Measured, IncidentPulseIsFoundOnItsFlank) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no measured records at " << path;
   const std::vector<double> values = read(path, record);
   std::vector<std::int16_t> codes;
+  codes.reserve(values.size());
   for (const double value : values) {
     codes.push_back(static_cast<std::int16_t>(std::lround(value / record.unit_per_code)));
   }

@@ -118,20 +118,27 @@ TEST(DeviationSums, AreExactAboutAnyPivot) {
   }
 }
 
-TEST(DeviationSums, NearThePivotAreTheSame) {
+TEST(NearSums, AreTheSameOfCodesNearThePivot) {
   constexpr std::int32_t kPivot = 32'000;  // some of the codes' range is beyond 16 bits from here
   for (const std::size_t size : {1UL, 5UL, 128UL, 512UL}) {
     const auto narrow = random_codes<std::int16_t>(size, kPivot - kNear, 32767);
     const auto wide = random_codes<std::int32_t>(size, kPivot - kNear, kPivot + kNear);
     for (const auto& [near, any] :
-         {std::pair(near_deviation_sums(narrow, kPivot), deviation_sums(narrow, kPivot)),
-          std::pair(near_deviation_sums(wide, kPivot), deviation_sums(wide, kPivot))}) {
-      EXPECT_EQ(near.count, any.count);
+         {std::pair(near_sums(narrow, kPivot), deviation_sums(narrow, kPivot)),
+          std::pair(near_sums(wide, kPivot), deviation_sums(wide, kPivot))}) {
       EXPECT_EQ(near.sum, any.sum);
       EXPECT_EQ(near.sum_of_squares, any.sum_of_squares);
-      EXPECT_EQ(near.minimum, any.minimum);
-      EXPECT_EQ(near.maximum, any.maximum);
+      EXPECT_EQ(kPivot + near.lowest, any.minimum);
+      EXPECT_EQ(kPivot + near.highest, any.maximum);
     }
+  }
+  for (const std::int32_t edge : {-kNear, kNear}) {
+    const std::vector<std::int16_t> codes(512, static_cast<std::int16_t>(edge));
+    const NearSums sums = near_sums(codes, 0);
+    EXPECT_EQ(sums.sum, 512 * edge);
+    EXPECT_EQ(sums.sum_of_squares, 512 * kNear * kNear);
+    EXPECT_EQ(sums.lowest, edge);
+    EXPECT_EQ(sums.highest, edge);
   }
 }
 

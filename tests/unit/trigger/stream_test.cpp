@@ -128,6 +128,15 @@ TEST(IncidentTrigger, FindsTheSameHoweverTheStreamIsCut) {
   }
 }
 
+TEST(IncidentTrigger, TakesItsOwnStatisticsWhereItIsGivenNone) {
+  const Codes codes = draw({.noise_codes = kNoise, .spikes = 1e-3, .spike_codes = 30'000.0}, 20'000,
+                           2, pulse_at(9000.4, {3000.0, 30.0, 170.0}));
+  IncidentTrigger trigger{TriggerOptions{}};
+  const auto event = trigger.feed(0, codes, RunStatistics{});
+  ASSERT_TRUE(event);
+  EXPECT_EQ(*event, events_of(codes).at(0));
+}
+
 TEST(IncidentTrigger, TellsSeveralTriggersOfOneRunOneByOne) {
   TriggerOptions options;
   options.hold_off_samples = 1000;
@@ -274,6 +283,24 @@ TEST(IncidentTrigger, HoldsOffAndThenFindsTheNextPulse) {
   EXPECT_NEAR(time_of(events[1]), 20'000.0, 30.0);
 }
 
+TEST(IncidentTrigger, HoldsOffOverAHoleButNotIntoAStreamThatBeginsAnew) {
+  TriggerOptions options;
+  options.hold_off_samples = 50'000;
+  const signals::Pulse pulse{3000.0, 30.0, 170.0};
+  const Codes codes = draw({.noise_codes = kNoise}, 10'000, 22, pulse_at(5000.0, pulse));
+  IncidentTrigger trigger(options);
+  std::vector<TriggerEvent> events;
+  const auto size = [] { return 1000UL; };
+  feed_all(trigger, codes, size, events);
+  ASSERT_EQ(events.size(), 1U);
+  feed_all(trigger, codes, size, events, 20'000);
+  EXPECT_EQ(events.size(), 1U) << "within the hold-off of the first";
+  feed_all(trigger, codes, size, events, 60'000);
+  EXPECT_EQ(events.size(), 2U);
+  feed_all(trigger, codes, size, events, 0);
+  EXPECT_EQ(events.size(), 3U) << "ticks that begin anew know no hold-off";
+}
+
 TEST(IncidentTrigger, GetsOverAStepOfTheBaseline) {
   TriggerOptions options;
   options.hold_off_samples = 2000;
@@ -311,6 +338,7 @@ TEST(IncidentTrigger, KeepsTheNoiseOverAHoleAndForgetsItForAnotherCapture) {
   ASSERT_TRUE(trigger.ready());
   const double noise = trigger.noise_codes();
   trigger.reset_run();
+  EXPECT_FALSE(trigger.ready());
   EXPECT_EQ(trigger.noise_codes(), noise);
   EXPECT_NEAR(trigger.baseline_codes(), 500.0, 10.0);
 
