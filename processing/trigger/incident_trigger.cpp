@@ -38,8 +38,15 @@ std::size_t history_samples(const TriggerOptions& options) {
   return std::max(options.learn_samples, quiet_samples(options) + pulse_samples(options));
 }
 
-bool near(std::int32_t code, std::int32_t pivot) {
-  return std::abs(std::int64_t{code} - pivot) <= kNear;
+// Towards zero, and less than the ends of the range.
+std::int32_t whole(double codes) {
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max() - 1;
+  return static_cast<std::int32_t>(std::min(std::max(codes, -kMost), kMost));
+}
+
+bool near(const Extremes& codes, std::int32_t pivot) {
+  return codes.minimum >= std::int64_t{pivot} - kNear &&
+         codes.maximum <= std::int64_t{pivot} + kNear;
 }
 
 Tick ticks(std::size_t samples) {
@@ -55,8 +62,7 @@ struct IncidentTrigger::Run {
   Tick first;
   Tick end;
   std::span<const Code> codes;
-  std::int32_t minimum;
-  std::int32_t maximum;
+  Extremes all;
 
   [[nodiscard]] std::int32_t at(Tick tick) const {
     return tick >= first ? codes[static_cast<std::size_t>(tick - first)] : history.at(tick);
@@ -78,7 +84,7 @@ void IncidentTrigger::reset_run() {
   if (phase_ == Phase::settling) {
     // The pulse was certain; its time has to do with the samples there are.
     pulse_.fit_tick = next_tick_ - 1;
-    finish_pulse(Run<std::int16_t>{history_, next_tick_, next_tick_, {}, 0, 0});
+    finish_pulse(Run<std::int16_t>{history_, next_tick_, next_tick_, {}, {}});
   }
   if (phase_ != Phase::holding) phase_ = Phase::learning;
   started_ = false;
@@ -114,7 +120,8 @@ std::optional<TriggerEvent> IncidentTrigger::take(Tick first_tick, std::span<con
   if (!started_ || first_tick != next_tick_) start_run(first_tick);
   const auto size = static_cast<std::int64_t>(codes.size());
   const RunStatistics known = statistics.count == size ? statistics : run_statistics(codes);
-  const Run<Code> run{history_, first_tick, first_tick + size, codes, known.minimum, known.maximum};
+  const Run<Code> run{
+      history_, first_tick, first_tick + size, codes, {known.minimum, known.maximum}};
   Tick tick = run.first;
   while (tick < run.end) {
     switch (phase_) {
@@ -177,12 +184,15 @@ void IncidentTrigger::start_cell(Tick tick) {
     cell_.band = options_.hysteresis_share * cell_.level;
   }
   cell_.quiet = {};
-  baseline_codes_ = line_at(cell_, 0.5 * static_cast<double>(kCell - 1));
+  constexpr double kHalf = 0.5 * static_cast<double>(kCell - 1);
+  baseline_codes_ = line_at(cell_, kHalf);
+  // Conservative by more than the rounding: taken by itself each of these is within the band.
+  constexpr double kRounding = 1e-6;
+  const double reach = cell_.band - kHalf * std::abs(cell_.line.slope_codes) - kRounding;
+  cell_.lowest_quiet = whole(baseline_codes_ - reach) + 1;
+  cell_.highest_quiet = whole(baseline_codes_ + reach) - 1;
   // The pivot need only be near: left alone, it lets the next sums begin before this line is done.
-  if (std::abs(baseline_codes_ - cell_.pivot) > kPivotReach) {
-    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-    cell_.pivot = static_cast<std::int32_t>(std::clamp(baseline_codes_, -kMost, kMost));
-  }
+  if (std::abs(baseline_codes_ - cell_.pivot) > kPivotReach) cell_.pivot = whole(baseline_codes_);
 }
 
 void IncidentTrigger::finish_cell() {
@@ -210,13 +220,8 @@ double IncidentTrigger::line_at(const Cell& cell, double samples_after_first) co
   return cell.line.value_codes + cell.line.slope_codes * samples_after_first;
 }
 
-// Conservative: true only if each sample taken by itself would be found within the band.
-bool IncidentTrigger::within_band(std::int32_t minimum, std::int32_t maximum, Tick from,
-                                  Tick end) const {
-  const double first = line_at(cell_, static_cast<double>(from - cell_.first_tick));
-  const double last = line_at(cell_, static_cast<double>(end - 1 - cell_.first_tick));
-  return minimum - std::max(first, last) > -cell_.band &&
-         maximum - std::min(first, last) < cell_.band;
+bool IncidentTrigger::within_band(const Extremes& codes) const {
+  return codes.minimum >= cell_.lowest_quiet && codes.maximum <= cell_.highest_quiet;
 }
 
 void IncidentTrigger::add_quiet(std::int64_t count, std::int64_t sum, std::int64_t sum_of_squares) {
@@ -230,27 +235,54 @@ template <class Code>
 bool IncidentTrigger::pass_over(const Run<Code>& run, Tick from, Tick end) {
   if (excursion_.tainted > 0) return false;
   const auto part = run.part(from, end);
-  if (!near(run.minimum, cell_.pivot) || !near(run.maximum, cell_.pivot)) {
-    const DeviationSums sums = deviation_sums(part, cell_.pivot);
-    if (!within_band(sums.minimum, sums.maximum, from, end)) return false;
-    add_quiet(sums.count, sums.sum, sums.sum_of_squares);
-  } else if (within_band(run.minimum, run.maximum, from, end)) {
+  if (!within_band(run.all) && !within_band(extremes(part))) return false;
+  if (near(run.all, cell_.pivot)) {
     const NearSums sums = near_sums(part, cell_.pivot);
-    add_quiet(end - from, sums.sum, sums.sum_of_squares);
+    pass(end, end - from, sums.sum, sums.sum_of_squares);
   } else {
-    const NearDeviations found = near_deviations(part, cell_.pivot);
-    if (!within_band(cell_.pivot + found.lowest, cell_.pivot + found.highest, from, end)) {
-      return false;
-    }
-    add_quiet(end - from, found.sums.sum, found.sums.sum_of_squares);
+    const DeviationSums sums = deviation_sums(part, cell_.pivot);
+    pass(end, sums.count, sums.sum, sums.sum_of_squares);
   }
+  return true;
+}
+
+void IncidentTrigger::pass(Tick end, std::int64_t count, std::int64_t sum,
+                           std::int64_t sum_of_squares) {
+  add_quiet(count, sum, sum_of_squares);
   excursion_.outside = 0;
   excursion_.low_tick = end - 1;
-  return true;
+}
+
+// Whole quiet cells, as many as follow each other. Their sums do not wait for one another, the
+// lines they are judged by do: so sums are taken for several cells before the first is judged.
+template <class Code>
+Tick IncidentTrigger::pass_over_cells(const Run<Code>& run, Tick from) {
+  constexpr Tick kAhead = 8;
+  std::array<NearSums, kAhead> sums;
+  while (from == cell_.first_tick && excursion_.tainted == 0 && run.end - from >= 2 * kCell &&
+         near(run.all, cell_.pivot)) {
+    const Tick cells = std::min(kAhead, (run.end - from) / kCell);
+    const Extremes all = extremes(run.part(from, from + cells * kCell));
+    if (!within_band(all)) return from;
+    const std::int32_t pivot = cell_.pivot;
+    for (Tick i = 0; i < cells; ++i) {
+      sums[static_cast<std::size_t>(i)] =
+          near_sums(run.part(from + i * kCell, from + (i + 1) * kCell), pivot);
+    }
+    for (Tick i = 0; i < cells && cell_.pivot == pivot && within_band(all); ++i) {
+      const NearSums& cell = sums[static_cast<std::size_t>(i)];
+      from += kCell;
+      pass(from, kCell, cell.sum, cell.sum_of_squares);
+      finish_cell();
+    }
+  }
+  return from;
 }
 
 template <class Code>
 Tick IncidentTrigger::watch(const Run<Code>& run, Tick from) {
+  from = pass_over_cells(run, from);
+  if (from == run.end) return from;
   const Tick cell_end = cell_.first_tick + kCell;
   const Tick end = std::min(run.end, cell_end);
   if (!pass_over(run, from, end)) {

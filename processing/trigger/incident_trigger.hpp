@@ -91,6 +91,8 @@ class IncidentTrigger {
     BaselineLine line;
     double level = 0.0;
     double band = 0.0;
+    std::int32_t lowest_quiet = 0;  ///< these and all between are within the band
+    std::int32_t highest_quiet = 0;
     std::int32_t pivot = 0;
     DeviationSums quiet;
   };
@@ -123,6 +125,8 @@ class IncidentTrigger {
   template <class Code>
   bool pass_over(const Run<Code>& run, Tick from, Tick end);
   template <class Code>
+  Tick pass_over_cells(const Run<Code>& run, Tick from);
+  template <class Code>
   Tick look_closely(const Run<Code>& run, Tick from, Tick end);
   template <class Code>
   Tick settle(const Run<Code>& run, Tick from);
@@ -137,11 +141,11 @@ class IncidentTrigger {
   void start_learning(Tick tick);
   void start_cell(Tick tick);
   void finish_cell();
+  void pass(Tick end, std::int64_t count, std::int64_t sum, std::int64_t sum_of_squares);
   void add_quiet(std::int64_t count, std::int64_t sum, std::int64_t sum_of_squares);
   [[nodiscard]] double line_at(const Cell& cell, double samples_after_first) const;
   [[nodiscard]] double mean_deviation(Tick tick) const;
-  [[nodiscard]] bool within_band(std::int32_t minimum, std::int32_t maximum, Tick from,
-                                 Tick end) const;
+  [[nodiscard]] bool within_band(const Extremes& codes) const;
   void keep(const TriggerEvent& event);
   std::optional<TriggerEvent> next_waiting();
 

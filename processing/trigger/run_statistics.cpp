@@ -151,19 +151,12 @@ KOLSKY_WIDE WideSums wide_copy(const std::int32_t* __restrict from, std::int32_t
 KOLSKY_WIDE DeviationSums wide_deviations(const std::int32_t* codes, std::size_t size,
                                           std::int32_t pivot) noexcept {
   DeviationSums sums;
-  std::int32_t minimum = std::numeric_limits<std::int32_t>::max();
-  std::int32_t maximum = std::numeric_limits<std::int32_t>::min();
   for (std::size_t i = 0; i < size; ++i) {
-    const std::int32_t code = codes[i];
-    const std::int32_t deviation = held_deviation(code, pivot);
+    const std::int32_t deviation = held_deviation(codes[i], pivot);
     sums.sum += deviation;
     sums.sum_of_squares += std::int64_t{deviation} * deviation;
-    minimum = std::min(minimum, code);
-    maximum = std::max(maximum, code);
   }
   sums.count = static_cast<std::int64_t>(size);
-  sums.minimum = minimum;
-  sums.maximum = maximum;
   return sums;
 }
 
@@ -194,21 +187,15 @@ template <class Code>
 }
 
 template <class Code>
-[[gnu::always_inline]] inline NearDeviations deviations_near(const Code* codes, std::size_t size,
-                                                             std::int32_t pivot) {
-  std::int32_t sum = 0;
-  std::int32_t sum_of_squares = 0;
-  Code lowest = kNear;
-  Code highest = -kNear;
+[[gnu::always_inline]] inline Extremes extremes_of(const Code* codes, std::size_t size) {
+  Code minimum = codes[0];
+  Code maximum = codes[0];
   for (std::size_t i = 0; i < size; ++i) {
-    const Code deviation = near_deviation(codes[i], pivot);
-    sum += deviation;
-    sum_of_squares += static_cast<std::int32_t>(deviation) * deviation;
-    lowest = std::min(lowest, deviation);
-    highest = std::max(highest, deviation);
+    const Code code = codes[i];
+    minimum = std::min(minimum, code);
+    maximum = std::max(maximum, code);
   }
-  return {
-      {sum, sum_of_squares}, static_cast<std::int16_t>(lowest), static_cast<std::int16_t>(highest)};
+  return {minimum, maximum};
 }
 
 KOLSKY_WIDE NearSums narrow_near_sums(const std::int16_t* codes, std::size_t size,
@@ -221,16 +208,12 @@ KOLSKY_WIDE NearSums wide_near_sums(const std::int32_t* codes, std::size_t size,
   return size == kWhole ? sums_near(codes, kWhole, pivot) : sums_near(codes, size, pivot);
 }
 
-KOLSKY_WIDE NearDeviations narrow_near_deviations(const std::int16_t* codes, std::size_t size,
-                                                  std::int32_t pivot) noexcept {
-  return size == kWhole ? deviations_near(codes, kWhole, pivot)
-                        : deviations_near(codes, size, pivot);
+KOLSKY_WIDE Extremes narrow_extremes(const std::int16_t* codes, std::size_t size) noexcept {
+  return extremes_of(codes, size);
 }
 
-KOLSKY_WIDE NearDeviations wide_near_deviations(const std::int32_t* codes, std::size_t size,
-                                                std::int32_t pivot) noexcept {
-  return size == kWhole ? deviations_near(codes, kWhole, pivot)
-                        : deviations_near(codes, size, pivot);
+KOLSKY_WIDE Extremes wide_extremes(const std::int32_t* codes, std::size_t size) noexcept {
+  return extremes_of(codes, size);
 }
 
 template <class Sums>
@@ -273,8 +256,7 @@ DeviationSums deviation_sums(std::span<const std::int16_t> codes, std::int32_t p
   const auto count = static_cast<std::int64_t>(codes.size());
   const std::int64_t shift = pivot;
   return {count, sums.sum - count * shift,
-          sums.sum_of_squares - 2 * shift * sums.sum + count * shift * shift, sums.minimum,
-          sums.maximum};
+          sums.sum_of_squares - 2 * shift * sums.sum + count * shift * shift};
 }
 
 DeviationSums deviation_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept {
@@ -290,12 +272,12 @@ NearSums near_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noex
   return wide_near_sums(codes.data(), codes.size(), pivot);
 }
 
-NearDeviations near_deviations(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept {
-  return narrow_near_deviations(codes.data(), codes.size(), pivot);
+Extremes extremes(std::span<const std::int16_t> codes) noexcept {
+  return narrow_extremes(codes.data(), codes.size());
 }
 
-NearDeviations near_deviations(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept {
-  return wide_near_deviations(codes.data(), codes.size(), pivot);
+Extremes extremes(std::span<const std::int32_t> codes) noexcept {
+  return wide_extremes(codes.data(), codes.size());
 }
 
 }  // namespace kolsky

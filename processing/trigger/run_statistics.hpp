@@ -46,8 +46,6 @@ struct DeviationSums {
   std::int64_t count = 0;
   std::int64_t sum = 0;
   std::int64_t sum_of_squares = 0;
-  std::int32_t minimum = 0;
-  std::int32_t maximum = 0;
 };
 
 [[nodiscard]] DeviationSums deviation_sums(std::span<const std::int16_t> codes,
@@ -66,16 +64,13 @@ inline constexpr std::int32_t kNear = 2047;
 [[nodiscard]] NearSums near_sums(std::span<const std::int16_t> codes, std::int32_t pivot) noexcept;
 [[nodiscard]] NearSums near_sums(std::span<const std::int32_t> codes, std::int32_t pivot) noexcept;
 
-struct NearDeviations {
-  NearSums sums;
-  std::int16_t lowest = 0;  ///< deviation
-  std::int16_t highest = 0;
+struct Extremes {
+  std::int32_t minimum = 0;
+  std::int32_t maximum = 0;
 };
 
-/// With the extremes of this part of the run. @pre at least one code, else as near_sums
-[[nodiscard]] NearDeviations near_deviations(std::span<const std::int16_t> codes,
-                                             std::int32_t pivot) noexcept;
-[[nodiscard]] NearDeviations near_deviations(std::span<const std::int32_t> codes,
-                                             std::int32_t pivot) noexcept;
+/// @pre at least one code
+[[nodiscard]] Extremes extremes(std::span<const std::int16_t> codes) noexcept;
+[[nodiscard]] Extremes extremes(std::span<const std::int32_t> codes) noexcept;
 
 }  // namespace kolsky
