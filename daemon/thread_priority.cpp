@@ -3,17 +3,41 @@
 #include <pthread.h>
 #include <sched.h>
 
-namespace kolsky {
+#include <ctime>
 
-bool run_in_real_time(const char* name, RealTime priority) noexcept {
-  name_thread(name);
-  sched_param parameters{};
-  parameters.sched_priority = static_cast<int>(priority);
-  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-}
+#include "daemon/clock.hpp"
+
+namespace kolsky {
 
 void name_thread(const char* name) noexcept {
   pthread_setname_np(pthread_self(), name);
+}
+
+bool run_in_real_time(RealTime priority) noexcept {
+  sched_param parameters{};
+  parameters.sched_priority = static_cast<int>(priority);
+  return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;
+}
+
+void run_as_usual() noexcept {
+  const sched_param parameters{};
+  sched_setscheduler(0, SCHED_OTHER, &parameters);
+}
+
+bool IdleCheck::rests() noexcept {
+  constexpr std::int64_t kLook_ns = 1'000'000'000;
+  constexpr double kMostShare = 0.75;
+  const std::int64_t now_ns = monotonic_ns();
+  if (now_ns - looked_ns_ < kLook_ns) {
+    return true;
+  }
+  const std::int64_t work_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
+  const bool first = looked_ns_ == 0;
+  const double share =
+      static_cast<double>(work_ns - worked_ns_) / static_cast<double>(now_ns - looked_ns_);
+  looked_ns_ = now_ns;
+  worked_ns_ = work_ns;
+  return first || share < kMostShare;
 }
 
 }  // namespace kolsky

@@ -1,13 +1,31 @@
 #pragma once
 
+#include <cstdint>
+
 namespace kolsky {
 
 /// Real-time priorities of the threads between a sample and its result; the others run as all
 /// programs do. Reading goes before recording.
 enum class RealTime : int { recording = 10, reading = 20 };
 
-/// Names the calling thread and asks for real-time scheduling. @return whether it was permitted
-bool run_in_real_time(const char* name, RealTime priority) noexcept;
 void name_thread(const char* name) noexcept;
+
+/// Asks for real-time scheduling of the calling thread; threads that it makes run as usual.
+/// @return whether it was permitted
+bool run_in_real_time(RealTime priority) noexcept;
+void run_as_usual() noexcept;
+
+/// Tells when the calling thread has been at work nearly all the time. A real-time thread that does
+/// not sleep takes a processor from everybody else for good, so it should go back to running as
+/// usual.
+class IdleCheck {
+ public:
+  /// Call often. @return false once a second of nearly nothing but work has passed
+  [[nodiscard]] bool rests() noexcept;
+
+ private:
+  std::int64_t looked_ns_ = 0;
+  std::int64_t worked_ns_ = 0;
+};
 
 }  // namespace kolsky

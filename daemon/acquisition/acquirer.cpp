@@ -90,11 +90,14 @@ void Acquirer::run() {
   while (!stop_.load(std::memory_order_relaxed)) {
     progress_.fetch_add(1, std::memory_order_relaxed);
     take_plan();
+    stay_polite();
     switch (digitiser_.read(block)) {
       case ReadStatus::samples:
         take(block);
         break;
       case ReadStatus::timeout:
+        // It has waited already; if it has not, this keeps the loop from spinning.
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
         break;
       case ReadStatus::overflow:
         overflows_.fetch_add(1, std::memory_order_relaxed);
@@ -115,11 +118,16 @@ void Acquirer::run() {
 }
 
 void Acquirer::go_real_time() {
-  constexpr const char* kName = "kolsky-acquire";
-  if (stream_.ends) {
-    name_thread(kName);  // a replay ahead of its own consumers would only wait for them
-  } else {
-    real_time_.store(run_in_real_time(kName, RealTime::reading));
+  name_thread("kolsky-acquire");
+  if (!stream_.ends) {  // a replay ahead of its own consumers would only wait for them
+    real_time_.store(run_in_real_time(RealTime::reading));
+  }
+}
+
+void Acquirer::stay_polite() {
+  if (real_time_.load(std::memory_order_relaxed) && !idle_check_.rests()) {
+    run_as_usual();
+    real_time_.store(false);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "daemon/acquisition/acquisition_event.hpp"
 #include "daemon/acquisition/sample_ring.hpp"
+#include "daemon/thread_priority.hpp"
 #include "drivers/digitiser/digitiser.hpp"
 #include "processing/trigger/incident_trigger.hpp"
 
@@ -102,6 +103,7 @@ class Acquirer {
 
   void run();
   void go_real_time();
+  void stay_polite();
   void take_plan();
   void take(const Block& block);
   void note_missing(const Block& block);
@@ -141,6 +143,7 @@ class Acquirer {
   std::vector<AtomicLevel> levels_;
 
   // Of the thread alone.
+  IdleCheck idle_check_;
   bool streaming_ = false;  ///< a block has come
   Tick end_tick_ = 0;
   std::int64_t end_monotonic_ns_ = 0;

@@ -118,17 +118,19 @@ std::shared_ptr<const ShotSettings> ShotRecorder::settings() const {
 }
 
 void ShotRecorder::run() {
-  if (parts_.real_time) {
-    run_in_real_time("kolsky-record", RealTime::recording);
-  } else {
-    name_thread("kolsky-record");
-  }
+  name_thread("kolsky-record");
+  bool real_time = parts_.real_time && run_in_real_time(RealTime::recording);
+  IdleCheck idle_check;
   AcquisitionEvent event;
   while (parts_.events.pop_wait(event)) {
     busy_.store(true);
     handle(event);
     progress_.fetch_add(1);
     busy_.store(false);
+    if (real_time && !idle_check.rests()) {
+      run_as_usual();
+      real_time = false;
+    }
   }
 }
 

@@ -193,7 +193,7 @@ int main(int argc, char** argv) {
   daemon.stop();
 
   const Shot shot = read_capture(captures_in(installation.store() / "shots").front());
-  run_in_real_time("floors", RealTime::recording);  // as the recorder does
+  run_in_real_time(RealTime::recording);  // as the recorder does
   std::map<std::string, Durations> floors{
       {"copy", floor_copy(shot)},
       {"journal", floor_journal(shot, installation.folder().path())},

@@ -118,7 +118,7 @@ std::filesystem::path Installation::write() const {
     if (section == "digitiser") {
       digitiser += lines;
     } else if (!section.empty()) {
-      text += "[" + section + "]\n" + lines;
+      text.append("[").append(section).append("]\n").append(lines);
     }
   }
   folder_.write("kolskyd.toml", text + "[digitiser]\n" + digitiser);

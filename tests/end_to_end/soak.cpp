@@ -142,6 +142,7 @@ class Soak {
   static std::vector<Planned> planned(const Options& options) {
     std::mt19937_64 random(options.seed);
     std::vector<Planned> shots;
+    shots.reserve(static_cast<std::size_t>(options.shots));
     for (int i = 0; i < options.shots; ++i) {
       shots.push_back(plan_shot(random, options.kill_share));
     }

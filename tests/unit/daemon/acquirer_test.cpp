@@ -61,6 +61,7 @@ class AcquirerTest : public testing::Test {
   }
   static std::vector<Kind> kinds(const std::vector<AcquisitionEvent>& events) {
     std::vector<Kind> kinds;
+    kinds.reserve(events.size());
     for (const AcquisitionEvent& event : events) {
       kinds.push_back(event.kind);
     }
@@ -382,6 +383,18 @@ TEST_F(AcquirerTest, TakesAnotherPlanWhileItRuns) {
   const auto told = finish();
   ASSERT_EQ(kinds(told), std::vector{Kind::window});
   EXPECT_EQ(told[0].window.end_tick - told[0].window.first_tick, 30);
+}
+
+TEST_F(AcquirerTest, GivesUpItsPriorityToAStreamThatLeavesNoRest) {
+  digitiser_.append_live(std::size_t{1} << 40);
+  begin();
+  std::this_thread::sleep_for(milliseconds(200));
+  if (!acquirer_->real_time()) {
+    GTEST_SKIP() << "real-time scheduling is not permitted here";
+  }
+  std::this_thread::sleep_for(milliseconds(2000));
+  EXPECT_FALSE(acquirer_->real_time());
+  finish();
 }
 
 TEST_F(AcquirerTest, AllocatesNothingOnItsThread) {
