@@ -14,18 +14,33 @@ using google::protobuf::Message;
 using google::protobuf::Reflection;
 namespace utf = boost::locale::utf;
 
+/// Steps over one character. @return whether it is one
+bool step(const char*& at, const char* end) {
+  const utf::code_point point = utf::utf_traits<char>::decode(at, end);
+  return point != utf::illegal && point != utf::incomplete;
+}
+
+bool is_utf8(const std::string& text) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool valid = true;
+  while (valid && at != end) {
+    valid = step(at, end);
+  }
+  return valid;
+}
+
 std::string repaired(const std::string& text) {
   std::string valid;
   const char* at = text.data();
   const char* const end = at + text.size();
   while (at != end) {
     const char* const start = at;
-    const utf::code_point point = utf::utf_traits<char>::decode(at, end);
-    if (point == utf::illegal || point == utf::incomplete) {
+    if (step(at, end)) {
+      valid.append(start, at);
+    } else {
       valid += '?';
       at = start + 1;
-    } else {
-      valid.append(start, at);
     }
   }
   return valid;
@@ -64,8 +79,7 @@ bool is_valid(const Message& message) {
   for (const FieldDescriptor* field : fields_of(message)) {
     for (int i = 0; i < count(message, *field); ++i) {
       if (is_text(*field)) {
-        const std::string text = text_of(message, *field, i);
-        if (text != repaired(text)) {
+        if (!is_utf8(text_of(message, *field, i))) {
           return false;
         }
       } else if (is_message(*field) && !is_valid(part_of(message, *field, i))) {

@@ -84,8 +84,8 @@ class Continuity {
     if (!note_sequence(message.topic, message.sequence, events)) {
       return;
     }
-    if (message.topic == wire::kStatusTopic) {
-      note_heartbeat(message, events);
+    if (message.topic == wire::kStatusTopic && !note_heartbeat(message, events)) {
+      return;
     }
     events.emplace_back(std::move(message));
   }
@@ -132,13 +132,14 @@ class Continuity {
   }
 
   /// A heartbeat names what went out before it. Topics of which nothing was seen yet begin here.
-  void note_heartbeat(const Received& message, std::deque<SubscriberEvent>& events) {
+  /// @return whether it can be read
+  bool note_heartbeat(const Received& message, std::deque<SubscriberEvent>& events) {
     v1::Status status;
     try {
       wire::parse(message.payload, "status", status);
     } catch (const InputError& error) {
       events.emplace_back(Unreadable{error.what()});
-      return;
+      return false;
     }
     for (const std::string& topic : topics_) {
       const auto named = status.last_sequence().find(topic);
@@ -151,6 +152,7 @@ class Continuity {
         known->second = named->second;
       }
     }
+    return true;
   }
 
   static void note_reached(const std::string& topic, std::uint64_t seen, std::uint64_t reached,
@@ -179,8 +181,8 @@ struct Subscriber::State {
     socket.set(zmq::sockopt::heartbeat_timeout, kHeartbeatTimeout_ms);
     socket.set(zmq::sockopt::reconnect_ivl_max, kReconnectMost_ms);
     // The status topic last: its first message proves that the other subscriptions have arrived.
-    std::ranges::stable_partition(
-        topics, [](const std::string& topic) { return topic != wire::kStatusTopic; });
+    std::stable_partition(topics.begin(), topics.end(),
+                          [](const std::string& topic) { return topic != wire::kStatusTopic; });
     for (const std::string& topic : topics) {
       socket.set(zmq::sockopt::subscribe, topic);
     }

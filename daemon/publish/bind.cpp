@@ -3,6 +3,7 @@
 #include <cerrno>
 
 #include "processing/base/error.hpp"
+#include "proto/endpoint.hpp"
 
 namespace kolsky {
 namespace {
@@ -36,11 +37,13 @@ Explanation explain(const zmq::error_t& error) {
 
 std::string bind_socket(zmq::socket_t& socket, const std::string& setting,
                         const std::string& endpoint) {
+  const std::string place = setting + " = \"" + endpoint + "\"";
+  wire::check_port(place, endpoint);
   try {
     socket.bind(endpoint);
   } catch (const zmq::error_t& error) {
     const Explanation explanation = explain(error);
-    throw InputError(setting + " = \"" + endpoint + "\"", explanation.what, explanation.mend);
+    throw InputError(place, explanation.what, explanation.mend);
   }
   return socket.get(zmq::sockopt::last_endpoint);
 }

@@ -3,6 +3,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <mutex>
@@ -28,6 +29,7 @@ constexpr int kPeerQueue = 32;  // replies held for a client that does not read 
 constexpr std::int64_t kMaxFrameBytes = 1 << 20;  // longer ones cost the peer its connection
 constexpr int kLinger_ms = 500;                   // for the reply to `stop`
 constexpr int kRequestsPerTurn = 64;              // then finished replies are sent, whoever floods
+constexpr std::size_t kMostFrames = 16;
 constexpr std::size_t kMaxWaitingPerRequest = 8;
 constexpr std::chrono::milliseconds kPollTimeout{1000};
 
@@ -58,7 +60,7 @@ class WakeUp {
 struct Incoming {
   Route from;
   std::string bytes;
-  bool one_frame = true;
+  bool one_frame = false;
 };
 
 /// What a worker hands back to the server's thread.
@@ -178,25 +180,31 @@ void ControlServer::State::take_requests() {
   }
 }
 
-/// Takes one message: who, perhaps an empty frame, one frame. More are read and thrown away.
+/// Takes one message as REP does: what comes before an empty frame is the way back. A peer may also
+/// send its request alone. Of frames beyond any sensible number, only the last is kept.
 bool ControlServer::State::receive(Incoming& incoming) {
   zmq::message_t frame;
   if (!socket.recv(frame, zmq::recv_flags::dontwait)) {
     return false;
   }
-  incoming.from.peer = frame_text(frame);
-  int frames = 0;
+  incoming.from = {frame_text(frame)};
+  std::vector<std::string> frames;
   while (frame.more()) {
     static_cast<void>(socket.recv(frame, zmq::recv_flags::dontwait));
-    if (frames == 0 && frame.size() == 0 && frame.more()) {
-      incoming.from.delimited = true;
-      continue;
+    if (frames.size() == kMostFrames) {
+      frames.pop_back();
     }
-    if (++frames == 1) {
-      incoming.bytes = frame_text(frame);
-    }
+    frames.push_back(frame_text(frame));
   }
-  incoming.one_frame = frames == 1;
+  if (frames.empty()) {
+    return true;
+  }
+  const auto last = frames.end() - 1;
+  const auto delimiter = std::find(frames.begin(), last, std::string());
+  const auto body = delimiter == last ? frames.begin() : delimiter + 1;
+  incoming.from.insert(incoming.from.end(), frames.begin(), body);
+  incoming.one_frame = body == last;
+  incoming.bytes = frames.back();
   return true;
 }
 
@@ -204,8 +212,8 @@ void ControlServer::State::answer(const Incoming& incoming) {
   v1::ControlRequest request;
   v1::ControlReply reply;
   if (!incoming.one_frame) {
-    refuse(v1::MALFORMED,
-           InputError("request", "it has more than one frame", "send one ControlRequest"), reply);
+    refuse(v1::MALFORMED, InputError("request", "it is not one frame", "send one ControlRequest"),
+           reply);
     return send(incoming.from, seal(reply));
   }
   if (!read_request(incoming.bytes, request, reply)) {
@@ -360,12 +368,9 @@ std::string ControlServer::State::seal(v1::ControlReply& reply) {
 
 /// A peer that is gone or does not read is skipped.
 void ControlServer::State::send(const Route& to, const std::string& reply) {
-  constexpr auto kMore = zmq::send_flags::sndmore | zmq::send_flags::dontwait;
-  if (!socket.send(zmq::buffer(to.peer), kMore)) {
-    return;
-  }
-  if (to.delimited) {
-    static_cast<void>(socket.send(zmq::message_t(), kMore));
+  for (const std::string& frame : to) {
+    static_cast<void>(
+        socket.send(zmq::buffer(frame), zmq::send_flags::sndmore | zmq::send_flags::dontwait));
   }
   static_cast<void>(socket.send(zmq::buffer(reply), zmq::send_flags::dontwait));
 }

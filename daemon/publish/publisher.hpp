@@ -12,7 +12,9 @@ namespace kolsky {
 struct PublisherOptions {
   std::string results_endpoint = wire::kDefaultResultsEndpoint;
   std::string preview_endpoint = wire::kDefaultPreviewEndpoint;
-  int results_queue = 256;  ///< messages held for a slow subscriber before it loses the newest
+  /// Messages held for a slow subscriber before it loses the newest. ZeroMQ takes note of what was
+  /// read once a millisecond: also a quick one loses when more than this many go out in less.
+  int results_queue = 256;
   int preview_queue = 2;
 };
 

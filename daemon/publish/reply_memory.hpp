@@ -1,26 +1,25 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <deque>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace kolsky {
 
-/// Where a reply goes: the peer's routing id, and whether it puts an empty frame first, as REQ
-/// does.
-struct Route {
-  std::string peer;
-  bool delimited = false;
-};
+/// Where a reply goes: the frames that go before it, as they came before the request. The peer's
+/// routing id, then what proxies on the way and the peer's own socket put there.
+using Route = std::vector<std::string>;
 
 /// What makes two requests the same.
 struct RequestKey {
   std::string client_id;
   std::string request_id;
-  friend auto operator<=>(const RequestKey&, const RequestKey&) = default;
+  friend bool operator<(const RequestKey& a, const RequestKey& b) {
+    return std::tie(a.client_id, a.request_id) < std::tie(b.client_id, b.request_id);
+  }
 };
 
 /// The requests under way and the replies given lately, so that none is carried out twice. Requests

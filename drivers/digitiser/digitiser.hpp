@@ -20,8 +20,8 @@ enum class SampleFormat { int16, int32 };
 
 /// What a stream delivers on one channel; value = (code + offset) * scale, as in ChannelRecord.
 struct ChannelInfo {
-  std::string name;   ///< the digitiser's own name of it
-  std::string unit;   ///< "V" or "strain"
+  std::string name;  ///< the digitiser's own name of it
+  std::string unit;  ///< "V" or "strain"
   double scale = 1.0;
   double offset = 0.0;
   int bits = 16;
@@ -29,7 +29,8 @@ struct ChannelInfo {
   std::int32_t code_max = 32767;
 };
 
-/// What a digitiser is and delivers; fixed from open to close.
+/// What a digitiser is and delivers; fixed from open to close, except where `reconnect` finds it
+/// changed.
 struct StreamInfo {
   std::string uri;
   std::string description;
@@ -44,8 +45,8 @@ struct StreamInfo {
 /// What a read came to. Only `samples` fills the block.
 enum class ReadStatus {
   samples,
-  timeout,         ///< nothing came in time; read again
-  overflow,        ///< the digitiser reports that it lost samples; the next block says how many, if known
+  timeout,   ///< nothing came in time; read again
+  overflow,  ///< the digitiser reports that it lost samples; the next block says how many, if known
   disconnected,    ///< the device is gone; `reconnect`
   end_of_capture,  ///< a replay is over; sticky
 };
@@ -57,20 +58,22 @@ struct Missing {
   std::int64_t samples = 0;  ///< known: how many; unknown: 0
 };
 
-/// A run of samples without a hole. The spans point into the digitiser and hold until its next call.
+/// A run of samples without a hole. The spans point into the digitiser and hold until its next
+/// call.
 struct Block {
   Tick first_tick = 0;  ///< of sample 0; known missing samples before it are already counted in
   std::size_t samples = 0;
   Missing missing_before;
-  std::int64_t monotonic_ns = 0;                     ///< CLOCK_MONOTONIC when the last sample was in hand
-  std::vector<std::span<const std::byte>> channels;  ///< per channel: samples x sample_bytes(format)
+  std::int64_t monotonic_ns = 0;  ///< CLOCK_MONOTONIC when the last sample was in hand
+  std::vector<std::span<const std::byte>>
+      channels;                      ///< per channel: samples x sample_bytes(format)
   std::optional<TriggerEvent> mark;  ///< a trigger that the stream itself carries, in this block
   bool starts_capture = false;       ///< replay: sample 0 is the first of another capture
 };
 
-/// A source of samples: hardware through libiio, a stored capture, the simulated digitiser (which is
-/// reached through libiio too). One thread calls everything but `cancel`. Nothing here allocates after
-/// `start`, apart from `reconnect`.
+/// A source of samples: hardware through libiio, a stored capture, the simulated digitiser (which
+/// is reached through libiio too). One thread calls everything but `cancel`. Nothing here allocates
+/// after `start`, apart from `reconnect`.
 class Digitiser {
  public:
   virtual ~Digitiser() = default;
@@ -86,11 +89,13 @@ class Digitiser {
   /// Waits for the next block, at most about a second.
   virtual ReadStatus read(Block& block) = 0;
 
-  /// Makes a waiting `read` return soon; from any thread. Sticky: later reads return `disconnected`.
+  /// Makes a waiting `read` return soon; from any thread. Sticky: later reads return
+  /// `disconnected`.
   virtual void cancel() = 0;
 
-  /// One attempt to open the device again after `disconnected`. Ticks go on; the next block says what is
-  /// missing (unknown unless the device counts). @return whether the stream runs again
+  /// One attempt to open the device again after `disconnected`. Ticks go on; the next block says
+  /// what is missing (unknown unless the device counts). @return whether the stream runs again What
+  /// came back may be another device under the same name: compare `info` with what it was.
   virtual bool reconnect() = 0;
 
   /// Asks a simulated digitiser for its pulse. From any thread. @throws InputError on real hardware

@@ -10,13 +10,16 @@ namespace kolsky {
 
 /// What is asked of a digitiser when it is opened.
 struct DigitiserOptions {
-  std::vector<std::string> channels;      ///< the digitiser's channels to read, in the bench's gauge order;
-                                          ///< empty: the first `channel_count` voltage channels
-  std::size_t channel_count = 0;
-  double sampling_frequency_Hz = 0.0;     ///< set where the device can, read back, refused where it differs
+  std::vector<std::string> channels;  ///< the digitiser's channels to read, in the bench's gauge
+                                      ///< order; empty: the first `channel_count` voltage channels
+  std::size_t channel_count = 0;   ///< 0 without names: all
+  std::vector<std::string> units;  ///< "V" or "strain" per channel, as the gauges want it; what is
+                                   ///< left out: "V" of a device, its own of a capture
+  double sampling_frequency_Hz =
+      0.0;  ///< set where the device can, read back, refused where it differs
   std::size_t block_samples = 1024;
-  std::string device;                     ///< IIO device name; empty: the first with enough input channels
-  double replay_speed = 0.0;              ///< factor on the real rate; 0: as fast as possible
+  std::string device;         ///< IIO device name; empty: the first with enough input channels
+  double replay_speed = 0.0;  ///< factor on the real rate; 0: as fast as possible
 };
 
 /// Opens `replay:CAPTURE-or-folder` or any libiio URI (`ip:host:port`, `usb:...`, `local:`).

@@ -172,7 +172,7 @@ Bench read_all(const TomlTable& table) {
 }
 
 Bench read_checked(const TomlTable& table) {
-  const Bench bench = read_all(table);
+  Bench bench = read_all(table);
   table.finish();
   try {
     check(bench);

@@ -19,7 +19,9 @@ namespace {
 
 constexpr std::string_view kPrefix = "\nKOLSKY CAPTURE SEAL 1 sha256 ";
 constexpr std::size_t kSealBytes = kPrefix.size() + 64 + 1;
-constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n";
+/// HDF5's signature, and the version of its format from which objects carry checksums: what Kolsky
+/// writes.
+constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n\x02";
 
 std::string seal_line(const std::string& digest) {
   return std::string(kPrefix) + digest + "\n";
@@ -76,8 +78,15 @@ class InputFile {
 
 }  // namespace
 
-std::string seal_of(std::span<const std::byte> hdf5_image) {
-  return seal_line(sha256_hex(hdf5_image));
+std::string seal_of_file(const std::filesystem::path& path) {
+  InputFile file(path);
+  Sha256 hash;
+  for (std::uint64_t done = 0; done < file.size();) {
+    const auto bytes = file.read(file.size() - done);
+    hash.add(bytes);
+    done += bytes.size();
+  }
+  return seal_line(hash.hex());
 }
 
 std::uint64_t check_seal(const std::filesystem::path& path) {

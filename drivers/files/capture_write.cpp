@@ -23,6 +23,7 @@ namespace layout = capture_layout;
 std::vector<std::string> link_names(const std::vector<ChannelRecord>& channels) {
   std::set<std::string> used{layout::kTime};
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const ChannelRecord& channel : channels) {
     names.push_back(hdf5::link_name(channel.gauge, used));
   }
@@ -56,19 +57,19 @@ void put_codes(hid_t raw, const std::string& name, const ChannelRecord& channel)
   std::transform(channel.codes.begin(), channel.codes.end(), codes.begin(),
                  [](std::int32_t code) { return static_cast<Code>(code); });
   const auto dataset = hdf5::put_array(raw, name, std::span<const Code>(codes));
-  hdf5::put_attribute(dataset, "gauge", channel.gauge);
-  hdf5::put_attribute(dataset, "unit", channel.unit);
+  hdf5::put_fixed_attribute(dataset, "gauge", channel.gauge);
+  hdf5::put_fixed_attribute(dataset, "unit", channel.unit);
   hdf5::put_attribute(dataset, "scale", channel.scale);
   hdf5::put_attribute(dataset, "offset", channel.offset);
   hdf5::put_attribute(dataset, "bits", channel.bits);
   hdf5::put_attribute(dataset, "code_min", channel.code_min);
   hdf5::put_attribute(dataset, "code_max", channel.code_max);
-  hdf5::put_attribute(dataset, "sha256", sha256_hex(std::as_bytes(std::span(codes))));
+  hdf5::put_fixed_attribute(dataset, "sha256", sha256_hex(std::as_bytes(std::span(codes))));
 }
 
 void put_raw(hid_t entry, const Shot& shot, const std::vector<std::string>& names) {
   const auto group = hdf5::make_group(entry, layout::kRaw, "NXcollection");
-  hdf5::put_attribute(group, layout::kChannels, names);
+  hdf5::put_fixed_attribute(group, layout::kChannels, names);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (shot.channels[i].bits <= 16 && fits_16_bits(shot.channels[i])) {
       put_codes<std::int16_t>(group, names[i], shot.channels[i]);
@@ -102,7 +103,7 @@ void put_meta(hid_t group, const std::map<std::string, std::string>& meta) {
     const std::string name = hdf5::link_name(key, used);
     const auto dataset = hdf5::put_text(facts, name, value);
     if (name != key) {
-      hdf5::put_attribute(dataset, layout::kMetaKey, key);
+      hdf5::put_fixed_attribute(dataset, layout::kMetaKey, key);
     }
   }
 }
@@ -110,7 +111,7 @@ void put_meta(hid_t group, const std::map<std::string, std::string>& meta) {
 void put_shot(hid_t entry, const Shot& shot) {
   const auto group = hdf5::make_group(entry, layout::kShot, "NXcollection");
   hdf5::put_attribute(group, "format", layout::kFormat);
-  hdf5::put_attribute(group, "sha256", sha256_hex(encode_metadata(shot)));
+  hdf5::put_fixed_attribute(group, "sha256", sha256_hex(encode_metadata(shot)));
   hdf5::put_text(group, "id", shot.id);
   hdf5::put_text(group, "software_version", shot.software_version);
   hdf5::put_text(group, "bench_toml", shot.bench_toml);
@@ -129,12 +130,7 @@ void put_shot(hid_t entry, const Shot& shot) {
   put_meta(group, shot.meta);
 }
 
-std::vector<std::byte> capture_image(const Shot& shot) {
-  const hdf5::Session session;
-  const auto file = hdf5::new_file_in_memory();
-  hdf5::put_attribute(file, "NX_class", "NXroot");
-  hdf5::put_attribute(file, "default", layout::kEntry);
-  hdf5::put_attribute(file, "creator", "Kolsky " + shot.software_version);
+void put_entry(hid_t file, const Shot& shot) {
   const auto entry = hdf5::make_group(file, layout::kEntry, "NXentry");
   hdf5::put_attribute(entry, "default", layout::kGauges);
   hdf5::put_text(entry, "title", shot.id);
@@ -143,7 +139,16 @@ std::vector<std::byte> capture_image(const Shot& shot) {
   put_gauges(entry, shot, names);
   put_raw(entry, shot, names);
   put_shot(entry, shot);
-  return hdf5::image_of(file);
+}
+
+void write_hdf5(const Shot& shot, const std::filesystem::path& path) {
+  const hdf5::Session session;
+  auto file = hdf5::create_file(path);
+  hdf5::put_attribute(file, "NX_class", "NXroot");
+  hdf5::put_attribute(file, "default", layout::kEntry);
+  hdf5::put_attribute(file, "creator", "Kolsky " + shot.software_version);
+  put_entry(file, shot);
+  hdf5::close(std::move(file));
 }
 
 }  // namespace
@@ -151,15 +156,18 @@ std::vector<std::byte> capture_image(const Shot& shot) {
 void write_capture(const Shot& shot, const std::filesystem::path& path) {
   try {
     check_storable(shot);
-    NewFile file(path);
-    const auto image = capture_image(shot);
-    file.write(image);
-    file.write(seal_of(image));
-    file.publish(S_IRUSR | S_IRGRP | S_IROTH);
+  } catch (const InputError& error) {
+    throw error.inside(path.string());
+  }
+  NewFile file(path);
+  try {
+    write_hdf5(shot, file.temporary());
   } catch (const hdf5::Failure& failure) {
     throw InputError(path.string() + ": " + failure.object(), failure.problem(),
-                     "shorten the texts or the window of this shot");
+                     "check the space on the disk and the length of the shot's texts");
   }
+  file.write(seal_of_file(file.temporary()));
+  file.publish(S_IRUSR | S_IRGRP | S_IROTH);
 }
 
 }  // namespace kolsky

@@ -46,12 +46,8 @@ void put_quality(hid_t entry, const Reduction& reduction) {
   }
 }
 
-std::vector<std::byte> export_image(const Shot& shot, const Reduction& reduction) {
-  const hdf5::Session session;
+void put_entry(hid_t file, const Shot& shot, const Reduction& reduction) {
   const bool reduced = !reduction.time_s.empty();
-  const auto file = hdf5::new_file_in_memory();
-  hdf5::put_attribute(file, "NX_class", "NXroot");
-  hdf5::put_attribute(file, "default", "entry");
   const auto entry = hdf5::make_group(file, "entry", "NXentry");
   hdf5::put_attribute(entry, "default", reduced ? "histories" : "gauges");
   hdf5::put_text(entry, "title", shot.id);
@@ -63,7 +59,15 @@ std::vector<std::byte> export_image(const Shot& shot, const Reduction& reduction
     hdf5::put_text(entry, "bar_model", reduction.bar_model);
   }
   put_quality(entry, reduction);
-  return hdf5::image_of(file);
+}
+
+void write_hdf5(const Shot& shot, const Reduction& reduction, const std::filesystem::path& path) {
+  const hdf5::Session session;
+  auto file = hdf5::create_file(path);
+  hdf5::put_attribute(file, "NX_class", "NXroot");
+  hdf5::put_attribute(file, "default", "entry");
+  put_entry(file, shot, reduction);
+  hdf5::close(std::move(file));
 }
 
 }  // namespace
@@ -71,10 +75,10 @@ std::vector<std::byte> export_image(const Shot& shot, const Reduction& reduction
 void export_hdf5(const Shot& shot, const Reduction& reduction, const std::filesystem::path& path) {
   NewFile file(path);
   try {
-    file.write(export_image(shot, reduction));
+    write_hdf5(shot, reduction, file.temporary());
   } catch (const hdf5::Failure& failure) {
     throw InputError(path.string() + ": " + failure.object(), failure.problem(),
-                     "shorten the texts or the window of this shot");
+                     "check the space on the disk and the length of the shot's texts");
   }
   file.publish(kMode);
 }

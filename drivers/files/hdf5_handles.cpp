@@ -63,6 +63,7 @@ Dataset put_numbers(hid_t group, const std::string& name, hid_t file_type, hid_t
   return put(group, name, file_type, memory_type, space_of(extents, name), values.data());
 }
 
+/// A type of no bytes does not exist: an empty text is one NUL of padding.
 Type utf8_type(std::size_t size) {
   Type type(H5Tcopy(H5T_C_S1), "string type");
   require(H5Tset_size(type, size), "string type");
@@ -95,20 +96,18 @@ Result require(Result result, std::string_view object) {
 template int require<int>(int, std::string_view);
 template std::int64_t require<std::int64_t>(std::int64_t, std::string_view);
 
-File new_file_in_memory() {
+File create_file(const std::filesystem::path& path) {
   constexpr std::size_t kGrowBytes = std::size_t{1} << 20U;
   const Properties access(H5Pcreate(H5P_FILE_ACCESS), "file properties");
-  require(H5Pset_fapl_core(access, kGrowBytes, false), "file properties");
+  require(H5Pset_fapl_core(access, kGrowBytes, true), "file properties");
+  // The name is new and its maker's own, and the maker may hold a lock on it.
+  require(H5Pset_file_locking(access, false, true), "file properties");
   require(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "file properties");
-  return {H5Fcreate("capture", H5F_ACC_TRUNC, H5P_DEFAULT, access), "the file"};
+  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "the file"};
 }
 
-std::vector<std::byte> image_of(const File& file) {
-  require(H5Fflush(file, H5F_SCOPE_GLOBAL), "the file");
-  const auto size = require(std::int64_t{H5Fget_file_image(file, nullptr, 0)}, "the file");
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  require(std::int64_t{H5Fget_file_image(file, bytes.data(), bytes.size())}, "the file");
-  return bytes;
+void close(File file) {
+  require(H5Fclose(file.release()), "the file");
 }
 
 std::string link_name(const std::string& wanted, std::set<std::string>& used) {
@@ -140,12 +139,33 @@ void put_attribute(hid_t object, const std::string& name, const std::string& tex
 void put_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts) {
   const Type type = utf8_type(H5T_VARIABLE);
   std::vector<const char*> pointers;
+  pointers.reserve(texts.size());
   for (const std::string& text : texts) {
     pointers.push_back(text.c_str());
   }
   const std::array<hsize_t, 1> extents{texts.size()};
   put_attribute(object, name, type, type, space_of(extents, name),
                 static_cast<const void*>(pointers.data()));
+}
+
+void put_fixed_attribute(hid_t object, const std::string& name, const std::string& text) {
+  const Type type = utf8_type(std::max<std::size_t>(text.size(), 1));
+  put_attribute(object, name, type, type, scalar_space(), text.c_str());
+}
+
+void put_fixed_attribute(hid_t object, const std::string& name,
+                         const std::vector<std::string>& texts) {
+  std::size_t size = 1;
+  for (const std::string& text : texts) {
+    size = std::max(size, text.size());
+  }
+  std::string padded;
+  for (const std::string& text : texts) {
+    padded += text + std::string(size - text.size(), '\0');
+  }
+  const Type type = utf8_type(size);
+  const std::array<hsize_t, 1> extents{texts.size()};
+  put_attribute(object, name, type, type, space_of(extents, name), padded.data());
 }
 
 void put_attribute(hid_t object, const std::string& name, double number) {
@@ -183,8 +203,7 @@ Dataset put_number(hid_t group, const std::string& name, double number) {
 }
 
 Dataset put_text(hid_t group, const std::string& name, const std::string& text) {
-  // A type of no bytes does not exist: an empty text is one NUL of padding.
-  const Type type = utf8_type(text.empty() ? 1 : text.size());
+  const Type type = utf8_type(std::max<std::size_t>(text.size(), 1));
   return put(group, name, type, type, scalar_space(), text.c_str());
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <mutex>
 #include <set>
 #include <span>
@@ -58,6 +59,8 @@ class Handle {
   }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
   Handle& operator=(Handle&&) = delete;
+  /// Gives the identifier up to whoever closes it.
+  [[nodiscard]] hid_t release() noexcept { return std::exchange(id_, -1); }
   operator hid_t() const noexcept { return id_; }  // NOLINT(google-explicit-constructor)
 
  private:
@@ -72,18 +75,25 @@ using Type = Handle<H5Tclose>;
 using Attribute = Handle<H5Aclose>;
 using Properties = Handle<H5Pclose>;
 
-/// A file that exists in memory only; its objects carry checksums, and HDF5 1.8 and later read it.
-[[nodiscard]] File new_file_in_memory();
-/// The bytes such a file would have on a disk.
-[[nodiscard]] std::vector<std::byte> image_of(const File& file);
+/// A new file in the place of `path`, built in memory and written in one go by `close`. Its objects
+/// carry checksums; HDF5 1.8 and later read it.
+[[nodiscard]] File create_file(const std::filesystem::path& path);
+/// @throws Failure where the content does not reach the file
+void close(File file);
 
 /// A name that can link an object, near to `wanted` and not used before.
 [[nodiscard]] std::string link_name(const std::string& wanted, std::set<std::string>& used);
 
 [[nodiscard]] Group make_group(hid_t parent, const std::string& name, const std::string& nx_class);
 
+/// For other readers, as they like it best: of variable length.
 void put_attribute(hid_t object, const std::string& name, const std::string& text);
 void put_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts);
+/// For reading back: of a fixed length. HDF5 keeps texts of variable length in a heap without
+/// checksums, and crashes on a damaged one.
+void put_fixed_attribute(hid_t object, const std::string& name, const std::string& text);
+void put_fixed_attribute(hid_t object, const std::string& name,
+                         const std::vector<std::string>& texts);
 void put_attribute(hid_t object, const std::string& name, double number);
 void put_attribute(hid_t object, const std::string& name, std::int32_t number);
 

@@ -5,6 +5,7 @@ namespace kolsky::hdf5 {
 namespace {
 
 constexpr std::size_t kMostNames = 100'000;
+constexpr std::size_t kMostAttributeBytes = std::size_t{1} << 24U;
 constexpr int kMostDimensions = 2;
 
 [[noreturn]] void refuse(const std::string& place, const std::string& problem) {
@@ -65,20 +66,28 @@ Number number_attribute_of(hid_t object, const std::string& name, const std::str
   return number;
 }
 
+std::string without_padding(std::string text) {
+  text.resize(text.find_last_not_of('\0') + 1);
+  return text;
+}
+
 std::vector<std::string> texts_of(hid_t object, const std::string& name, const std::string& place) {
   const Attribute attribute = open_attribute(object, name, place);
   const Type type(H5Aget_type(attribute), place);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) <= 0) {
-    refuse(place, "is not a text");
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) {
+    refuse(place, "is not a text of a fixed length");
   }
-  const Space space(H5Aget_space(attribute), place);
-  std::vector<char*> pointers(elements_of(attribute, place), nullptr);
-  require(H5Aread(attribute, type, static_cast<void*>(pointers.data())), place);
+  const std::size_t size = H5Tget_size(type);
+  const auto elements = static_cast<std::size_t>(elements_of(attribute, place));
+  if (size == 0 || size > kMostAttributeBytes / elements) {
+    refuse(place, "is larger than an attribute may be");
+  }
+  std::string all(elements * size, '\0');
+  require(H5Aread(attribute, type, all.data()), place);
   std::vector<std::string> texts;
-  for (const char* pointer : pointers) {
-    texts.emplace_back(pointer == nullptr ? "" : pointer);
+  for (std::size_t i = 0; i < elements; ++i) {
+    texts.push_back(without_padding(all.substr(i * size, size)));
   }
-  H5Dvlen_reclaim(type, space, H5P_DEFAULT, static_cast<void*>(pointers.data()));
   return texts;
 }
 
@@ -240,8 +249,7 @@ std::string DatasetReader::text() const {
   }
   std::string text(H5Tget_size(type), '\0');
   read(type, text.data());
-  text.resize(text.find_last_not_of('\0') + 1);
-  return text;
+  return without_padding(std::move(text));
 }
 
 bool DatasetReader::has_attribute(const std::string& name) const {

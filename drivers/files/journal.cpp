@@ -21,8 +21,8 @@ namespace {
 namespace record = journal_record;
 
 /// Overwriting zeros costs fdatasync half of what growing the file costs: no extent changes.
-constexpr std::uint64_t kRoomBytes = std::uint64_t{4} << 20U;
-constexpr std::uint64_t kLeastRoomBytes = kRoomBytes / 4;
+constexpr std::uint64_t kRoomBytes = std::uint64_t{1} << 20U;
+constexpr std::uint64_t kLeastRoomBytes = kRoomBytes / 2;
 
 /// @return 0 or what failed
 int write_at(int file, std::span<const std::byte> bytes, std::uint64_t offset) {

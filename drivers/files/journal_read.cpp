@@ -135,7 +135,7 @@ class Scanner {
     if (next < file_.size()) {
       report(offset, "a record lacks its end though others follow");
     } else {
-      scan_.bytes_ignored += std::max(last_used, offset + record::kHeaderBytes) - offset;
+      scan_.bytes_ignored += std::min(last_used, file_.size()) - offset;
     }
     return next;
   }

@@ -64,7 +64,7 @@ NewFile::NewFile(std::filesystem::path path) : path_(std::move(path)) {
   }
   std::string name = (folder_of(path_) / ("." + path_.filename().string() + ".XXXXXX")).string();
   name += kSuffix;
-  file_ = ::mkostemps(name.data(), static_cast<int>(kSuffix.size()), O_CLOEXEC);
+  file_ = ::mkostemps(name.data(), static_cast<int>(kSuffix.size()), O_CLOEXEC | O_APPEND);
   if (file_ < 0) {
     throw unwritable(path_, errno);
   }

@@ -23,7 +23,7 @@ class NewFile {
   /// Where the content goes until then; for libraries that open files by name.
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Appends. @throws InputError, as on a full disk
+  /// Appends, to what a library wrote as well. @throws InputError, as on a full disk
   void write(std::span<const std::byte> bytes);
   void write(const std::string& text);
 

@@ -49,18 +49,16 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 std::string headers_of(const std::vector<Channel>& channels) {
-  std::vector<std::string> names;
-  for (const Channel& channel : channels) {
-    names.push_back(channel.column->header);
-  }
+  std::vector<std::string> names(channels.size());
+  std::transform(channels.begin(), channels.end(), names.begin(),
+                 [](const Channel& channel) { return channel.column->header; });
   return listed(names);
 }
 
 std::string names_of(const std::vector<Gauge>& gauges) {
-  std::vector<std::string> names;
-  for (const Gauge& gauge : gauges) {
-    names.push_back(gauge.name);
-  }
+  std::vector<std::string> names(gauges.size());
+  std::transform(gauges.begin(), gauges.end(), names.begin(),
+                 [](const Gauge& gauge) { return gauge.name; });
   return listed(names);
 }
 

@@ -17,18 +17,15 @@ AdcStream::AdcStream(SimulatedAdc& adc, std::vector<std::uint32_t> mask, Tick bl
       asked_(std::move(mask), adc.element_bytes()),
       block_samples_(block_samples),
       buffers_(adc.clock_.next(), adc.buffers_count_),
+      read_until_(buffers_.block_start()),
       codes_(kRunSamples) {}
 
 AdcStream::~AdcStream() {
   const std::lock_guard lock(adc_.mutex_);
   adc_.stream_ = nullptr;
   if (fault_acts_) {
-    adc_.fault_gap_from_ = position();
+    adc_.fault_gap_from_ = read_until_;
   }
-}
-
-Tick AdcStream::position() const noexcept {
-  return planned_ && !runs_.empty() ? runs_.back().first : buffers_.block_start();
 }
 
 std::chrono::steady_clock::time_point AdcStream::due() {
@@ -51,26 +48,32 @@ void AdcStream::plan_block() {
   runs_.clear();
   faults_.clear();
   Tick at = buffers_.block_start();
-  adc_.skip_faults(at);
+  Run run;
+  (fault_acts_ ? run.injected_before : run.overrun_before) = buffers_.lost_before();
   Tick missing = block_samples_;
   while (missing > 0) {
     adc_.fire_due_shots(at + missing);
-    const auto due = adc_.faults_.take_before(at + missing);
+    auto due = adc_.faults_.take_before(at + missing);
+    if (due) {
+      due->tick = std::max(due->tick, at);  // its own sample may have been lost
+      adc_.note_fault(*due);
+    }
     if (due && due->fault.kind != FaultKind::lose) {
       apply(*due);
       continue;
     }
-    const Tick whole = due ? std::max<Tick>(due->tick - at, 0) : missing;
-    if (whole > 0) {
-      runs_.push_back({at, whole});
+    run.first = at;
+    run.samples = due ? due->tick - at : missing;
+    if (run.samples > 0) {
+      runs_.push_back(run);
+      at += run.samples;
+      missing -= run.samples;
+      run = {};
     }
-    at += whole;
-    missing -= whole;
     if (due) {
-      adc_.note_fault(*due);
-      adc_.lose(due->fault.samples, true);
+      adc_.raise_overflow();
+      run.injected_before += due->fault.samples;
       at += due->fault.samples;
-      adc_.skip_faults(at);
     }
   }
   block_end_ = at;
@@ -80,7 +83,6 @@ void AdcStream::plan_block() {
 }
 
 void AdcStream::apply(const FaultQueue::Due& due) {
-  adc_.note_fault(due);
   switch (due.fault.kind) {
     case FaultKind::overflow:
       adc_.raise_overflow();
@@ -89,7 +91,7 @@ void AdcStream::apply(const FaultQueue::Due& due) {
       std::erase_if(clipped_, [this](const Run& run) {
         return run.first + run.samples <= buffers_.block_start();
       });
-      clipped_.push_back({due.tick, due.fault.samples});
+      clipped_.push_back({due.tick, due.fault.samples, 0, 0});
       break;
     default:
       faults_.push_back(due.fault);
@@ -125,12 +127,14 @@ void AdcStream::read(std::span<std::byte> out) {
   while (!out.empty()) {
     const std::lock_guard lock(adc_.mutex_);
     Run& run = runs_.back();
+    count_losses(run);
     const std::size_t samples = std::min(
         {out.size() / layout().bytes(), kRunSamples, static_cast<std::size_t>(run.samples)});
     fill(run.first, out.first(samples * layout().bytes()));
     run.first += static_cast<Tick>(samples);
     run.samples -= static_cast<Tick>(samples);
     left_ -= samples;
+    read_until_ = run.first;
     if (run.samples == 0) {
       runs_.pop_back();
     }
@@ -141,14 +145,21 @@ void AdcStream::read(std::span<std::byte> out) {
   }
 }
 
+void AdcStream::count_losses(Run& run) {
+  adc_.overrun_lost_samples_ += run.overrun_before;
+  adc_.injected_lost_samples_ += run.injected_before;
+  run.overrun_before = 0;
+  run.injected_before = 0;
+}
+
 void AdcStream::finish_block() {
   planned_ = false;
   const Tick now = std::max(adc_.clock_.now(), block_end_);
   buffers_.finish_block(block_end_, now);
-  adc_.lose(buffers_.lost_before(), fault_acts_);
-  const bool caught_up = now < buffers_.block_start() + block_samples_;
-  if (buffers_.lost_before() == 0 && caught_up) {
-    fault_acts_ = false;
+  if (buffers_.lost_before() > 0) {
+    adc_.raise_overflow();
+  } else if (now < buffers_.block_start() + block_samples_) {
+    fault_acts_ = false;  // the client has caught up
   }
 }
 

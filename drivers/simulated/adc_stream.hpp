@@ -50,17 +50,19 @@ class AdcStream {
  private:
   friend class SimulatedAdc;
 
-  /// Consecutive ticks of a block.
+  /// Consecutive ticks of a block. What is lost before them counts once the first of them is read.
   struct Run {
     Tick first = 0;
     Tick samples = 0;
+    Tick overrun_before = 0;
+    Tick injected_before = 0;
   };
 
-  [[nodiscard]] Tick position() const noexcept;
   void plan_block();
   void apply(const FaultQueue::Due& due);
   void fill(Tick first, std::span<std::byte> out);
   void clip(Tick first, std::span<std::int32_t> codes) const;
+  void count_losses(Run& run);
   void finish_block();
 
   SimulatedAdc& adc_;
@@ -74,6 +76,7 @@ class AdcStream {
   Tick block_end_ = 0;
   std::vector<Fault> faults_;  ///< of this block, backwards
   std::vector<Run> clipped_;
+  Tick read_until_ = 0;      ///< the tick after the last one read
   bool fault_acts_ = false;  ///< what is lost from here on, the script has lost
   std::vector<std::int32_t> codes_;
 };

@@ -165,7 +165,7 @@ std::vector<Fault> parse_fault_script(std::istream& script, const std::string& n
   return faults;
 }
 
-FaultQueue::FaultQueue(std::vector<Fault> faults, SampleRate rate) {
+FaultQueue::FaultQueue(const std::vector<Fault>& faults, SampleRate rate) {
   for (const Fault& fault : faults) {
     if (fault.shot > 0) {
       of_shots_.push_back(fault);

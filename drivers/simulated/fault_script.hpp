@@ -54,7 +54,7 @@ class FaultQueue {
   };
 
   FaultQueue() = default;
-  FaultQueue(std::vector<Fault> faults, SampleRate rate);
+  FaultQueue(const std::vector<Fault>& faults, SampleRate rate);
 
   /// Shot number `shot` begins at `tick`.
   void shot_fired(std::int64_t shot, Tick tick);

@@ -59,6 +59,10 @@ void add_sine(double amplitude, double frequency_Hz, double phase, Tick first_ti
   }
 }
 
+// Beyond it doubles are whole numbers: adding and taking it away rounds to the nearest, and unlike
+// a call of the library it is done for several numbers at once.
+constexpr double kRounding = 0x1.8p52;
+
 void check_not_negative(const char* setting, double value) {
   if (!(value >= 0.0) || !std::isfinite(value)) {
     throw InputError(setting, number_text(value) + " microstrain", "give a number from 0 up");
@@ -149,8 +153,8 @@ void FrontEnd::convert(Tick first_tick, SampleRate rate, std::span<double> strai
   const double zero = offset_strain_ * codes_per_strain - settings_.offset_codes;
   const double most = std::ldexp(1.0, settings_.bits - 1);
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    const double code = std::nearbyint(strain[i] * codes_per_strain + zero);
-    codes[i] = static_cast<std::int32_t>(std::clamp(code, -most, most - 1.0));
+    const double code = std::clamp(strain[i] * codes_per_strain + zero, -most, most - 1.0);
+    codes[i] = static_cast<std::int32_t>((code + kRounding) - kRounding);
   }
 }
 

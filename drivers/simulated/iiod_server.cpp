@@ -26,7 +26,7 @@ namespace kolsky {
 namespace {
 
 constexpr std::size_t kMostClients = 64;
-constexpr int kBacklog = 16;
+constexpr int kBacklog = 128;
 constexpr std::chrono::milliseconds kWhenOutOfFiles{10};
 
 sockaddr_in parse_address(const std::string& listen) {

@@ -79,7 +79,9 @@ void declare(CLI::App& app, Options& o) {
   app.add_option("--period", o.period_s, "seconds from shot to shot; 0: on demand only")
       ->capture_default_str();
   app.add_option("--faults", o.faults, "fault script, see below");
-  app.add_option("--seed", o.seed, "of the noise")->capture_default_str();
+  app.add_option("--seed", o.seed, "of the noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--bits", o.bits, "resolution, 12 to 24");
   app.add_option("--noise-microstrain", o.noise_microstrain, "white noise, rms");
   app.add_option("--hum-microstrain", o.hum_microstrain, "mains hum, amplitude");
@@ -147,18 +149,30 @@ struct Programme {
   std::unique_ptr<CodeSource> source;
 };
 
+/// What the options ask for beyond the programme's own settings.
+AdcSettings complete(AdcSettings settings, const Options& o) {
+  settings.counter = !o.no_counter;
+  settings.speed = o.speed;
+  settings.period_s = o.period_s;
+  settings.faults = read_faults(o.faults);
+  settings.log = [](const std::string& text) { spdlog::info("{}", text); };
+  check(settings);
+  return settings;
+}
+
 Programme play_captures(const Options& o) {
   std::vector<Shot> shots;
   for (const auto& path : captures_in(o.play)) {
     shots.push_back(read_capture(path));
   }
   auto source = std::make_unique<CaptureSource>(std::move(shots), o.seed);
-  AdcSettings settings = source->settings();
+  AdcSettings settings = complete(source->settings(), o);
   return {std::move(settings), std::move(source)};
 }
 
 Programme play_scenario(const Options& o) {
   const Scenario scenario = chosen_scenario(o);
+  AdcSettings settings = complete(adc_settings(scenario), o);
   const auto start = std::chrono::steady_clock::now();
   BenchHistory shot = run_shot(scenario);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -166,7 +180,7 @@ Programme play_scenario(const Options& o) {
   if (!o.truth.empty()) {
     write_truth_file(scenario, shot, o.truth);
   }
-  return {adc_settings(scenario), std::make_unique<ScenarioSource>(scenario, std::move(shot))};
+  return {std::move(settings), std::make_unique<ScenarioSource>(scenario, std::move(shot))};
 }
 
 void print_bench(const Options& o) {
@@ -192,13 +206,7 @@ void serve(const Options& o, sigset_t& leave) {
   if (!o.truth.empty() && !o.listen_given) {
     return;
   }
-  AdcSettings& settings = programme.settings;
-  settings.counter = !o.no_counter;
-  settings.speed = o.speed;
-  settings.period_s = o.period_s;
-  settings.faults = read_faults(o.faults);
-  settings.log = [](const std::string& text) { spdlog::info("{}", text); };
-  SimulatedAdc adc(std::move(settings), std::move(programme.source));
+  SimulatedAdc adc(std::move(programme.settings), std::move(programme.source));
   IiodServer server(o.listen, adc);
   server.start();
   print_address(o, server, adc);

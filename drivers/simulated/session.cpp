@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
+#include <span>
 #include <string>
 
 namespace kolsky {
@@ -238,23 +240,23 @@ Session::Next Session::pause(double seconds) {
   return Next::go_on;
 }
 
+/// The head travels with the first samples: one packet less for every block.
 bool Session::send_samples(std::size_t samples, bool with_mask) {
   const std::size_t scan_bytes = stream_->layout().bytes();
   std::string head = std::to_string(samples * scan_bytes) + "\n";
   if (with_mask) {
     head += stream_->layout().mask_text() + "\n";
   }
-  if (!connection_.write(head)) {
-    return false;
-  }
   const std::size_t most = std::max<std::size_t>(kSendBytes / scan_bytes, 1);
   while (samples > 0) {
     const std::size_t count = std::min(samples, most);
-    scans_.resize(count * scan_bytes);
-    stream_->read(scans_);
-    if (!connection_.write(std::span<const std::byte>(scans_))) {
+    outgoing_.resize(head.size() + count * scan_bytes);
+    std::memcpy(outgoing_.data(), head.data(), head.size());
+    stream_->read(std::span(outgoing_).subspan(head.size()));
+    if (!connection_.write(std::span<const std::byte>(outgoing_))) {
       return false;
     }
+    head.clear();
     samples -= count;
   }
   return true;

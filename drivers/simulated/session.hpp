@@ -60,7 +60,7 @@ class Session {
   Drop drop_;
   std::unique_ptr<AdcStream> stream_;
   std::uint32_t register_address_ = 0;
-  std::vector<std::byte> scans_;
+  std::vector<std::byte> outgoing_;
 };
 
 }  // namespace kolsky

@@ -16,6 +16,8 @@ namespace {
 constexpr std::uint64_t kMostBuffers = 1024;
 constexpr std::uint64_t kMostBlockSamples = std::uint64_t{1} << 28;
 
+}  // namespace
+
 void check(const AdcSettings& settings) {
   if (settings.bits < 12 || settings.bits > 32) {
     throw InputError("bits", std::to_string(settings.bits) + " is not a simulated resolution",
@@ -41,8 +43,6 @@ void check(const AdcSettings& settings) {
                      "give one of them");
   }
 }
-
-}  // namespace
 
 SimulatedAdc::SimulatedAdc(AdcSettings settings, std::unique_ptr<CodeSource> source)
     : settings_(std::move(settings)),
@@ -124,13 +124,6 @@ int SimulatedAdc::set_rate(const std::string& value) {
   clock_.set_rate(*rate);
   next_periodic_shot_ = clock_.next() + period_ticks();
   return 0;
-}
-
-void SimulatedAdc::lose(Tick samples, bool by_script) {
-  if (samples > 0) {
-    raise_overflow();
-    (by_script ? injected_lost_samples_ : overrun_lost_samples_) += samples;
-  }
 }
 
 void SimulatedAdc::note_fault(const FaultQueue::Due& due) {
@@ -215,8 +208,9 @@ int SimulatedAdc::open_stream(const std::vector<std::uint32_t>& mask, std::uint6
   }
   stream = std::make_unique<AdcStream>(*this, mask, static_cast<Tick>(block_samples));
   stream_ = stream.get();
+  skip_faults(stream->read_until_);
   if (fault_gap_from_) {
-    injected_lost_samples_ += stream->position() - *fault_gap_from_;
+    injected_lost_samples_ += stream->read_until_ - *fault_gap_from_;
     fault_gap_from_.reset();
   }
   return 0;

@@ -45,6 +45,9 @@ struct AdcSettings {
       log;  ///< of shots and faults; called under the lock, may be empty
 };
 
+/// @throws InputError whose place is the setting
+void check(const AdcSettings& settings);
+
 /// What an attribute answers: its text, or a negative errno.
 struct AttributeReply {
   int error = 0;
@@ -116,7 +119,6 @@ class SimulatedAdc {
 
   void raise_overflow() noexcept;
   void note_overrun();
-  void lose(Tick samples, bool by_script);
   void note_fault(const FaultQueue::Due& due);
   void skip_faults(Tick until);
   void log(const std::string& text) const;

@@ -5,8 +5,9 @@
 
 namespace kolsky {
 
-/// Input that a person can mend: a file, a setting, a message. One line that names the place, what is
-/// wrong there and what would be right. Programs print it and exit with 2.
+/// Input that a person can mend: a file, a setting, a message. One line that names the place, what
+/// is wrong there and what would be right; control characters in them are escaped. Programs print
+/// it and exit with 2.
 class InputError : public std::runtime_error {
  public:
   /// @param place  where it is wrong, from the outside in: "bench.toml: gauges[1].position_m"

@@ -13,6 +13,12 @@ TEST(InputError, IsOneLineOfPlaceWhatAndMend) {
   EXPECT_EQ(error.mend(), "give metres");
 }
 
+TEST(InputError, StaysOneLineWhateverItQuotes) {
+  const InputError error("a\nb", "is \"\x1B[2J\r\"", "mend it");
+  EXPECT_STREQ(error.what(), "a\\nb: is \"\\x1b[2J\\x0d\"; mend it");
+  EXPECT_EQ(error.place(), "a\nb");
+}
+
 TEST(InputError, IsSeenFromFurtherOut) {
   const InputError error =
       InputError("key", "is wrong", "mend it").inside("file.toml").inside("folder");

@@ -296,6 +296,11 @@ TEST(TomlTable, BoundsWhatAFileCanCost) {
             "f.toml:1: is longer than 4096 bytes; break the line");
   EXPECT_EQ(refusal_of([] { (void)parse(std::string(300 * 1024, '\n')); }),
             "f.toml: is larger than 256 KiB; check that this is the file you mean");
+}
+
+#if defined(NDEBUG) && !defined(KOLSKY_SANITIZED)
+// Full lines of the shortest values cost the parser most; a real file takes milliseconds.
+TEST(TomlTable, TheWorstFileTakesAMomentOnly) {
   std::string worst = "a = [\n";
   while (worst.size() < 250 * 1024) {
     worst += "1,";
@@ -303,8 +308,9 @@ TEST(TomlTable, BoundsWhatAFileCanCost) {
   }
   const auto start = std::chrono::steady_clock::now();
   EXPECT_GT(parse(worst + "]").numbers("a").size(), 100'000U);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
+#endif
 
 TEST(TomlTable, OpensFilesAndNamesThem) {
   const ScratchFolder folder;

@@ -1,0 +1,28 @@
+#include "clients/cli/commands/commands.hpp"
+
+namespace kolsky::cli {
+
+Command import_csv_command();
+Command reduce_command();
+Command export_command();
+Command verify_command();
+Command status_command();
+Command arm_command();
+Command disarm_command();
+Command fire_command();
+Command force_trigger_command();
+Command shots_command();
+Command get_command();
+Command watch_command();
+Command reload_command();
+Command release_command();
+Command stop_command();
+
+std::vector<Command> all_commands() {
+  return {import_csv_command(),    reduce_command(),  export_command(), verify_command(),
+          status_command(),        arm_command(),     disarm_command(), fire_command(),
+          force_trigger_command(), shots_command(),   get_command(),    watch_command(),
+          reload_command(),        release_command(), stop_command()};
+}
+
+}  // namespace kolsky::cli

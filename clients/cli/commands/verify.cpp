@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/json_value.hpp"
+#include "clients/cli/reduced_shot.hpp"
+#include "drivers/files/store.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+JsonValue describe(const StoreReport& found, const std::string& store) {
+  JsonList problems;
+  for (const StoreReport::Problem& problem : found.problems) {
+    problems.push_back(JsonObject{{"file", problem.file}, {"text", problem.text}});
+  }
+  return JsonObject{{"store", absolute_name(store)},
+                    {"sound", found.problems.empty()},
+                    {"journals", static_cast<std::uint64_t>(found.journals)},
+                    {"journaled_shots", static_cast<std::uint64_t>(found.journaled_shots)},
+                    {"captures", static_cast<std::uint64_t>(found.captures)},
+                    {"bytes_ignored", found.bytes_ignored},
+                    {"problems", std::move(problems)}};
+}
+
+std::string text_of(const StoreReport& found, const std::string& store) {
+  std::string text = fmt::format("{}: {} journals with {} shots, {} captures", store,
+                                 found.journals, found.journaled_shots, found.captures);
+  if (found.bytes_ignored > 0) {
+    text +=
+        fmt::format(", {} bytes of records that a crash cut short (harmless)", found.bytes_ignored);
+  }
+  text += found.problems.empty() ? ": every checksum is right\n" : "\n";
+  for (const StoreReport::Problem& problem : found.problems) {
+    text += "  " + problem.file + ": " + problem.text + "\n";
+  }
+  return text;
+}
+
+int run(const std::string& store, Context& context) {
+  const StoreReport found = verify_store({store});
+  context.out << (context.json ? to_text(describe(found, store)) + "\n" : text_of(found, store));
+  if (!found.problems.empty()) {
+    const StoreReport::Problem& first = found.problems.front();
+    throw InputError(store,
+                     fmt::format("{} damaged or missing, first {}: {}", found.problems.size(),
+                                 first.file, first.text),
+                     "restore those files from a backup; the others are sound");
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command verify_command() {
+  auto store = std::make_shared<std::string>();
+  Command command;
+  command.name = "verify";
+  command.purpose =
+      "check every journal and capture of a store against its checksums\n"
+      "Changes nothing. Exit code 0: all sound; 2: something is damaged, and it says what.";
+  command.examples = "  kolsky verify store\n";
+  command.arguments = {
+      needed("STORE", "", "the store's folder, as in kolskyd's configuration", store.get())};
+  command.run = [store](Context& context) { return run(*store, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

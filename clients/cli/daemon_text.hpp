@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include "clients/cli/json_value.hpp"
+#include "clients/terminal/terminal.hpp"
+#include "kolsky/v1/kolsky.pb.h"
+
+namespace kolsky::cli {
+
+[[nodiscard]] std::string state_name(v1::DaemonState state);
+[[nodiscard]] Ink state_ink(v1::DaemonState state);
+
+/// "pass", "warn", "fail", or "pending" where nobody judged yet.
+[[nodiscard]] std::string verdict_name(v1::Quality::Verdict verdict);
+[[nodiscard]] Ink verdict_ink(v1::Quality::Verdict verdict);
+
+[[nodiscard]] JsonValue describe(const v1::Status& status);
+[[nodiscard]] JsonValue describe(const v1::ShotSummary& shot);
+[[nodiscard]] JsonValue describe(const v1::Preflight& preflight);
+
+/// One line: state, digitiser, operator.
+[[nodiscard]] std::string headline(const v1::Status& status, bool colour);
+
+/// What was read and lost since the daemon started, in one line.
+[[nodiscard]] std::string counters_line(const v1::Status& status, bool colour);
+
+/// What is stored, in one line.
+[[nodiscard]] std::string store_line(const v1::Status& status);
+
+/// One line each, with how large the noise is.
+[[nodiscard]] std::string channel_line(const v1::ChannelStatus& channel);
+
+/// A shot in one line: id, verdict, outcome.
+[[nodiscard]] std::string shot_line(const v1::ShotSummary& shot, bool colour);
+
+/// One line per check.
+[[nodiscard]] std::string preflight_text(const v1::Preflight& preflight, bool colour);
+
+}  // namespace kolsky::cli

@@ -1,0 +1,128 @@
+#include "clients/cli/reduced_shot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "drivers/files/capture.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+constexpr double kLoadingStart = 0.05;  // of the peak stress
+constexpr double kLoadingEnd = 0.98;    // of the largest strain
+
+std::size_t index_of_largest(const std::vector<double>& history) {
+  return static_cast<std::size_t>(std::max_element(history.begin(), history.end()) -
+                                  history.begin());
+}
+
+// The last sample before `peak` at which the history is still below the level.
+std::size_t rise_before(const std::vector<double>& history, std::size_t peak, double level) {
+  std::size_t i = peak;
+  while (i > 0 && history[i] >= level) {
+    --i;
+  }
+  return i;
+}
+
+std::size_t first_at(const std::vector<double>& history, double level) {
+  return static_cast<std::size_t>(
+      std::find_if(history.begin(), history.end(), [&](double value) { return value >= level; }) -
+      history.begin());
+}
+
+}  // namespace
+
+std::string absolute_name(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path absolute = std::filesystem::weakly_canonical(path, ignored);
+  return (absolute.empty() ? path : absolute).string();
+}
+
+bool assumes_bar_model(const Shot& shot, const ReductionOptions& options) {
+  const bool all_elastic =
+      shot.bench.input.youngs_modulus_Pa.has_value() &&
+      (!shot.bench.output.has_value() || shot.bench.output->youngs_modulus_Pa.has_value());
+  return !all_elastic && !options.bar_model.has_value() && !shot.bar_model.has_value();
+}
+
+ReducedShot reduce_capture(const std::filesystem::path& capture, const ReductionOptions& options) {
+  ReducedShot reduced{read_capture(capture), {}, absolute_name(capture), false};
+  reduced.default_bar_model = assumes_bar_model(reduced.shot, options);
+  try {
+    reduced.reduction = Reducer(options).reduce(reduced.shot);
+  } catch (const InputError& error) {
+    throw error.inside(capture.string());
+  }
+  return reduced;
+}
+
+LoopSummary summarise(const Reduction& reduction) {
+  if (reduction.stress_Pa.empty()) {
+    return {};
+  }
+  const std::size_t peak = index_of_largest(reduction.stress_Pa);
+  const std::size_t furthest = index_of_largest(reduction.strain);
+  LoopSummary summary;
+  summary.peak_stress_Pa = reduction.stress_Pa[peak];
+  summary.strain_at_peak = reduction.strain[peak];
+  summary.peak_strain = reduction.strain[furthest];
+  const std::size_t begin =
+      rise_before(reduction.stress_Pa, peak, kLoadingStart * summary.peak_stress_Pa);
+  const std::size_t end = first_at(reduction.strain, kLoadingEnd * summary.peak_strain);
+  if (end > begin && end < reduction.strain.size()) {
+    summary.loading_s = reduction.time_s[end] - reduction.time_s[begin];
+    summary.mean_strain_rate_per_s =
+        (reduction.strain[end] - reduction.strain[begin]) / summary.loading_s;
+  }
+  return summary;
+}
+
+std::vector<double> true_strain(const Reduction& reduction) {
+  std::vector<double> strains;
+  strains.reserve(reduction.strain.size());
+  for (const double strain : reduction.strain) {
+    strains.push_back(strain < 1.0 ? -std::log1p(-strain)
+                                   : std::numeric_limits<double>::quiet_NaN());
+  }
+  return strains;
+}
+
+std::vector<double> true_stress_Pa(const Reduction& reduction) {
+  std::vector<double> stresses;
+  stresses.reserve(reduction.stress_Pa.size());
+  for (std::size_t i = 0; i < reduction.stress_Pa.size(); ++i) {
+    const double left = 1.0 - reduction.strain[i];
+    stresses.push_back(left > 0.0 ? reduction.stress_Pa[i] * left
+                                  : std::numeric_limits<double>::quiet_NaN());
+  }
+  return stresses;
+}
+
+std::string verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::warn:
+      return "warn";
+    case Verdict::fail:
+      return "fail";
+  }
+  return "fail";
+}
+
+Ink verdict_ink(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return Ink::good;
+    case Verdict::warn:
+      return Ink::doubtful;
+    case Verdict::fail:
+      return Ink::bad;
+  }
+  return Ink::bad;
+}
+
+}  // namespace kolsky::cli

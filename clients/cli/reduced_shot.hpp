@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "clients/cli/json_value.hpp"
+#include "clients/terminal/terminal.hpp"
+#include "processing/base/shot.hpp"
+#include "processing/reduction/reducer.hpp"
+
+namespace kolsky::cli {
+
+/// A shot with its result, whether reduced here or by the daemon: what `reduce` and `get` show.
+struct ReducedShot {
+  Shot shot;
+  Reduction reduction;
+  std::string capture;  ///< the file, absolute
+  bool default_bar_model =
+      false;  ///< the bars were taken for the paper's PMMA because nobody said what they are
+};
+
+/// The path by which a file is named in output: the same from wherever it was given.
+[[nodiscard]] std::string absolute_name(const std::filesystem::path& path);
+
+/// Whether a reduction with these options has to assume what the bars are made of.
+[[nodiscard]] bool assumes_bar_model(const Shot& shot, const ReductionOptions& options);
+
+/// Reads a capture and reduces it. @throws InputError
+[[nodiscard]] ReducedShot reduce_capture(const std::filesystem::path& capture,
+                                         const ReductionOptions& options);
+
+/// The numbers of a loop that go into one line.
+struct LoopSummary {
+  double peak_stress_Pa = 0.0;
+  double strain_at_peak = 0.0;  ///< at the peak stress
+  double peak_strain = 0.0;
+  double loading_s = 0.0;  ///< from 5 % of the peak stress to 98 % of the largest strain
+  double mean_strain_rate_per_s = 0.0;  ///< over the loading
+};
+
+/// All zero for an empty reduction.
+[[nodiscard]] LoopSummary summarise(const Reduction& reduction);
+
+/// True strain -ln(1 - e) and true stress s (1 - e) from engineering ones, compression positive,
+/// for a specimen that keeps its volume. NaN where e >= 1.
+[[nodiscard]] std::vector<double> true_strain(const Reduction& reduction);
+[[nodiscard]] std::vector<double> true_stress_Pa(const Reduction& reduction);
+
+/// What --true does, for --help.
+inline constexpr const char* kTrueHelp =
+    "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), for "
+    "a "
+    "specimen that keeps its volume";
+
+/// What `reduce --json` and `get --json` print.
+[[nodiscard]] JsonValue describe(const ReducedShot& shot, bool with_true);
+
+/// The same for people: numbers, verdicts with their sentences, the loop and the forces drawn.
+[[nodiscard]] std::string report(const ReducedShot& shot, const Terminal& terminal);
+
+[[nodiscard]] std::string verdict_name(Verdict verdict);
+[[nodiscard]] Ink verdict_ink(Verdict verdict);
+
+}  // namespace kolsky::cli

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/time_text.hpp"
+#include "clients/figure/layout.hpp"
+#include "clients/figure/reduction_figure.hpp"
+#include "clients/terminal/plot.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+constexpr std::size_t kNameColumns = 18;
+constexpr std::size_t kVerdictColumns = 6;
+constexpr int kPlotColumns = 100;  // wider gives no better view
+constexpr int kLoopRows = 16;
+constexpr int kForceRows = 9;
+
+std::string row(const std::string& name, const std::string& text) {
+  return "  " + padded_right(name, kNameColumns) + text + "\n";
+}
+
+std::string what_was_shot(const Shot& shot) {
+  if (!shot.bench.specimen.has_value()) {
+    return "";
+  }
+  return row("specimen",
+             fmt::format("{} long, {} in diameter", with_unit(shot.bench.specimen->length_m, "m"),
+                         with_unit(shot.bench.specimen->diameter_m, "m")));
+}
+
+std::string arrival_text(const Reduction& reduction) {
+  const DisplayUnit unit = display_unit("s", std::abs(reduction.arrival_s));
+  return fmt::format("{:.2f} ± {:.2f} {} into the record", reduction.arrival_s * unit.factor,
+                     reduction.arrival_sigma_s * unit.factor, unit.name);
+}
+
+std::string numbers(const Reduction& reduction) {
+  const LoopSummary loop = summarise(reduction);
+  return row("peak stress",
+             fmt::format("{} at a strain of {}", with_unit(loop.peak_stress_Pa, "Pa"),
+                         with_unit(loop.strain_at_peak, "strain"))) +
+         row("largest strain", with_unit(loop.peak_strain, "strain")) +
+         row("mean strain rate",
+             fmt::format("{} over the {} of loading", with_unit(loop.mean_strain_rate_per_s, "1/s"),
+                         with_unit(loop.loading_s, "s"))) +
+         row("arrival", arrival_text(reduction)) +
+         row("band", "up to " + with_unit(reduction.band_limit_Hz, "Hz"));
+}
+
+std::string check_text(const Check& check, const Terminal& terminal) {
+  const std::size_t indent = 2 + kNameColumns + kVerdictColumns;
+  const auto columns = static_cast<std::size_t>(std::clamp(terminal.columns, 60, kPlotColumns));
+  const std::vector<std::string> lines = wrapped(check.text, columns - indent);
+  std::string text = inked(padded_right(verdict_name(check.verdict), kVerdictColumns),
+                           verdict_ink(check.verdict), terminal.colour);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += (i == 0 ? "" : "\n" + std::string(indent, ' ')) + lines[i];
+  }
+  return row("  " + check.name, text);
+}
+
+std::string verdicts(const Quality& quality, const Terminal& terminal) {
+  const Verdict worst = quality.verdict();
+  std::string text = row("verdict", inked(quality.reducible ? verdict_name(worst) : "not reducible",
+                                          verdict_ink(worst), terminal.colour) +
+                                        (quality.reducible ? "" : ": " + quality.reason));
+  for (const Check& check : quality.checks) {
+    text += check_text(check, terminal);
+  }
+  return text;
+}
+
+std::string plots(const Reduction& reduction, const Terminal& terminal) {
+  const int columns = std::min(terminal.columns, kPlotColumns);
+  return "\n" + plot_text(loop_panel(reduction), {columns, kLoopRows}, terminal.colour) + "\n" +
+         plot_text(force_panel(reduction), {columns, kForceRows}, terminal.colour);
+}
+
+}  // namespace
+
+std::string report(const ReducedShot& reduced, const Terminal& terminal) {
+  const Shot& shot = reduced.shot;
+  std::string text = inked(shot.id, Ink::bold, terminal.colour) + "  " + short_time(shot.utc_ns) +
+                     " UTC  " + reduced.capture + "\n" + what_was_shot(shot);
+  text += row("bars", reduced.reduction.bar_model);
+  const bool has_loop = !reduced.reduction.stress_Pa.empty();
+  if (has_loop) {
+    text += numbers(reduced.reduction);
+  }
+  text += verdicts(reduced.reduction.quality, terminal);
+  return has_loop ? text + plots(reduced.reduction, terminal) : text;
+}
+
+}  // namespace kolsky::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kolsky {
+
+/// What text goes to.
+struct Terminal {
+  bool interactive = false;  ///< a terminal, not a file or a pipe
+  bool colour = false;       ///< interactive, and NO_COLOR is not set
+  int columns = 80;
+  int rows = 24;
+};
+
+/// Asks the system about a file descriptor. What is not a terminal has 80 columns and no colour.
+[[nodiscard]] Terminal terminal_of(int file_descriptor);
+
+enum class Ink { plain, dim, bold, good, doubtful, bad, first, second, third };
+
+/// The ink of the n-th line of a plot.
+[[nodiscard]] Ink series_ink(std::size_t n);
+
+/// `text` in ink where colour is wanted, else as it is.
+[[nodiscard]] std::string inked(std::string_view text, Ink ink, bool colour);
+
+/// Columns that a UTF-8 text takes, escape sequences not counted. Every character is taken as one
+/// column wide.
+[[nodiscard]] std::size_t columns_of(std::string_view text);
+
+/// The text padded with blanks on the right (or left) to a width.
+[[nodiscard]] std::string padded_right(std::string_view text, std::size_t columns);
+[[nodiscard]] std::string padded_left(std::string_view text, std::size_t columns);
+
+/// The words of a text in lines of at most so many columns; a longer word has a line of its own.
+[[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
+
+}  // namespace kolsky

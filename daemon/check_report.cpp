@@ -1,0 +1,66 @@
+#include "daemon/check_report.hpp"
+
+#include <fmt/format.h>
+
+namespace kolsky {
+
+namespace {
+
+const char* name_of(BenchKind kind) {
+  switch (kind) {
+    case BenchKind::bar:
+      return "bar";
+    case BenchKind::shpb:
+      return "shpb";
+    case BenchKind::impact:
+      break;
+  }
+  return "impact";
+}
+
+std::string gauges_line(const DaemonConfig& config, const Apparatus& apparatus) {
+  std::string line;
+  for (std::size_t i = 0; i < apparatus.bench.gauges.size(); ++i) {
+    const Gauge& gauge = apparatus.bench.gauges[i];
+    const std::string channel =
+        config.digitiser.channels.empty() ? "" : " on " + config.digitiser.channels[i];
+    line += fmt::format("{}{}{} ({} bar, {} m, {})", i == 0 ? "" : ", ", gauge.name, channel,
+                        gauge.bar, gauge.position_m.value, gauge.unit);
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string check_report(const DaemonConfig& config, const Apparatus& apparatus) {
+  const double rate_Hz = apparatus.bench.sampling_frequency_Hz;
+  const TriggerConfig& trigger = config.trigger;
+  const auto block = static_cast<std::size_t>(config.digitiser.block_samples);
+  const std::size_t ring = ring_samples(config, rate_Hz, block);
+  const TriggerOptions options = trigger_options(trigger, rate_Hz);
+  const auto milliseconds = [&](auto samples) {
+    return 1e3 * static_cast<double>(samples) / rate_Hz;
+  };
+  const std::string model = apparatus.bench.input.youngs_modulus_Pa ? "elastic, as in the bench"
+                            : apparatus.bar_model                   ? apparatus.bar_model->source
+                                                                    : paper_pmma().source;
+  return fmt::format(
+      "bench      {}: {}, {:.6g} MS/s\n"
+      "bars       {}\n"
+      "gauges     {}\n"
+      "digitiser  {}, blocks of {} samples ({:.4g} ms)\n"
+      "trigger    {} above {:.4g} sigma for {:.4g} us, hold-off {:.4g} ms\n"
+      "window     {} + {} samples ({:.4g} + {:.4g} ms)\n"
+      "ring       {} samples ({:.4g} s)\n"
+      "store      {}\n"
+      "endpoints  results {}, preview {}, control {}\n",
+      config.bench.string(), name_of(apparatus.bench.kind), rate_Hz * 1e-6, model,
+      gauges_line(config, apparatus), config.digitiser.uri, block, milliseconds(block),
+      trigger.channel, trigger.level_sigma, 1e3 * milliseconds(options.minimum_width_samples),
+      milliseconds(options.hold_off_samples), trigger.pre_samples, trigger.post_samples,
+      milliseconds(trigger.pre_samples), milliseconds(trigger.post_samples), ring,
+      1e-3 * milliseconds(ring), config.store.string(), config.endpoints.results,
+      config.endpoints.preview, config.endpoints.control);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/digitiser/open.hpp"
+#include "drivers/files/bench_file.hpp"
+#include "processing/base/material.hpp"
+#include "processing/trigger/incident_trigger.hpp"
+
+namespace kolsky {
+
+/// What `[trigger]` asks for, in the units a person sets it in. What is not given follows from the
+/// rate, as in TriggerOptions::for_rate.
+struct TriggerConfig {
+  std::string channel;  ///< gauge whose record is watched
+  double level_sigma = 8.0;
+  std::int64_t pre_samples = 400;
+  std::int64_t post_samples = 3600;
+  std::optional<double> hysteresis_share;
+  std::optional<double> minimum_width_s;
+  std::optional<double> maximum_rise_s;
+  std::optional<std::int64_t> hold_off_samples;  ///< else at least post_samples, so that echoes
+                                                 ///< stay in the window of their shot
+  std::optional<std::int64_t> learn_samples;
+};
+
+struct DigitiserConfig {
+  std::string uri;
+  std::string device;
+  std::vector<std::string> channels;
+  std::int64_t block_samples = 1024;
+  double speed = 0.0;  ///< of a replay: factor on the real rate; 0: as fast as possible
+
+  friend bool operator==(const DigitiserConfig&, const DigitiserConfig&) = default;
+};
+
+struct EndpointConfig {
+  std::string results = "tcp://127.0.0.1:5600";
+  std::string preview = "tcp://127.0.0.1:5601";
+  std::string control = "tcp://127.0.0.1:5602";
+
+  friend bool operator==(const EndpointConfig&, const EndpointConfig&) = default;
+};
+
+/// What KOLSKYD.toml says. Paths are absolute; in the file
+/// they are relative to the file.
+struct DaemonConfig {
+  std::filesystem::path file;
+  std::filesystem::path bench;
+  std::optional<std::filesystem::path> bar_model;
+  std::filesystem::path store;
+  DigitiserConfig digitiser;
+  TriggerConfig trigger;
+  EndpointConfig endpoints;
+  std::optional<double>
+      ring_s;             ///< how far back the ring reaches; none: what the window needs and more
+  bool auto_arm = false;  ///< arm by itself as soon as the preflight passes
+  std::map<std::string, std::string> meta;  ///< goes with every shot
+};
+
+/// @throws InputError: file, line, key and mend; unknown keys name the nearest known one
+[[nodiscard]] DaemonConfig read_config(const std::filesystem::path& path);
+
+/// The apparatus a configuration points to.
+struct Apparatus {
+  Bench bench;
+  std::string bench_toml;
+  std::optional<Material> bar_model;
+  std::size_t trigger_channel = 0;  ///< index in bench.gauges
+};
+
+/// Reads the bench and the bar's material, and checks what only both files together can show: the
+/// trigger channel is a gauge, as many digitiser channels as gauges, every gauge converts to
+/// strain.
+/// @throws InputError
+[[nodiscard]] Apparatus read_apparatus(const DaemonConfig& config);
+
+/// The trigger's settings in samples at this rate.
+[[nodiscard]] TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_Hz);
+
+[[nodiscard]] DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench);
+
+/// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded
+/// so that a fast scope does not take the memory; always several windows and blocks.
+[[nodiscard]] std::size_t ring_samples(const DaemonConfig& config, double sample_rate_Hz,
+                                       std::size_t max_block_samples);
+
+}  // namespace kolsky

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/shots/shared_journal.hpp"
+#include "drivers/files/catalogue.hpp"
+#include "drivers/files/store.hpp"
+#include "processing/reduction/reducer.hpp"
+
+namespace kolsky {
+
+/// A stored shot and what it reduces to.
+struct StoredShot {
+  Shot shot;
+  Reduction reduction;
+  std::string capture;  ///< its file
+};
+
+/// The one thread of the daemon that writes captures and the catalogue and reads them back. Shots
+/// come to it journaled: whatever happens here, or to it, nothing is lost.
+class Archivist {
+ public:
+  /// Told what could not be stored, from the archivist's thread.
+  using FaultSink = std::function<void(const std::string& text)>;
+
+  Archivist(StoreLayout store, SharedJournal& journal, FaultSink fault);
+  ~Archivist();
+  Archivist(const Archivist&) = delete;
+  Archivist& operator=(const Archivist&) = delete;
+
+  /// Begins; captures that the catalogue does not know are judged and entered first.
+  void start();
+  /// Stores all that was handed over, then ends.
+  void stop();
+
+  /// One shot is about to be published and will be handed over: what is asked from now on is
+  /// answered after that, so that whoever has seen a result finds the shot in the list. Cheap.
+  void expect_shot() noexcept { expected_.fetch_add(1); }
+  /// Hands over the expected, journaled shot. Waits while `kMostWaiting` others wait.
+  void store(std::shared_ptr<const Shot> shot, CatalogueEntry entry);
+
+  /// Reads a capture back and reduces it with default options: what `kolsky reduce` does with that
+  /// file.
+  /// @throws InputError where there is no such shot or its capture is damaged
+  [[nodiscard]] StoredShot get(const std::string& id);
+  /// Newest first. @param most 0: all
+  [[nodiscard]] std::vector<CatalogueEntry> newest(std::size_t most);
+
+  [[nodiscard]] std::uint64_t stored() const noexcept { return stored_.load(); }
+  [[nodiscard]] std::uint64_t failed() const noexcept { return failed_.load(); }
+  /// Nothing waits and nothing is in hand.
+  [[nodiscard]] bool idle() const;
+  /// Jobs done: what a watchdog looks at while not idle.
+  [[nodiscard]] std::uint64_t progress() const noexcept { return progress_.load(); }
+
+  static constexpr std::size_t kMostWaiting = 64;
+
+ private:
+  using Job = std::function<void()>;
+
+  void run();
+  void submit(Job job);
+  void await_expected();
+  template <typename Ask>
+  auto ask(Ask question) -> decltype(question());
+  void store_now(const Shot& shot, CatalogueEntry entry);
+  void complete_catalogue();
+  void enter(const std::filesystem::path& capture);
+  Catalogue& catalogue();
+
+  StoreLayout store_;
+  SharedJournal& journal_;
+  FaultSink fault_;
+  std::unique_ptr<Catalogue> catalogue_;
+  Reducer reducer_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Job> jobs_;
+  bool busy_ = false;
+  std::uint64_t handed_over_ = 0;
+  bool stop_ = false;
+  std::atomic<std::uint64_t> expected_{0};
+  std::atomic<std::uint64_t> stored_{0};
+  std::atomic<std::uint64_t> failed_{0};
+  std::atomic<std::uint64_t> progress_{0};
+  std::thread thread_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,52 @@
+#include "daemon/shots/summary.hpp"
+
+#include <algorithm>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::warn:
+      return "warn";
+    case Verdict::fail:
+      break;
+  }
+  return "fail";
+}
+
+}  // namespace
+
+Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot) {
+  try {
+    return reducer.reduce(shot);
+  } catch (const InputError& error) {
+    Reduction reduction;
+    reduction.quality.reason = error.what();
+    return reduction;
+  }
+}
+
+CatalogueEntry summarise(const Shot& shot, const Reduction& reduction, const std::string& capture) {
+  CatalogueEntry entry;
+  entry.id = shot.id;
+  entry.utc_ns = shot.utc_ns;
+  entry.capture = capture;
+  entry.verdict = name_of(reduction.quality.verdict());
+  entry.reducible = reduction.quality.reducible;
+  entry.reason = reduction.quality.reason;
+  entry.peak_stress_Pa = largest(reduction.stress_Pa);
+  entry.peak_strain = largest(reduction.strain);
+  return entry;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "drivers/files/catalogue.hpp"
+#include "processing/base/shot.hpp"
+#include "processing/reduction/reducer.hpp"
+
+namespace kolsky {
+
+/// Reduces what can be reduced. A shot of a bench that has nothing to reduce (a bar to
+/// characterise, a ball) gives no histories, and the reason.
+[[nodiscard]] Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot);
+
+/// A shot's row in the catalogue. @param capture  file name inside store/shots
+[[nodiscard]] CatalogueEntry summarise(const Shot& shot, const Reduction& reduction,
+                                       const std::string& capture);
+
+}  // namespace kolsky

@@ -1,0 +1,166 @@
+#include "daemon/station.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "daemon/log.hpp"
+#include "daemon/shots/shot_context.hpp"
+#include "drivers/digitiser/open.hpp"
+#include "kolsky/v1/kolsky.pb.h"
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+StoreLayout created(const std::filesystem::path& folder) {
+  StoreLayout store{folder};
+  store.create();
+  return store;
+}
+
+PublisherOptions publisher_options(const EndpointConfig& endpoints) {
+  PublisherOptions options;
+  options.results_endpoint = endpoints.results;
+  options.preview_endpoint = endpoints.preview;
+  return options;
+}
+
+std::shared_ptr<const ShotSettings> make_settings(const DaemonConfig& config,
+                                                  const Apparatus& apparatus,
+                                                  const StreamInfo& stream) {
+  auto settings = std::make_shared<ShotSettings>();
+  settings->blank = blank_shot(config, apparatus, stream);
+  settings->bench_path = config.bench.string();
+  settings->pre_samples = config.trigger.pre_samples;
+  settings->post_samples = config.trigger.post_samples;
+  return settings;
+}
+
+SampleRing make_ring(const DaemonConfig& config, const StreamInfo& stream) {
+  const std::size_t samples = ring_samples(config, stream.rate.Hz(), stream.max_block_samples);
+  try {
+    return SampleRing(stream.format, stream.channels.size(), samples);
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  throw InputError(config.file.string() + ": ring.seconds",
+                   fmt::format("a ring of {} samples does not fit the memory", samples),
+                   "give less");
+}
+
+/// Recovers before a journal of this run is opened.
+std::uint64_t recovered(const StoreLayout& store, std::uint64_t boot_id) {
+  const StoreReport report = recover_store(store);
+  for (const std::string& id : report.recovered) {
+    log::info(fmt::format("shot {} was in a journal only; its capture is written now", id));
+  }
+  for (const StoreReport::Problem& problem : report.problems) {
+    log::warning(problem.file + ": " + problem.text);
+  }
+  return boot_id;
+}
+
+void check_unchanged(const DaemonConfig& was, const DaemonConfig& now) {
+  const auto check = [&](bool same, const char* key) {
+    if (!same) {
+      throw InputError(now.file.string() + ": " + key, "cannot change while the daemon runs",
+                       "restart kolskyd to take it");
+    }
+  };
+  check(was.digitiser == now.digitiser, "digitiser");
+  check(was.endpoints == now.endpoints, "endpoints");
+  check(was.store == now.store, "store.folder");
+  check(was.ring_s == now.ring_s, "ring.seconds");
+}
+
+}  // namespace
+
+Station::Station(DaemonConfig config)
+    : endpoints_(config.endpoints),
+      config_(std::move(config)),
+      apparatus_(read_apparatus(config_)),
+      store_(created(config_.store)),
+      lock_(store_.root),
+      publisher_(publisher_options(config_.endpoints)),
+      journal_(store_, recovered(store_, publisher_.boot_id())),
+      digitiser_(
+          open_digitiser(config_.digitiser.uri, digitiser_options(config_, apparatus_.bench))),
+      stream_(digitiser_->info()),
+      settings_(make_settings(config_, apparatus_, stream_)),
+      ring_(make_ring(config_, stream_)),
+      acquirer_(*digitiser_, ring_, events_, plan(config_, apparatus_.trigger_channel)),
+      archivist_(store_, journal_, [this](const std::string& text) { fault(text); }),
+      recorder_({.ring = ring_,
+                 .events = events_,
+                 .acquirer = acquirer_,
+                 .journal = journal_,
+                 .archivist = archivist_,
+                 .publisher = publisher_,
+                 .store = store_,
+                 .real_time = !stream_.ends},
+                settings_) {}
+
+Station::~Station() {
+  stop();
+}
+
+void Station::start() {
+  archivist_.start();
+  recorder_.start();
+  digitiser_->start();
+  acquirer_.start();
+  started_.store(true);
+}
+
+void Station::stop() {
+  if (std::exchange(stopped_, true)) {
+    return;
+  }
+  acquirer_.stop();
+  events_.close();
+  recorder_.stop();
+  archivist_.stop();
+}
+
+std::shared_ptr<const ShotSettings> Station::settings() const {
+  const std::lock_guard lock(settings_mutex_);
+  return settings_;
+}
+
+AcquisitionPlan Station::plan(const DaemonConfig& config, std::size_t trigger_channel) const {
+  return {.trigger_channel = trigger_channel,
+          .trigger = trigger_options(config.trigger, stream_.rate.Hz()),
+          .pre_samples = config.trigger.pre_samples,
+          .post_samples = config.trigger.post_samples};
+}
+
+void Station::reload() {
+  DaemonConfig config = read_config(config_.file);
+  check_unchanged(config_, config);
+  Apparatus apparatus = read_apparatus(config);
+  if (apparatus.bench.sampling_frequency_Hz != apparatus_.bench.sampling_frequency_Hz) {
+    throw InputError(config.bench.string() + ": sampling_frequency_Hz",
+                     "cannot change while the daemon runs", "restart kolskyd to take it");
+  }
+  auto settings = make_settings(config, apparatus, stream_);
+  recorder_.change(settings);
+  acquirer_.change_plan(plan(config, apparatus.trigger_channel));
+  config_ = std::move(config);
+  apparatus_ = std::move(apparatus);
+  const std::lock_guard lock(settings_mutex_);
+  settings_ = std::move(settings);
+}
+
+void Station::fault(const std::string& text) {
+  log::error(text);
+  v1::Fault message;
+  message.set_kind("store");
+  message.set_text(text);
+  publisher_.publish_fault(message);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,71 @@
+#include "processing/identification/known_unknowns.hpp"
+
+#include <cmath>
+
+namespace kolsky {
+
+namespace {
+
+double relative_sd(const Measured& number) {
+  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
+}
+
+/// Relative standard deviation of what turns a gauge's reading into strain.
+double gain_sd(const Gauge& gauge) {
+  if (gauge.strain_per_V) {
+    return relative_sd(*gauge.strain_per_V);
+  }
+  if (gauge.bridge) {
+    return std::hypot(relative_sd(gauge.bridge->gauge_factor),
+                      relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& records) {
+  using Of = KnownUnknown::Of;
+  std::vector<KnownUnknown> list;
+  for (std::size_t j = 0; j < records.channel.size(); ++j) {
+    const Gauge& gauge = bench.gauges[records.channel[j]];
+    if (const double sd = gain_sd(gauge); sd > 0.0) {
+      list.push_back({"gauge-factor:" + gauge.name, Of::gain, j, sd});
+    }
+    if (gauge.position_m.sd > 0.0) {
+      list.push_back({"gauge-position:" + gauge.name, Of::position, j, gauge.position_m.sd});
+    }
+  }
+  if (bench.input.length_m.sd > 0.0) {
+    list.push_back({"bar-length", Of::length, 0, bench.input.length_m.sd});
+  }
+  if (bench.input.density_kg_m3.sd > 0.0) {
+    list.push_back({"density", Of::density, 0, relative_sd(bench.input.density_kg_m3)});
+  }
+  return list;
+}
+
+MovedBench::MovedBench(const Bar& filed, const BarRecords& records,
+                       const std::vector<KnownUnknown>& unknowns, std::span<const double> moves)
+    : bar(filed), position_m(records.position_m), gain(records.position_m.size(), 1.0) {
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const KnownUnknown& u = unknowns[i];
+    const double move = moves[i] * u.sd;
+    switch (u.of) {
+      case KnownUnknown::Of::gain:
+        gain[u.gauge] *= 1.0 + move;
+        break;
+      case KnownUnknown::Of::position:
+        position_m[u.gauge] += move;
+        break;
+      case KnownUnknown::Of::length:
+        bar.length_m.value += move;
+        break;
+      case KnownUnknown::Of::density:
+        bar.density_kg_m3.value *= 1.0 + move;
+        break;
+    }
+  }
+}
+
+}  // namespace kolsky

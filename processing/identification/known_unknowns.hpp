@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "processing/identification/bar_records.hpp"
+
+namespace kolsky {
+
+/// A filed number of the bench with a standard deviation: it may be off by about that much, and a
+/// fit may move it.
+struct KnownUnknown {
+  enum class Of { gain, position, length, density };
+  std::string name;  ///< as the effect that would name it: "gauge-position:g3"
+  Of of = Of::gain;
+  std::size_t gauge = 0;  ///< for gain and position: its place in BarRecords
+  double sd = 0.0;        ///< relative for gain and density, metres for position and length
+};
+
+/// Those of a bench of kind "bar". Gains combine gauge factor, excitation and amplifier.
+[[nodiscard]] std::vector<KnownUnknown> known_unknowns(const Bench& bench,
+                                                       const BarRecords& records);
+
+/// The bench with its known unknowns moved.
+struct MovedBench {
+  Bar bar;
+  std::vector<double> position_m;
+  std::vector<double> gain;  ///< reading = gain x strain
+
+  /// @param moves  one per known unknown, in its standard deviations
+  MovedBench(const Bar& filed, const BarRecords& records, const std::vector<KnownUnknown>& unknowns,
+             std::span<const double> moves);
+};
+
+}  // namespace kolsky

@@ -1,0 +1,68 @@
+#include "clients/cli/reduced_shot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace kolsky::cli {
+namespace {
+
+// Strain rises at 1000 1/s for 100 us and stays; stress is 1 GPa times it, then falls away.
+Reduction ramp() {
+  Reduction reduction;
+  for (int i = 0; i <= 200; ++i) {
+    const double strain = 1e-3 * std::min(i, 100);
+    reduction.time_s.push_back(1e-6 * i);
+    reduction.strain.push_back(strain);
+    reduction.stress_Pa.push_back(i <= 100 ? 1e9 * strain : 1e8 * (1.0 - 0.01 * (i - 100)));
+  }
+  reduction.quality.reducible = true;
+  return reduction;
+}
+
+TEST(LoopSummary, DescribesALoop) {
+  const LoopSummary loop = summarise(ramp());
+  EXPECT_DOUBLE_EQ(loop.peak_stress_Pa, 1e8);
+  EXPECT_DOUBLE_EQ(loop.strain_at_peak, 0.1);
+  EXPECT_DOUBLE_EQ(loop.peak_strain, 0.1);
+  EXPECT_NEAR(loop.mean_strain_rate_per_s, 1000.0, 1e-6);
+  // From 5 % of the stress, at 5 us, to 98 % of the strain, at 98 us.
+  EXPECT_NEAR(loop.loading_s, 93e-6, 2e-6);
+}
+
+TEST(LoopSummary, IsZeroWhereThereIsNoLoop) {
+  const LoopSummary loop = summarise({});
+  EXPECT_EQ(loop.peak_stress_Pa, 0.0);
+  EXPECT_EQ(loop.loading_s, 0.0);
+}
+
+TEST(TrueValues, AreNullWhereTheSpecimenWouldHaveNoLengthLeft) {
+  ReducedShot reduced;
+  reduced.reduction = ramp();
+  reduced.reduction.strain.back() = 1.0;
+  reduced.reduction.strain.front() = -0.1;
+  const auto json = nlohmann::json::parse(to_text(describe(reduced, true)));
+  EXPECT_TRUE(json["strain_true"].back().is_null());
+  EXPECT_TRUE(json["stress_true_Pa"].back().is_null());
+  EXPECT_NEAR(json["strain_true"].front().get<double>(), -std::log(1.1), 1e-15);
+}
+
+TEST(BarModel, IsAssumedOnlyWhereNobodySaysWhatTheBarsAre) {
+  Shot shot;
+  shot.bench.output = Bar{};
+  EXPECT_TRUE(assumes_bar_model(shot, {}));
+  ReductionOptions told;
+  told.bar_model = paper_pmma();
+  EXPECT_FALSE(assumes_bar_model(shot, told));
+  shot.bar_model = paper_pmma();
+  EXPECT_FALSE(assumes_bar_model(shot, {}));
+  shot.bar_model.reset();
+  shot.bench.input.youngs_modulus_Pa = {210e9, 0.0};
+  EXPECT_TRUE(assumes_bar_model(shot, {})) << "the output bar is not elastic";
+  shot.bench.output->youngs_modulus_Pa = {210e9, 0.0};
+  EXPECT_FALSE(assumes_bar_model(shot, {}));
+}
+
+}  // namespace
+}  // namespace kolsky::cli

@@ -1,0 +1,232 @@
+#include "daemon/config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include "daemon/check_report.hpp"
+#include "processing/base/error.hpp"
+#include "tests/unit/daemon/strain_bench.hpp"
+
+namespace kolsky {
+namespace {
+
+constexpr const char* kLeast = R"(bench = "bench.toml"
+[digitiser]
+uri = "ip:127.0.0.1:30431"
+[trigger]
+channel = "g1"
+[store]
+folder = "store"
+)";
+
+class ConfigTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("kolsky-config-" + std::to_string(::getpid()) + "-" +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    write("bench.toml", kStrainBench);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  [[nodiscard]] DaemonConfig read(const std::string& text) const {
+    write("kolskyd.toml", text);
+    return read_config(folder_ / "kolskyd.toml");
+  }
+  /// The error's line; empty where there is none.
+  [[nodiscard]] std::string error_of(const std::string& text) const {
+    try {
+      static_cast<void>(read_apparatus(read(text)));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path folder_;
+};
+
+testing::AssertionResult holds(const std::string& text, std::initializer_list<const char*> parts) {
+  for (const char* part : parts) {
+    if (text.find(part) == std::string::npos) {
+      return testing::AssertionFailure() << "no '" << part << "' in: " << text;
+    }
+  }
+  return text.find('\n') == std::string::npos
+             ? testing::AssertionSuccess()
+             : testing::AssertionFailure() << "more than one line: " << text;
+}
+
+TEST_F(ConfigTest, TakesTheDefaultsWhereTheFileIsSilent) {
+  const DaemonConfig config = read(kLeast);
+  EXPECT_EQ(config.bench, folder_ / "bench.toml");
+  EXPECT_EQ(config.store, folder_ / "store");
+  EXPECT_EQ(config.endpoints.results, "tcp://127.0.0.1:5600");
+  EXPECT_EQ(config.endpoints.preview, "tcp://127.0.0.1:5601");
+  EXPECT_EQ(config.endpoints.control, "tcp://127.0.0.1:5602");
+  EXPECT_FALSE(config.auto_arm);
+  EXPECT_FALSE(config.bar_model);
+}
+
+TEST_F(ConfigTest, TakesEveryKey) {
+  write("pmma.toml",
+        "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.0e9\nE2_Pa = 37e9\n"
+        "eta2_Pa_s = 1.8e6\n");
+  const DaemonConfig config = read(R"(bench = "bench.toml"
+bar_model = "pmma.toml"
+auto_arm = true
+[digitiser]
+uri = "replay:old"
+channels = ["voltage0", "voltage3"]
+device = "ad7606"
+block_samples = 512
+speed = 2
+[trigger]
+channel = "g2"
+level_sigma = 9.5
+hysteresis_share = 0.4
+pre_samples = 100
+post_samples = 900
+hold_off_samples = 5000
+learn_samples = 64
+minimum_width_s = 6e-6
+maximum_rise_s = 50e-6
+[store]
+folder = "/var/tmp/somewhere"
+[endpoints]
+results = "ipc:///tmp/results"
+[ring]
+seconds = 0.5
+[meta]
+operator = "A. Person"
+striker_speed_m_per_s = 12.5
+)");
+  const Apparatus apparatus = read_apparatus(config);
+  EXPECT_EQ(config.digitiser.uri, "replay:" + (folder_ / "old").string());
+  EXPECT_EQ(config.store, "/var/tmp/somewhere");
+  EXPECT_EQ(config.endpoints.results, "ipc:///tmp/results");
+  EXPECT_EQ(config.meta.at("operator"), "A. Person");
+  EXPECT_EQ(config.meta.at("striker_speed_m_per_s"), "12.5");
+  EXPECT_EQ(apparatus.trigger_channel, 1U);
+  ASSERT_TRUE(apparatus.bar_model);
+  EXPECT_EQ(apparatus.bar_model->E1_Pa.value, 5.0e9);
+
+  const TriggerOptions trigger = trigger_options(config.trigger, 2e6);
+  EXPECT_EQ(trigger.level_sigma, 9.5);
+  EXPECT_EQ(trigger.hysteresis_share, 0.4);
+  EXPECT_EQ(trigger.minimum_width_samples, 12U);
+  EXPECT_EQ(trigger.maximum_rise_samples, 100U);
+  EXPECT_EQ(trigger.hold_off_samples, 5000U);
+  EXPECT_EQ(trigger.learn_samples, 64U);
+
+  const DigitiserOptions digitiser = digitiser_options(config, apparatus.bench);
+  EXPECT_EQ(digitiser.channels, (std::vector<std::string>{"voltage0", "voltage3"}));
+  EXPECT_EQ(digitiser.block_samples, 512U);
+  EXPECT_EQ(digitiser.sampling_frequency_Hz, 1e6);
+  EXPECT_EQ(digitiser.replay_speed, 2.0);
+  EXPECT_EQ(ring_samples(config, 1e6, 512), 500'000U);
+}
+
+TEST_F(ConfigTest, KeepsEchoesInTheWindowOfTheirShot) {
+  TriggerConfig trigger;
+  trigger.post_samples = 10'000'000;
+  EXPECT_GE(trigger_options(trigger, 1e6).hold_off_samples, 10'000'000U);
+  trigger.hold_off_samples = 7;
+  EXPECT_EQ(trigger_options(trigger, 1e6).hold_off_samples, 7U);
+}
+
+TEST_F(ConfigTest, BoundsTheRingOfAFastScope) {
+  const DaemonConfig config = read(kLeast);
+  EXPECT_EQ(ring_samples(config, 1e6, 1024), 2'000'000U);
+  EXPECT_LE(ring_samples(config, 1e9, 1024), std::size_t{1} << 22);
+}
+
+TEST_F(ConfigTest, NamesTheNearestKeyForAnUnknownOne) {
+  const std::string text = std::string(kLeast) + "[triger]\nchannel = \"g1\"\n";
+  EXPECT_TRUE(holds(error_of(text), {"kolskyd.toml", "triger", "trigger"}));
+  std::string misspelt = kLeast;
+  misspelt.replace(misspelt.find("channel"), 7, "chanel");
+  EXPECT_TRUE(holds(error_of(misspelt), {"kolskyd.toml:5", "chanel", "channel"}));
+}
+
+TEST_F(ConfigTest, RefusesWhatIsMissing) {
+  EXPECT_TRUE(holds(error_of("[digitiser]\nuri = \"local:\"\n"), {"kolskyd.toml", "bench"}));
+  std::string no_bench_file = kLeast;
+  no_bench_file.replace(no_bench_file.find("bench.toml"), 10, "bank.toml\"");
+  no_bench_file.replace(no_bench_file.find("bank.toml\"\""), 11, "bank.toml\"");
+  EXPECT_TRUE(holds(error_of(no_bench_file), {"bank.toml"}));
+}
+
+TEST_F(ConfigTest, RefusesATriggerChannelThatIsNoGauge) {
+  std::string text = kLeast;
+  text.replace(text.find("g1"), 2, "g7");
+  EXPECT_TRUE(holds(error_of(text), {"trigger.channel", "g7", "g1, g2"}));
+}
+
+TEST_F(ConfigTest, RefusesANumberOfChannelsThatIsNotThatOfGauges) {
+  std::string text = kLeast;
+  text.insert(text.find("[trigger]"), "channels = [\"voltage0\"]\n");
+  EXPECT_TRUE(holds(error_of(text), {"digitiser.channels", "1 channels", "2 gauges"}));
+}
+
+struct BadValue {
+  const char* where;
+  const char* line;
+  const char* named;
+};
+
+class BadValueTest : public ConfigTest, public testing::WithParamInterface<BadValue> {};
+
+TEST_P(BadValueTest, IsRefusedWithItsPlace) {
+  std::string text = kLeast;
+  const std::string section = GetParam().where;
+  const std::size_t at = text.find(section);
+  if (at == std::string::npos) {
+    text += section + "\n" + GetParam().line + "\n";
+  } else {
+    text.insert(at + section.size() + 1, std::string(GetParam().line) + "\n");
+  }
+  EXPECT_TRUE(holds(error_of(text), {"kolskyd.toml", GetParam().named}));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadValueTest,
+    testing::Values(BadValue{"[trigger]", "level_sigma = 0.5", "level_sigma"},
+                    BadValue{"[trigger]", "pre_samples = -1", "pre_samples"},
+                    BadValue{"[trigger]", "post_samples = 0", "post_samples"},
+                    BadValue{"[trigger]", "post_samples = 3.5", "post_samples"},
+                    BadValue{"[trigger]", "minimum_width_s = 3", "minimum_width_s"},
+                    BadValue{"[trigger]", "minimum_width_s = 1e-6\nmaximum_rise_s = nan",
+                             "maximum_rise_s"},
+                    BadValue{"[digitiser]", "block_samples = 1", "block_samples"},
+                    BadValue{"[digitiser]", "speed = -1", "speed"},
+                    BadValue{"[digitiser]", "channels = \"voltage0\"", "channels"},
+                    BadValue{"[ring]", "seconds = 0", "seconds"},
+                    BadValue{"[endpoints]", "results = \"localhost:5600\"", "results"},
+                    BadValue{"[endpoints]", "preview = \"tcp://127.0.0.1:5602\"", "control"},
+                    BadValue{"[meta]", "list = [1]", "list"}));
+
+TEST_F(ConfigTest, RefusesAUriWithoutAScheme) {
+  std::string text = kLeast;
+  text.replace(text.find("ip:127.0.0.1:30431"), 18, "captures");
+  EXPECT_TRUE(holds(error_of(text), {"digitiser.uri", "captures", "replay:"}));
+}
+
+TEST_F(ConfigTest, SaysWhatItWouldDo) {
+  const DaemonConfig config = read(kLeast);
+  const std::string report = check_report(config, read_apparatus(config));
+  for (const char* part : {"bench.toml", "g1", "g2", "ip:127.0.0.1:30431", "400 + 3600 samples",
+                           "(0.4 + 3.6 ms)", "tcp://127.0.0.1:5602"}) {
+    EXPECT_NE(report.find(part), std::string::npos) << part << " in\n" << report;
+  }
+}
+
+}  // namespace
+}  // namespace kolsky

@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "daemon/shots/gap_log.hpp"
+#include "daemon/shots/shared_journal.hpp"
+#include "daemon/shots/shot_context.hpp"
+#include "daemon/shots/shot_id.hpp"
+#include "daemon/shots/store_lock.hpp"
+#include "daemon/shots/summary.hpp"
+#include "drivers/files/bench_file.hpp"
+#include "processing/base/error.hpp"
+#include "processing/reduction/reducer.hpp"
+#include "tests/unit/daemon/strain_bench.hpp"
+
+namespace kolsky {
+namespace {
+
+// date -u -d @1737109530 +%Y%m%dT%H%M%S
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kMoment_ns = 1'737'109'530 * kSecond_ns + 123'456'789;
+
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::path(testing::TempDir()) /
+              ("kolsky-shots-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(ShotId, TellsDateBootAndCount) {
+  ShotIdSource ids(0xABCD'0123'4567'89EFULL);
+  EXPECT_EQ(ids.next(kMoment_ns), "20250117T102530123Z-89ef-0001");
+  EXPECT_EQ(ids.next(kMoment_ns), "20250117T102530123Z-89ef-0002");
+}
+
+TEST(ShotId, SortsByTimeAcrossBoots) {
+  ShotIdSource early(0xFFFF);
+  ShotIdSource late(0x0001);
+  EXPECT_LT(early.next(kMoment_ns), late.next(kMoment_ns + kSecond_ns / 100));
+}
+
+TEST(ShotId, WritesMomentsBeforeTheEpoch) {
+  EXPECT_EQ(format_utc_compact(0), "19700101T000000000Z");
+  EXPECT_EQ(format_utc_compact(-1'000'000), "19691231T235959999Z");
+}
+
+TEST(GapLog, FindsTheHolesThatTouchAWindow) {
+  const Gap before{.first_tick = 90, .samples = 10, .known = true};
+  const Gap across_begin{.first_tick = 195, .samples = 6, .known = true};
+  const Gap inside{.first_tick = 250, .samples = 0, .known = false};
+  const Gap across_end{.first_tick = 299, .samples = 50, .known = true};
+  const Gap after{.first_tick = 400, .samples = 1, .known = true};
+  GapLog log;
+  for (const Gap& gap : {before, across_begin, inside, across_end, after}) {
+    log.add(gap);
+  }
+  EXPECT_EQ(log.within(200, 300), (std::vector{across_begin, inside, across_end}));
+  EXPECT_EQ(log.within(100, 195), std::vector<Gap>{});
+  log.forget_before(260);
+  EXPECT_EQ(log.within(0, 1000), (std::vector{across_end, after}));
+}
+
+TEST(GapLog, CountsAHoleOfUnknownLengthOnlyBetweenSamplesOfTheWindow) {
+  GapLog log;
+  log.add({.first_tick = 100, .samples = 0, .known = false});
+  EXPECT_TRUE(log.within(100, 200).empty());
+  EXPECT_TRUE(log.within(0, 100).empty());
+  EXPECT_EQ(log.within(99, 101).size(), 1U);
+}
+
+TEST(StoreLock, KeepsASecondDaemonOut) {
+  const Folder folder;
+  {
+    const StoreLock first(folder.path());
+    EXPECT_THROW(StoreLock second(folder.path()), InputError);
+  }
+  EXPECT_NO_THROW(StoreLock again(folder.path()));
+}
+
+TEST(StoreLock, NamesAFolderItCannotWrite) {
+  EXPECT_THROW(StoreLock lock("/nowhere/at/all"), InputError);
+}
+
+DaemonConfig some_config() {
+  DaemonConfig config;
+  config.file = "kolskyd.toml";
+  config.bench = "bench.toml";
+  config.meta["specimen"] = "a";
+  return config;
+}
+
+Apparatus pmma_bench() {
+  Apparatus apparatus;
+  apparatus.bench_toml = kStrainBench;
+  apparatus.bench = parse_bench(kStrainBench, "bench.toml");
+  return apparatus;
+}
+
+StreamInfo strain_stream() {
+  StreamInfo stream;
+  stream.uri = "ip:somewhere";
+  stream.rate = {1'000'000, 1};
+  stream.channels = {{.name = "voltage0", .unit = "strain", .scale = 1e-7, .offset = -3.0},
+                     {.name = "voltage1", .unit = "strain", .scale = 2e-7}};
+  return stream;
+}
+
+TEST(BlankShot, JoinsBenchAndStream) {
+  const Apparatus apparatus = pmma_bench();
+  const Shot blank = blank_shot(some_config(), apparatus, strain_stream());
+  ASSERT_EQ(blank.channels.size(), 2U);
+  EXPECT_EQ(blank.channels[0].gauge, "g1");
+  EXPECT_EQ(blank.channels[0].scale, 1e-7);
+  EXPECT_EQ(blank.channels[0].offset, -3.0);
+  EXPECT_EQ(blank.channels[1].scale, 2e-7);
+  EXPECT_EQ(blank.meta.at("specimen"), "a");
+  EXPECT_EQ(blank.rate, (SampleRate{1'000'000, 1}));
+}
+
+TEST(BlankShot, RefusesAStreamThatIsNotTheBenchs) {
+  const Apparatus apparatus = pmma_bench();
+  const DaemonConfig config = some_config();
+  StreamInfo volts = strain_stream();
+  volts.channels[1].unit = "V";
+  EXPECT_THROW(static_cast<void>(blank_shot(config, apparatus, volts)), InputError);
+  StreamInfo narrow = strain_stream();
+  narrow.channels.pop_back();
+  EXPECT_THROW(static_cast<void>(blank_shot(config, apparatus, narrow)), InputError);
+}
+
+TEST(RehearsalShot, TakesTheWayOfARealOne) {
+  const Apparatus apparatus = pmma_bench();
+  const Shot blank = blank_shot(some_config(), apparatus, strain_stream());
+  const Shot shot = rehearsal_shot(blank, 400, 3600);
+  EXPECT_EQ(shot.samples(), 4000U);
+  for (const ChannelRecord& channel : shot.channels) {
+    EXPECT_TRUE(clipped_samples(channel).empty());
+  }
+  const Reduction reduction = Reducer().reduce(shot);
+  EXPECT_TRUE(reduction.quality.reducible) << reduction.quality.reason;
+  EXPECT_FALSE(reduction.stress_Pa.empty());
+}
+
+TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
+  const Folder folder;
+  const StoreLayout store{folder.path()};
+  store.create();
+  const Apparatus apparatus = pmma_bench();
+  Shot shot = rehearsal_shot(blank_shot(some_config(), apparatus, strain_stream()), 400, 3600);
+  shot.id = "one";
+  SharedJournal journal(store, 0x12);
+  journal.append_shot(shot);
+  shot.id = "two";
+  journal.append_shot(shot);
+  journal.append_stored("one", store.capture_of("one"));
+  const JournalContents contents = read_journal(store.journals() / "0000000000000012.kj");
+  ASSERT_EQ(contents.shots.size(), 2U);
+  EXPECT_EQ(contents.shots[1].id, "two");
+  EXPECT_EQ(contents.shots[1].channels, shot.channels);
+  ASSERT_EQ(contents.stored.size(), 1U);
+  EXPECT_EQ(contents.stored[0].shot_id, "one");
+}
+
+TEST(Summary, TakesPeaksAndVerdict) {
+  Shot shot;
+  shot.id = "one";
+  shot.utc_ns = 5;
+  Reduction reduction;
+  reduction.stress_Pa = {0.0, 3e6, 1e6};
+  reduction.strain = {0.0, 0.01, 0.02};
+  reduction.quality.reducible = true;
+  const CatalogueEntry entry = summarise(shot, reduction, "one.h5");
+  EXPECT_EQ(entry.verdict, "pass");
+  EXPECT_EQ(entry.peak_stress_Pa, 3e6);
+  EXPECT_EQ(entry.peak_strain, 0.02);
+  EXPECT_EQ(entry.capture, "one.h5");
+  const CatalogueEntry failed = summarise(shot, Reduction{}, "");
+  EXPECT_EQ(failed.verdict, "fail");
+  EXPECT_EQ(failed.peak_stress_Pa, 0.0);
+}
+
+}  // namespace
+}  // namespace kolsky

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "processing/base/error.hpp"
+#include "processing/base/shot.hpp"
+
+namespace kolsky::testing {
+
+/// A folder of its own for a test, gone with it.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(
+      const std::filesystem::path& parent = std::filesystem::temp_directory_path());
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A bar bench with gauges g1, g2, ..., as text.
+[[nodiscard]] std::string bench_text(std::size_t gauges);
+
+struct ShotShape {
+  std::size_t channels = 2;
+  std::size_t samples = 500;
+  int bits = 16;
+};
+
+/// A shot with every field set, all of it following from the seed.
+[[nodiscard]] Shot make_shot(std::uint32_t seed, const ShotShape& shape = {});
+
+/// The shot in golden/, with numbers written out and not drawn.
+[[nodiscard]] Shot make_golden_shot();
+
+/// Every field but the parsed bench, bit for bit.
+void expect_same(const Shot& actual, const Shot& expected);
+
+[[nodiscard]] std::vector<std::byte> bytes_of(const std::filesystem::path& path);
+void write_bytes(const std::filesystem::path& path, const std::vector<std::byte>& bytes);
+
+/// Expects an InputError whose message holds all the parts. @return the message
+template <typename Action>
+std::string expect_refused(const Action& action, const std::vector<std::string>& parts = {}) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    for (const std::string& part : parts) {
+      EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
+    }
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return {};
+}
+
+}  // namespace kolsky::testing

@@ -1,0 +1,153 @@
+#include "clients/report/svg.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+#include "clients/report/polyline.hpp"
+
+namespace kolsky {
+namespace {
+
+using Tree = boost::property_tree::ptree;
+
+Tree parsed(const std::string& svg) {
+  std::istringstream stream(svg);
+  Tree tree;
+  boost::property_tree::read_xml(stream, tree);
+  return tree;
+}
+
+void collect(const Tree& tree, const std::string& element, std::vector<Tree>& found) {
+  for (const auto& [name, child] : tree) {
+    if (name == element) {
+      found.push_back(child);
+    }
+    collect(child, element, found);
+  }
+}
+
+std::vector<Tree> all(const Tree& tree, const std::string& element) {
+  std::vector<Tree> found;
+  collect(tree, element, found);
+  return found;
+}
+
+std::vector<std::string> texts(const Tree& tree) {
+  std::vector<std::string> found;
+  for (const Tree& text : all(tree, "text")) {
+    found.push_back(text.data());
+  }
+  return found;
+}
+
+bool holds(const std::vector<std::string>& texts, const std::string& wanted) {
+  return std::find(texts.begin(), texts.end(), wanted) != texts.end();
+}
+
+std::vector<PagePoint> points_of(const std::string& path) {
+  std::vector<PagePoint> points;
+  const std::regex pair("[ML](-?[0-9.]+) (-?[0-9.]+)");
+  for (std::sregex_iterator i(path.begin(), path.end(), pair), end; i != end; ++i) {
+    points.push_back({std::stod((*i)[1]), std::stod((*i)[2])});
+  }
+  return points;
+}
+
+Figure two_forces() {
+  return {"shot <1> & \"more\"",
+          {"bars: PMMA"},
+          {{"forces",
+            {"time", "s"},
+            {"force", "N"},
+            {{"front", {0.0, 1e-4, 2e-4}, {0.0, 1000.0, 0.0}},
+             {"back", {0.0, 1e-4, 2e-4}, {0.0, 500.0, 0.0}}}}}};
+}
+
+TEST(Svg, IsWellFormedWithTitlesUnitsAndLegend) {
+  const Tree svg = parsed(render_svg(two_forces()));
+  EXPECT_EQ(svg.get<std::string>("svg.<xmlattr>.xmlns"), "http://www.w3.org/2000/svg");
+  EXPECT_EQ(svg.get<std::string>("svg.title"), "shot <1> & \"more\"");
+  const auto written = texts(svg);
+  for (const char* wanted : {"shot <1> & \"more\"", "bars: PMMA", "forces", "time [µs]",
+                             "force [kN]", "front", "back", "200"}) {
+    EXPECT_TRUE(holds(written, wanted)) << wanted;
+  }
+}
+
+TEST(Svg, DrawsValuesWhereTheAxisSaysTheyAre) {
+  const Tree svg = parsed(render_svg(two_forces()));
+  const auto paths = all(svg, "path");
+  ASSERT_EQ(paths.size(), 2U);
+  const auto front = points_of(paths[0].get<std::string>("<xmlattr>.d"));
+  const auto back = points_of(paths[1].get<std::string>("<xmlattr>.d"));
+  ASSERT_EQ(front.size(), 3U);
+  ASSERT_EQ(back.size(), 3U);
+  EXPECT_NEAR(front[1].x - front[0].x, front[2].x - front[1].x, 0.02);
+  EXPECT_NEAR((front[0].y - front[1].y) / (back[0].y - back[1].y), 2.0, 1e-3);
+  // Marks are written at the height of their grid line: the one of 1 kN goes through the front's
+  // peak.
+  double one_kN = NAN;
+  for (const Tree& text : all(svg, "text")) {
+    if (text.data() == "1.0") {
+      one_kN = text.get<double>("<xmlattr>.y") - 4.0;
+    }
+  }
+  EXPECT_NEAR(one_kN, front[1].y, 0.02);
+}
+
+TEST(Svg, BreaksTheLineAtAMissingPointAndStaysWellFormed) {
+  Figure figure = two_forces();
+  figure.panels[0].series = {{"f", {0, 1, 2, 3, 4}, {0, 1, NAN, 1, 0}}};
+  const auto paths = all(parsed(render_svg(figure)), "path");
+  ASSERT_EQ(paths.size(), 1U);
+  const auto d = paths[0].get<std::string>("<xmlattr>.d");
+  EXPECT_EQ(std::count(d.begin(), d.end(), 'M'), 2);
+  EXPECT_EQ(points_of(d).size(), 4U);
+}
+
+TEST(Svg, SurvivesAnEmptyFigureAndControlCharacters) {
+  EXPECT_NO_THROW(parsed(render_svg({"", {}, {}})));
+  EXPECT_NO_THROW(
+      parsed(render_svg({"a\x01"
+                         "b\x1b[0m",
+                         {},
+                         {{"", {}, {}, {}}}})));
+}
+
+TEST(Thinned, KeepsTheExtremesOfAFineTrace) {
+  std::vector<PagePoint> points;
+  for (int i = 0; i < 100000; ++i) {
+    points.push_back({1e-3 * i, i == 54321 ? 7.0 : std::sin(0.01 * i)});
+  }
+  const auto kept = thinned(points, 0.25);
+  EXPECT_LE(kept.size(), 1604U);
+  EXPECT_GE(kept.size(), 400U);
+  const auto highest =
+      std::max_element(kept.begin(), kept.end(), [](auto& a, auto& b) { return a.y < b.y; });
+  EXPECT_DOUBLE_EQ(highest->y, 7.0);
+  EXPECT_DOUBLE_EQ(kept.front().x, 0.0);
+  EXPECT_DOUBLE_EQ(kept.back().x, points.back().x);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), [](auto& a, auto& b) { return a.x < b.x; }));
+}
+
+TEST(Thinned, LeavesNoVisibleHoleInALoop) {
+  std::vector<PagePoint> points;
+  for (int i = 0; i <= 20000; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / 20000;
+    points.push_back({50.0 * std::cos(angle), 50.0 * std::sin(angle)});
+  }
+  const auto kept = thinned(points, 0.25);
+  EXPECT_LT(kept.size(), 1300U);
+  for (std::size_t i = 1; i < kept.size(); ++i) {
+    EXPECT_LT(std::hypot(kept[i].x - kept[i - 1].x, kept[i].y - kept[i - 1].y), 0.3);
+  }
+}
+
+}  // namespace
+}  // namespace kolsky
