@@ -22,6 +22,7 @@ struct Settings {
   std::optional<double> arrival_s;
   std::optional<double> band_limit_Hz;
   std::optional<double> duration_s;
+  std::optional<std::string> dispersion;
   std::optional<std::string> svg;
   std::optional<std::string> csv;
 };
@@ -42,6 +43,9 @@ ReductionOptions reduction_options(const Settings& settings) {
   refuse_not_positive(settings.band_limit_Hz, "--band-limit", "Hz");
   refuse_not_positive(settings.duration_s, "--duration", "s");
   options.duration_s = settings.duration_s;
+  if (settings.dispersion.has_value()) {
+    options.theory = wave_theory(*settings.dispersion);
+  }
   options.arrival_s = settings.arrival_s;
   options.band_limit_Hz = settings.band_limit_Hz;
   return options;
@@ -96,6 +100,9 @@ Command reduce_command() {
       option("--duration", "S",
              "length of the histories in s; else until a wave comes back from a bar's far end",
              &s.duration_s),
+      option("--dispersion", "THEORY",
+             "how waves travel in the bars: elementary (the paper, default), love or exact",
+             &s.dispersion),
       option("--svg", "FILE", "a page of plots to write", &s.svg),
       option("--csv", "FILE", "a table of the histories to write, with the gauges beside it",
              &s.csv)};

@@ -112,6 +112,17 @@ TEST_F(Files, ReduceObeysItsOptions) {
   EXPECT_NEAR(result["time_s"].get<std::vector<double>>().back(), 2e-4, 2e-6);
 }
 
+TEST_F(Files, ReduceTakesAWaveTheoryAndRefusesWhatIsNone) {
+  const std::string capture = bench_.capture();
+  const auto strain = [&](const std::string& theory) {
+    return json_of(scene::kolsky({"reduce", capture, "--json", "--dispersion", theory}))["strain"];
+  };
+  EXPECT_EQ(strain("elementary"), json_of(scene::kolsky({"reduce", capture, "--json"}))["strain"]);
+  EXPECT_NE(strain("exact"), strain("elementary"));
+  const auto refused = scene::kolsky({"reduce", capture, "--dispersion", "Rayleigh"});
+  EXPECT_NE(refused.err.find("elementary, love or exact"), std::string::npos);
+}
+
 TEST_F(Files, TheSameCaptureGivesTheSameBytes) {
   const std::string capture = bench_.capture();
   EXPECT_EQ(scene::kolsky({"reduce", capture, "--json"}).out,
