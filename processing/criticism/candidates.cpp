@@ -124,11 +124,14 @@ Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries
     }
   }
   const auto& parameters = use.effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    // A direction (which neighbour, which harmonic) stays what it is.
-    const bool continuous = parameters[p].unit != "-" && parameters[p].unit != "Hz";
-    if (parameters[p].auxiliary() && free_auxiliaries &&
-        (continuous || use.effect->about().id == "end-reflection")) {
+  for (std::size_t p = 0; p < parameters.size() && free_auxiliaries; ++p) {
+    if (parameters[p].is_switch) {
+      use.values[p].value = parameters[p].upper;
+      use.values[p].free = false;
+    }
+    // What is chosen among a few (a neighbour, a harmonic) stays chosen.
+    if (parameters[p].auxiliary() && parameters[p].starts.size() != 2 &&
+        parameters[p].unit != "Hz") {
       use.values[p].free = true;
     }
   }

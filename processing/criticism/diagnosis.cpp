@@ -11,6 +11,7 @@
 #include "processing/criticism/distortion.hpp"
 #include "processing/criticism/held_out.hpp"
 #include "processing/criticism/next_experiment.hpp"
+#include "processing/criticism/own_strengths.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
@@ -23,6 +24,7 @@ constexpr double kTie = 7.5;
 constexpr double kDetected = 6.0;      ///< sigma
 constexpr double kToldApart = 5.0;     ///< sigma beside a rival
 constexpr double kAllowedRest = 0.03;  ///< of a misfit that certified effects explain
+constexpr double kFarOff = 3.0;        ///< chi2 per degree of freedom
 constexpr std::size_t kMostRefits = 14;
 constexpr int kSimulatedRepeats = 2000;
 
@@ -37,6 +39,7 @@ struct Refit {
 
 Executor on_worker(std::size_t worker) {
   Executor serial;
+  serial.first = worker;
   serial.run = [worker](std::size_t count,
                         const std::function<void(std::size_t, std::size_t)>& work) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -57,8 +60,9 @@ double noise_of(const Misfit& misfit, std::size_t shots) {
 
 class Search {
  public:
-  Search(Study& study, const Studied& base, const DiagnosisOptions& options)
-      : study_(study), base_(base), options_(options) {
+  /// @param start  the model before anything was fitted
+  Search(Study& study, const Studied& base, const Model& start)
+      : study_(study), base_(base), start_(start) {
     candidates_ = candidates_for(base, study.campaign());
     directions_.resize(candidates_.size());
     study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
@@ -89,7 +93,9 @@ class Search {
     });
     std::vector<Refit> list;
     for (auto& own : done) {
-      if (own && std::isfinite(own->gain)) {
+      if (own && std::isfinite(own->gain) &&
+          own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
+                                  study_.campaign())) {
         list.push_back(std::move(*own));
       }
     }
@@ -168,7 +174,7 @@ class Search {
     std::map<std::string, std::pair<double, std::size_t>> best;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const double evidence = evidence_of(directions_[i], candidates_[i]);
-      auto& own = best[candidates_[i].id()];
+      auto& own = best[candidates_[i].id() + (candidates_[i].use.per_shot ? " per shot" : "")];
       if (evidence > own.first) {
         own = {evidence, i};
       }
@@ -212,15 +218,24 @@ class Search {
         const FreeNumber& number = composition.numbers()[strengths[i]];
         const double value = start[strengths[i]] * number.scale +
                              direction.step[static_cast<Eigen::Index>(i)] * number.scale;
-        const double room = 0.5 * (number.upper - number.lower);
-        const double middle = 0.5 * (number.upper + number.lower);
-        start[strengths[i]] =
-            std::clamp(value, middle - 0.98 * room, middle + 0.98 * room) / number.scale;
+        start[strengths[i]] = std::clamp(value, number.lower, number.upper) / number.scale;
       }
     }
     ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker), std::move(start));
+    if (base_.misfit.chi2_reduced > kFarOff) {
+      // The model's own numbers may have gone far astray for want of this effect: begin again from
+      // where they started.
+      Model fresh = with(start_, candidate, true);
+      start_moduli(fresh, study_.campaign(), study_.residuals(), worker);
+      const Composition again(fresh, study_.campaign());
+      ModelFit other = fit_model(composition, study_.residuals(), on_worker(worker),
+                                 carry(again, again.start(), composition));
+      if (other.objective() < fit.objective()) {
+        fit = std::move(other);
+      }
+    }
     const Misfit misfit =
-        misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
+        misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
     Refit out{index,
               {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit},
               0.0,
@@ -238,7 +253,7 @@ class Search {
 
   Study& study_;
   const Studied& base_;
-  const DiagnosisOptions& options_;
+  const Model& start_;
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   double trials_ = 1.0;
@@ -286,15 +301,17 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
   return freedom > 0.0 ? log_chi2_tail(gain / noise, freedom) : 0.0;
 }
 
-/// Whether the strengths that single shots give agree with the common one.
-double disagreement_log_p(const Studied& studied, const std::string& id, std::size_t per_shot) {
+/// How far the strengths that single shots give are from the common one: the chi2 that strengths of
+/// their own would gain, and the shots less one.
+std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
+                                       std::size_t per_shot) {
   const ModelFit& fit = studied.fit;
   std::ptrdiff_t column = -1;
   for (std::size_t i = 0; i < fit.theta.size(); ++i) {
     const FreeNumber& number = studied.composition.numbers()[i];
     if (studied.composition.uses()[number.use].id() == id) {
       if (column >= 0 || number.shot >= 0) {
-        return 0.0;
+        return {0.0, 1.0};
       }
       column = static_cast<std::ptrdiff_t>(i);
     }
@@ -302,7 +319,7 @@ double disagreement_log_p(const Studied& studied, const std::string& id, std::si
   const auto size = static_cast<Eigen::Index>(per_shot);
   const Eigen::Index shots = fit.residual.size() / size;
   if (column < 0 || shots < 3) {
-    return 0.0;
+    return {0.0, 1.0};
   }
   // The column clear of the other numbers, over all shots.
   Eigen::VectorXd clear = fit.jacobian.col(column);
@@ -323,7 +340,16 @@ double disagreement_log_p(const Studied& studied, const std::string& id, std::si
       q += pull * pull / information / noise;
     }
   }
-  return log_chi2_tail(q, static_cast<double>(shots - 1));
+  return {q, static_cast<double>(shots - 1)};
+}
+
+/// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
+/// more than noise, and by more than a small part of what it explains.
+bool shots_agree(const Studied& studied, double gain, const std::string& id, std::size_t per_shot) {
+  constexpr double kChance = -14.0;
+  constexpr double kPart = 0.02;
+  const auto [q, freedom] = disagreement(studied, id, per_shot);
+  return log_chi2_tail(q, freedom) > kChance || q < kPart * gain;
 }
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
@@ -396,6 +422,7 @@ class Diagnostician {
 
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
+    start_ = model;
     Studied first = study_.fit(model);
     diagnosis_.before = first.misfit;
     Studied current = first;
@@ -413,7 +440,7 @@ class Diagnostician {
     options_.progress(diagnosis_.effects.empty()
                           ? "testing every effect of the library"
                           : "testing what remains after " + diagnosis_.effects.back());
-    Search search(study_, current, options_);
+    Search search(study_, current, start_);
     if (diagnosis_.candidates.empty()) {
       list_candidates(search);
     }
@@ -432,7 +459,7 @@ class Diagnostician {
       const std::string id = search.candidates()[refit.candidate].id();
       const auto [gain, better] = certification(current, refit.studied, per_shot);
       const std::size_t shots = study_.campaign().shots.size();
-      const bool agrees = disagreement_log_p(refit.studied, id, per_shot) > -14.0;
+      const bool agrees = shots_agree(refit.studied, refit.gain, id, per_shot);
       if (gain <= 0.0 || 2 * better < shots || !agrees ||
           search.with_search(refit.log_p) > options_.log_alpha) {
         set_verdict(id, "rejected");
@@ -445,15 +472,13 @@ class Diagnostician {
           ties.push_back(other);
         }
       }
-      // Freshly fitted, with a whitener of its own.
+      // The noise shows better now.
       study_.residuals().freeze(refit.studied.composition, refit.studied.fit.theta);
-      Studied next = refit.studied;
-      next.fit = fit_model(next.composition, study_.residuals(), study_.executor(),
-                           refit.studied.fit.theta);
-      next.misfit = misfit_of(study_.residuals(), next.fit.residual,
-                              next.fit.degrees_of_freedom(next.composition));
-      next.model = fitted(next.model, next.composition, next.fit);
+      Studied next = study_.refit(refit.studied);
+      study_.residuals().calibrate(next.fit.residual);
+      next = study_.refit(next);
       diagnosis_.effects.push_back(id);
+      start_ = with(start_, search.candidates()[refit.candidate], true);
       diagnosis_.tied_with[id] = ties;
       current = std::move(next);
       return true;
@@ -491,10 +516,13 @@ class Diagnostician {
     double excess = 0.0;
     diagnosis_.unexplained_log_p = unexplained(study_, current, &excess);
     diagnosis_.after = current.misfit;
-    diagnosis_.held_out = held_out(first, current, study_);
+    // Both by the same measure of the noise.
+    const Studied before = diagnosis_.effects.empty() ? first : study_.refit(first);
+    diagnosis_.before = before.misfit;
+    diagnosis_.held_out = held_out(before, current, study_);
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-    const double explained = (first.fit.objective() - current.fit.objective()) / noise;
+    const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     const bool rest =
         diagnosis_.unexplained_log_p < -6.5 && excess > kAllowedRest * std::max(0.0, explained);
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
@@ -625,6 +653,7 @@ class Diagnostician {
 
   Study& study_;
   const DiagnosisOptions& options_;
+  Model start_;  ///< unfitted, with the effects found so far
   Diagnosis diagnosis_;
 };
 

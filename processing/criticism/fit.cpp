@@ -95,7 +95,7 @@ ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
   const auto count = static_cast<Eigen::Index>(fit.theta.size());
   std::vector<std::size_t> all(fit.theta.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  fit.residual = residuals.evaluate(composition, fit.theta);
+  fit.residual = residuals.evaluate(composition, fit.theta, executor.first);
   fit.chi2 = fit.residual.squaredNorm();
   fit.penalty = penalty_of(composition, fit.theta);
   double damping = 0.0;
@@ -142,7 +142,7 @@ ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
         moved[static_cast<std::size_t>(i)] += step[i];
       }
       keep_inside(composition, moved);
-      const Eigen::VectorXd residual = residuals.evaluate(composition, moved);
+      const Eigen::VectorXd residual = residuals.evaluate(composition, moved, executor.first);
       const double chi2 = residual.squaredNorm();
       const double penalty = penalty_of(composition, moved);
       gain = fit.objective() - chi2 - penalty;
@@ -229,14 +229,15 @@ double measured_speed(const Campaign& campaign) {
   return speeds[speeds.size() / 2];
 }
 
-double chi2_of(const Model& model, const Campaign& campaign, WhiteResiduals& residuals) {
+double chi2_of(const Model& model, const Campaign& campaign, WhiteResiduals& residuals,
+               std::size_t worker) {
   const Composition composition(model, campaign);
-  return residuals.evaluate(composition, composition.start()).squaredNorm();
+  return residuals.evaluate(composition, composition.start(), worker).squaredNorm();
 }
 
 /// Scales three moduli together by powers of `ratio` around where they are; keeps the best.
 void search_moduli(Model& model, const std::string& id, double ratio, int reach,
-                   const Campaign& campaign, WhiteResiduals& residuals) {
+                   const Campaign& campaign, WhiteResiduals& residuals, std::size_t worker) {
   const EffectUse start = *model.find(id);
   double best = std::numeric_limits<double>::infinity();
   EffectUse kept = start;
@@ -245,7 +246,7 @@ void search_moduli(Model& model, const std::string& id, double ratio, int reach,
     for (std::size_t p = 0; p < 3; ++p) {
       use->values[p].value = start.values[p].value * std::pow(ratio, i);
     }
-    const double chi2 = chi2_of(model, campaign, residuals);
+    const double chi2 = chi2_of(model, campaign, residuals, worker);
     if (chi2 < best) {
       best = chi2;
       kept = *use;
@@ -261,11 +262,8 @@ bool all_free(const EffectUse& use) {
 
 }  // namespace
 
-void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals) {
-  {
-    const Composition composition(model, campaign);
-    residuals.freeze(composition, composition.start());
-  }
+void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
+                  std::size_t worker) {
   EffectUse* bar = model.find("three-element-bar");
   if (bar != nullptr && all_free(*bar) && campaign.bench.kind == BenchKind::bar) {
     const double speed = measured_speed(campaign);
@@ -280,11 +278,11 @@ void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residu
         }
       }
     }
-    search_moduli(model, "three-element-bar", 1.03, 5, campaign, residuals);
+    search_moduli(model, "three-element-bar", 1.03, 5, campaign, residuals, worker);
   }
   EffectUse* specimen = model.find("three-element-specimen");
   if (specimen != nullptr && all_free(*specimen)) {
-    search_moduli(model, "three-element-specimen", 2.0, 14, campaign, residuals);
+    search_moduli(model, "three-element-specimen", 2.0, 14, campaign, residuals, worker);
   }
 }
 

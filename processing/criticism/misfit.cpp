@@ -7,31 +7,8 @@
 
 namespace kolsky {
 
-namespace {
-
-/// Energy of the records over that of their noise, in the units of whitened residuals.
-double signal_energy(WhiteResiduals& residuals) {
-  const Campaign& campaign = residuals.campaign();
-  double sum = 0.0;
-  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-    const double noise = residuals.noise_power(j);
-    for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
-      double energy = 0.0;
-      for (const double value : residuals.judged_record(n, j)) {
-        energy += value * value;
-      }
-      sum += energy / noise;
-    }
-  }
-  // Noise of unit power has as many whitened residuals as its band has bins, twice.
-  const auto bins = 2.0 * static_cast<double>(residuals.band().bins_judged);
-  return sum * bins / static_cast<double>(residuals.band().judged);
-}
-
-}  // namespace
-
-Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white,
-                 double degrees_of_freedom) {
+Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double degrees_of_freedom,
+                 std::size_t worker) {
   Misfit misfit;
   misfit.degrees_of_freedom = degrees_of_freedom;
   const double chi2 = white.squaredNorm();
@@ -39,7 +16,7 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white,
   const std::size_t shots = residuals.campaign().shots.size();
   const std::size_t others = residuals.others().size();
   const std::size_t bins = residuals.band().bins_judged;
-  const double energy = signal_energy(residuals);
+  const double energy = residuals.signal_energy();
   misfit.noise_floor_share = degrees_of_freedom / energy;
   if (shots < 2) {
     misfit.noise_scale = misfit.chi2_reduced;
@@ -48,7 +25,7 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white,
   }
   std::vector<std::vector<Complex>> sources;
   for (std::size_t n = 0; n < shots; ++n) {
-    sources.push_back(residuals.reference_spectrum(n));
+    sources.push_back(residuals.source_spectrum(n, white, worker));
   }
   const std::size_t per_shot = residuals.per_shot();
   double repeated = 0.0;

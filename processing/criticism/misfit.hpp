@@ -22,6 +22,6 @@ struct Misfit {
 /// sources. What a linear, unchanging error of the model leaves is all there; noise is there by its
 /// share of one of N shots, and the rest measures it.
 [[nodiscard]] Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white,
-                               double degrees_of_freedom);
+                               double degrees_of_freedom, std::size_t worker = 0);
 
 }  // namespace kolsky

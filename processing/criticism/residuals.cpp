@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "processing/base/error.hpp"
+#include "processing/criticism/smooth_power.hpp"
 #include "processing/criticism/specimen_response.hpp"
 #include "processing/identification/noise_spectrum.hpp"
 #include "processing/reduction/band_limit.hpp"
@@ -80,6 +81,8 @@ struct WhiteResiduals::Workspace {
   std::vector<Spectrum> records;  ///< of one shot where effects change them
   std::vector<Spectrum> rows;     ///< one shot's residuals, plain, by other gauge
   SpecimenResponse response;
+  std::vector<Eigen::MatrixXcd> whitener;  ///< by bin, of the evaluation under way
+  Eigen::MatrixXcd cross;
 
   Workspace(std::size_t length, const JudgedBand& band, double period_s)
       : whole(length, period_s, kWrapDamping),
@@ -116,6 +119,7 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
   }
   prepare_noise();
   prepare_spectra();
+  measure_signal();
 }
 
 void WhiteResiduals::choose_band(double asked_Hz) {
@@ -320,29 +324,89 @@ void WhiteResiduals::plain_spectrum(Workspace& work, const Spectrum& damped, Spe
   }
 }
 
-void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
-  Scene scene(campaign_.bench, campaign_.shots.front().facts, plain_path_);
-  shape(composition.applied(theta, 0), scene);
+std::vector<Complex> WhiteResiduals::plain_ratios(const Scene& like, const Composition& composition,
+                                                  const std::vector<double>& theta) const {
+  Scene scene(campaign_.bench, *like.facts, plain_path_);
+  shape(composition.applied(theta, like.facts->shot), scene);
   const Transfers transfers = transfers_of(scene, campaign_.reference);
+  std::vector<Complex> ratios(band_.bins_judged * others_.size());
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      ratios[k * others_.size() + i] =
+          transfers.reading[others_[i]][k] / transfers.reading[campaign_.reference][k];
+    }
+  }
+  return ratios;
+}
+
+/// Inverse Cholesky factor of G P G^H at one bin; `cross` becomes P G^H.
+Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::size_t bin,
+                                          Eigen::MatrixXcd& cross) const {
   const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
   const auto rows = static_cast<Eigen::Index>(others_.size());
-  whitener_.clear();
-  spread_.clear();
-  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    Eigen::MatrixXcd G = Eigen::MatrixXcd::Zero(rows, gauges);
+  Eigen::MatrixXcd G = Eigen::MatrixXcd::Zero(rows, gauges);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const auto other = static_cast<std::size_t>(i);
+    G(i, static_cast<Eigen::Index>(others_[other])) = 1.0;
+    G(i, static_cast<Eigen::Index>(campaign_.reference)) = -ratios[bin * others_.size() + other];
+  }
+  cross.noalias() = noise_[bin] * G.adjoint();
+  const Eigen::LLT<Eigen::MatrixXcd> factor(G * cross);
+  Eigen::MatrixXcd inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
+  if (!correction_.empty()) {
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const std::size_t j = others_[static_cast<std::size_t>(i)];
-      G(i, static_cast<Eigen::Index>(j)) = 1.0;
-      G(i, static_cast<Eigen::Index>(campaign_.reference)) =
-          -transfers.reading[j][k] / transfers.reading[campaign_.reference][k];
+      inverse.row(i) /= std::sqrt(correction_[bin][static_cast<std::size_t>(i)]);
     }
-    const Eigen::MatrixXcd cross = noise_[k] * G.adjoint();
-    const Eigen::LLT<Eigen::MatrixXcd> factor(G * cross);
-    const Eigen::MatrixXcd inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
-    whitener_.push_back(std::numbers::sqrt2 * inverse);
+  }
+  return inverse;
+}
+
+void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
+  const Scene scene(campaign_.bench, campaign_.shots.front().facts, plain_path_);
+  const std::vector<Complex> ratios = plain_ratios(scene, composition, theta);
+  spread_.clear();
+  Eigen::MatrixXcd cross;
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    const Eigen::MatrixXcd inverse = whitener(ratios, k, cross);
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
     spread_.push_back(cross * inverse.adjoint() / std::numbers::sqrt2);
   }
+}
+
+void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
+  const std::size_t shots = campaign_.shots.size();
+  if (shots < 3) {
+    return;
+  }
+  const std::size_t bins = band_.bins_judged;
+  std::vector<Spectrum> sources;
+  for (std::size_t n = 0; n < shots; ++n) {
+    sources.push_back(source_spectrum(n, white));
+  }
+  std::vector<std::vector<double>> correction(bins, std::vector<double>(others_.size(), 1.0));
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    std::vector<double> power(bins);
+    for (std::size_t k = 0; k < bins; ++k) {
+      double all = 0.0;
+      double source_power = 0.0;
+      Complex followed = 0.0;
+      for (std::size_t n = 0; n < shots; ++n) {
+        const auto at = static_cast<Eigen::Index>(n * per_shot() + index(k, i));
+        const Complex w(white[at], white[at + 1]);
+        all += std::norm(w);
+        source_power += std::norm(sources[n][k]);
+        followed += w * std::conj(sources[n][k]);
+      }
+      const double freedom = 2.0 * static_cast<double>(shots - 1);
+      power[k] = (all - std::norm(followed) / source_power) / freedom;
+    }
+    const std::vector<double> shape = smooth_power(power);
+    for (std::size_t k = 0; k < bins; ++k) {
+      const double before = correction_.empty() ? 1.0 : correction_[k][i];
+      correction[k][i] = before * shape[k];
+    }
+  }
+  correction_ = std::move(correction);
 }
 
 Eigen::VectorXd WhiteResiduals::evaluate(const Composition& composition,
@@ -376,6 +440,11 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     if (!scene || composition.differs_by_shot()) {
       scene.emplace(campaign_.bench, shot.facts, damped_path_);
       shape(composition.applied(theta, n), *scene);
+      const std::vector<Complex> ratios = plain_ratios(*scene, composition, theta);
+      work.whitener.resize(band_.bins_judged);
+      for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+        work.whitener[k] = std::numbers::sqrt2 * whitener(ratios, k, work.cross);
+      }
       transfers = transfers_of(*scene, reference);
       for (std::size_t j : others_) {
         for (std::size_t k = 0; k < band_.bins_carried; ++k) {
@@ -423,7 +492,7 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
       for (Eigen::Index i = 0; i < rows; ++i) {
         r[i] = work.rows[static_cast<std::size_t>(i)][k];
       }
-      white.noalias() = whitener_[k] * r;
+      white.noalias() = work.whitener[k] * r;
       for (Eigen::Index i = 0; i < rows; ++i) {
         *next++ = white[i].real();
         *next++ = white[i].imag();
@@ -476,6 +545,22 @@ std::vector<double> WhiteResiduals::judged_record(std::size_t shot, std::size_t 
   return record;
 }
 
+void WhiteResiduals::measure_signal() {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+      double energy = 0.0;
+      for (const double value : judged_record(n, j)) {
+        energy += value * value;
+      }
+      sum += energy / noise_power(j);
+    }
+  }
+  // Noise of unit power has as many whitened residuals as its band has bins, twice.
+  signal_energy_ =
+      sum * 2.0 * static_cast<double>(band_.bins_judged) / static_cast<double>(band_.judged);
+}
+
 double WhiteResiduals::noise_power(std::size_t gauge) const {
   const auto j = static_cast<Eigen::Index>(gauge);
   double sum = 0.0;
@@ -486,9 +571,21 @@ double WhiteResiduals::noise_power(std::size_t gauge) const {
   return 2.0 * sum / (n * n);
 }
 
-std::vector<Complex> WhiteResiduals::reference_spectrum(std::size_t shot) {
+std::vector<Complex> WhiteResiduals::source_spectrum(std::size_t shot, const Eigen::VectorXd& white,
+                                                     std::size_t worker) {
   Spectrum plain;
-  plain_spectrum(*work_.front(), spectra_[shot][campaign_.reference], plain);
+  plain_spectrum(*work_[worker], spectra_[shot][campaign_.reference], plain);
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  const auto reference = static_cast<Eigen::Index>(campaign_.reference);
+  Eigen::VectorXcd w(rows);
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto at =
+          static_cast<Eigen::Index>(shot * per_shot() + index(k, static_cast<std::size_t>(i)));
+      w[i] = {white[at], white[at + 1]};
+    }
+    plain[k] -= (spread_[k].row(reference) * w)(0, 0);
+  }
   return plain;
 }
 

@@ -15,9 +15,21 @@ Studied Study::fit(const Model& model) {
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
+  residuals_.calibrate(fit.residual);
+  residuals_.freeze(composition, fit.theta);
+  fit = fit_model(composition, residuals_, executor_, fit.theta);
   const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
   Model after = fitted(started, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};
+}
+
+Studied Study::refit(const Studied& studied) {
+  residuals_.freeze(studied.composition, studied.fit.theta);
+  ModelFit fit = fit_model(studied.composition, residuals_, executor_, studied.fit.theta);
+  const Misfit misfit =
+      misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(studied.composition));
+  Model after = fitted(studied.model, studied.composition, fit);
+  return {std::move(after), studied.composition, std::move(fit), misfit};
 }
 
 Studied Study::as_it_is(const Model& model) {

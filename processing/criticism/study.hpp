@@ -26,6 +26,8 @@ class Study {
 
   /// Fits from wherever the model's moduli are.
   [[nodiscard]] Studied fit(const Model& model);
+  /// The same from where it is, with the noise as known by now.
+  [[nodiscard]] Studied refit(const Studied& studied);
   /// The model as it is, nothing moved.
   [[nodiscard]] Studied as_it_is(const Model& model);
 

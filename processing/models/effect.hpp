@@ -26,6 +26,10 @@ struct EffectParameter {
   /// are the values from which searches start. Empty for a strength.
   std::vector<double> starts{};
 
+  /// Present or not: first order asks for a share of it, a model that holds the effect has it
+  /// whole.
+  bool is_switch = false;
+
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };
 

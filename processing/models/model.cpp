@@ -67,7 +67,15 @@ EffectUse use_named(const std::string& id) {
   if (!effect->about().per_gauge && !gauge.empty()) {
     throw InputError("effect " + id, "is not of one gauge", "write " + name);
   }
-  return null_use(*effect, gauge);
+  EffectUse use = null_use(*effect, gauge);
+  const auto& parameters = effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].is_switch) {
+      use.values[p].value = parameters[p].upper;
+      use.values[p].free = false;
+    }
+  }
+  return use;
 }
 
 Model paper_model(BenchKind kind, bool elastic) {
