@@ -41,7 +41,7 @@ std::shared_ptr<const ShotSettings> make_settings(const DaemonConfig& config,
 }
 
 SampleRing make_ring(const DaemonConfig& config, const StreamInfo& stream) {
-  const std::size_t samples = ring_samples(config, stream.rate.Hz(), stream.max_block_samples);
+  const std::size_t samples = ring_samples(config, arrival_rate_Hz(stream), stream.max_block_samples);
   try {
     return SampleRing(stream.format, stream.channels.size(), samples);
   } catch (const std::bad_alloc&) {
