@@ -27,9 +27,9 @@ TEST(AdcStream, HoldsItsBlockAsSoonAsItIsDueAndNotBefore) {
 }
 
 TEST(AdcStream, IsDueLaterByWhatTheScriptLoses) {
-  SimulatedAdc adc(ramp_settings(1.0, "time 0s lose 50"), std::make_unique<RampSource>());
+  SimulatedAdc adc(ramp_settings(1.0, "time 500ms lose 50"), std::make_unique<RampSource>());
   std::unique_ptr<AdcStream> stream;
-  ASSERT_EQ(adc.open_stream({0x1}, 100, stream), 0);
+  ASSERT_EQ(adc.open_stream({0x1}, 1'000'000, stream), 0);
   const auto due = stream->due(SimulatedAdc::Clock::time_point::min());
   const auto rate_Hz = adc.settings().rate.Hz();
   const std::chrono::duration<double> later = stream->due(due) - due;
