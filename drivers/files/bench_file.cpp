@@ -37,6 +37,15 @@ Bar read_bar(const TomlTable& table) {
   return bar;
 }
 
+// The struck end is the input bar's far end: what is beyond it is the striker's business.
+void refuse_far_end(const TomlTable& input) {
+  if (input.has("far_end")) {
+    throw input.error("far_end",
+                      "is what the output bar ends in; the input bar ends where it is struck",
+                      "remove it, or move it to [bars.output]");
+  }
+}
+
 // Numbers that are used without their deviation may still have one: it travels with the text.
 std::optional<double> read_plain(const TomlTable& table, const std::string& key) {
   const std::optional<Measured> number = table.optional_measured(key);
@@ -185,6 +194,7 @@ Bench read_all(const TomlTable& table) {
   }
   const TomlTable bars = table.table("bars");
   bars.expect({"input", "output"});
+  refuse_far_end(bars.table("input"));
   bench.input = read_bar(bars.table("input"));
   bench.output = read_part(bars, "output", read_bar);
   for (const TomlTable& gauge : table.tables("gauges")) {
