@@ -15,13 +15,11 @@ class EndReflection final : public Effect {
             .kinds = {BenchKind::bar},
             .parameters = {{"present", "-", 0.0, 0.0, 1.0, 0.02, {}, true},
                            {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0}}},
-                           {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0}}},
-        }) {
-}
+        }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
-  scene.bars.front().far_reflection = values[0] * (-1.0 + values[1]);
-}
+    scene.bars.front().far_reflection = values[0] * (-1.0 + values[1]);
+  }
 };
 
 }  // namespace
