@@ -98,6 +98,12 @@ ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
   fit.residual = residuals.evaluate(composition, fit.theta, executor.first);
   fit.chi2 = fit.residual.squaredNorm();
   fit.penalty = penalty_of(composition, fit.theta);
+  if (count == 0) {
+    // Nothing is free: the model is what it is.
+    fit.jacobian.resize(fit.residual.size(), 0);
+    fit.converged = true;
+    return fit;
+  }
   double damping = 0.0;
   bool fresh = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
