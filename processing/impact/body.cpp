@@ -278,7 +278,7 @@ void Body::forget() {
   }
 }
 
-double Body::highest_frequency() {
+double Body::highest_frequency(const std::vector<Spring>& springs) {
   // Arms that do not yield: the instantaneous moduli.
   for (Range& range : ranges_) {
     for (int b = 0; b < range.elements.branches; ++b) {
@@ -327,6 +327,10 @@ double Body::highest_frequency() {
       uz_[tie.b] = uz_[tie.a];
     }
     find_forces(false);
+    for (const Spring& spring : springs) {
+      push(spring.node, -spring.stiffness_N_per_m * ur_[spring.node],
+           -spring.stiffness_N_per_m * uz_[spring.node]);
+    }
     join_ties();
     for (std::size_t n = 0; n < nodes; ++n) {
       next[n] = -fr_[n] * root_r[n] * counted[n] / small;

@@ -44,9 +44,15 @@ class Body {
 
   void set_axial_velocity(double velocity_m_per_s);
 
-  /// Highest natural frequency [rad/s] of the body as it is made, by Lanczos on the elements' forces; the
-  /// state is as new afterwards.
-  [[nodiscard]] double highest_frequency();
+  /// A spring that holds a node, radially and axially.
+  struct Spring {
+    std::size_t node = 0;
+    double stiffness_N_per_m = 0.0;
+  };
+
+  /// Highest natural frequency [rad/s] of the body as it is made, with springs to the ground, by Lanczos on
+  /// the elements' forces; the state is as new afterwards.
+  [[nodiscard]] double highest_frequency(const std::vector<Spring>& springs = {});
 
   /// Largest of wave speed squared times squared gradient, of the last survey [1/s2].
   [[nodiscard]] double steepness_per_s2() const { return steepness_; }

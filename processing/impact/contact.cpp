@@ -90,6 +90,15 @@ Contact::Contact(const Body& ball, std::span<const std::size_t> nodes, double fr
   }
 }
 
+std::vector<Body::Spring> Contact::springs() const {
+  std::vector<Body::Spring> springs;
+  for (const Point& point : points_) {
+    springs.push_back({point.a, stiffness_ * (1.0 - point.at_b) * point.area_m2});
+    springs.push_back({point.b, stiffness_ * point.at_b * point.area_m2});
+  }
+  return springs;
+}
+
 // Coulomb friction with a spring as stiff as the penalty: the force on the ball, outwards.
 double Contact::drag(Point& point, double r_m, double normal_N, ContactSums& sums) const {
   const double spring = stiffness_ * point.area_m2;

@@ -39,6 +39,9 @@ class Contact {
   [[nodiscard]] double least_mass_per_area() const { return least_mass_per_area_; }
   void set_stiffness(double stiffness_Pa_per_m) { stiffness_ = stiffness_Pa_per_m; }
 
+  /// What the penalty adds to each node where all of the surface touches (lumped: an upper bound).
+  [[nodiscard]] std::vector<Body::Spring> springs() const;
+
   /// Adds the contact's forces to the ball.
   ContactSums push(Body& ball, const Plane& plane);
 

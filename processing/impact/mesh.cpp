@@ -62,11 +62,10 @@ Pattern pattern_for(std::span<const double> diameters_m, std::size_t elements) {
                      "give at least " + std::to_string(8 * least * least) +
                          ": every shell needs four rings");
   }
-  const double radius = diameters_m.back();
   std::size_t left = all;
   pattern.rings.resize(diameters_m.size());
   for (std::size_t layer = diameters_m.size(); layer-- > 1;) {
-    const double share = (diameters_m[layer] - diameters_m[layer - 1]) / (0.72 * radius);
+    const double share = (diameters_m[layer] - diameters_m[layer - 1]) / (0.72 * diameters_m.back());
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(all)));
     const std::size_t keep = kLeastCoreRings + kLeastRings * (layer - 1);
     pattern.rings[layer] = std::clamp(wanted, kLeastRings, left - keep);
@@ -135,6 +134,29 @@ void fill_rings(Mesh& mesh, const Block& square, const Block& ring, const Patter
   }
 }
 
+// Of the body of revolution inside the outline.
+double volume_inside(const Mesh& mesh) {
+  double volume = 0.0;
+  for (std::size_t k = 0; k + 1 < mesh.surface.size(); ++k) {
+    const double a = mesh.R_m[mesh.surface[k]];
+    const double b = mesh.R_m[mesh.surface[k + 1]];
+    volume += std::numbers::pi / 3.0 * (a * a + a * b + b * b) *
+              (mesh.Z_m[mesh.surface[k + 1]] - mesh.Z_m[mesh.surface[k]]);
+  }
+  return volume;
+}
+
+// Straight edges cut the sphere's volume; the mesh is as much larger as gives it back.
+void restore_volume(Mesh& mesh, double diameter_m) {
+  const double wanted = std::numbers::pi / 6.0 * diameter_m * diameter_m * diameter_m;
+  const double scale = std::cbrt(wanted / volume_inside(mesh));
+  for (std::vector<double>* coordinate : {&mesh.R_m, &mesh.Z_m}) {
+    for (double& value : *coordinate) {
+      value *= scale;
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t Mesh::elements() const {
@@ -159,6 +181,7 @@ Mesh ball_mesh(std::span<const double> outer_diameters_m, std::size_t elements) 
       1.0 / (1.0 + static_cast<double>(pattern.rings[0]) / static_cast<double>(n));
   fill_square(mesh, mesh.blocks[0], core_m * share / kMiddle, 0.5 * outer_diameters_m.back());
   fill_rings(mesh, mesh.blocks[0], mesh.blocks[1], pattern, outer_diameters_m);
+  restore_volume(mesh, outer_diameters_m.back());
   mesh.regions.push_back({0, 0, 2 * n, 0});
   std::size_t row = 0;
   for (std::size_t layer = 0; layer < pattern.rings.size(); ++layer) {
