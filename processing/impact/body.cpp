@@ -96,7 +96,7 @@ Body::Body(Mesh mesh, std::vector<Solid> solids, const ElementKernel& kernel)
     : mesh_(std::move(mesh)), solids_(std::move(solids)), kernel_(&kernel) {
   const std::size_t nodes = mesh_.R_m.size();
   for (std::vector<double>* array :
-       {&ur_, &uz_, &vr_, &vz_, &fr_, &fz_, &mass_, &by_mass_r_, &by_mass_z_}) {
+       {&ur_, &uz_, &vr_, &vz_, &fr_, &fz_, &mass_, &by_mass_r_, &by_mass_z_, &kept_r_, &kept_z_}) {
     array->assign(nodes, 0.0);
   }
   contributions_.assign(kForceArrays * nodes, 0.0);
@@ -241,6 +241,15 @@ void Body::gather(const Block& block) {
   };
   add(contributions_.data(), fr_.data());
   add(contributions_.data() + 4 * pitch, fz_.data());
+}
+
+void Body::keep_forces() {
+  std::copy(fr_.begin(), fr_.end(), kept_r_.begin());
+  std::copy(fz_.begin(), fz_.end(), kept_z_.begin());
+}
+
+double Body::kept_power() const {
+  return dot(kept_r_, vr_) + dot(kept_z_, vz_);
 }
 
 void Body::join_ties() {
@@ -424,14 +433,40 @@ double Body::axial_log_stretch(ElementIndex element) const {
   return total;
 }
 
+std::vector<double> Body::strained_share(double strain) const {
+  std::vector<double> beyond(solids_.size(), 0.0);
+  std::vector<double> all(solids_.size(), 0.0);
+  for (const Range& range : ranges_) {
+    const Block& block = mesh_.blocks[range.region.block];
+    for (std::size_t row = 0; row < range.region.rows; ++row) {
+      for (std::size_t column = 0; column < block.columns; ++column) {
+        const Gradient F =
+            gradient_at({range.region.block, column, range.region.first_row + row}, 0.5, 0.5);
+        const double area = F.rR * F.zZ - F.rZ * F.zR;
+        const double half = 0.5 * (F.rR * F.rR + F.zR * F.zR - F.rZ * F.rZ - F.zZ * F.zZ);
+        const double slope_q = 0.5 * std::asinh(std::hypot(half, F.rR * F.rZ + F.zR * F.zZ) / area);
+        const double mean = (std::log(area) - 2.0 * std::log(F.hoop)) / 6.0;
+        const double equivalent = std::sqrt(4.0 * mean * mean + 4.0 / 3.0 * slope_q * slope_q);
+        const double volume = range.geometry[(kGeometryArrays - 1) * range.elements.pitch +
+                                             row * block.stride() + column];
+        all[range.region.solid] += volume;
+        beyond[range.region.solid] += equivalent > strain ? volume : 0.0;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    beyond[i] /= all[i];
+  }
+  return beyond;
+}
+
 double Body::axial_stress_Pa(ElementIndex element) const {
   const auto found = std::find_if(ranges_.begin(), ranges_.end(), [&](const Range& range) {
     return range.region.block == element.block && element.row >= range.region.first_row &&
            element.row < range.region.first_row + range.region.rows;
   });
   const ElementRange& e = found->elements;
-  const std::size_t index =
-      (element.row - found->region.first_row) * e.stride + element.column;
+  const std::size_t index = (element.row - found->region.first_row) * e.stride + element.column;
   struct Point {
     Gradient F;
     double area, J, weight;
@@ -482,7 +517,8 @@ double Body::axial_stress_Pa(ElementIndex element) const {
     const double s22 = -product / (area * area) - 2.0 * slope * t_half - bend * half;
     const double s11 = -product / (area * area) + 2.0 * slope * t_half + bend * half;
     const double s12 = 2.0 * slope * t_shear + bend * c12;
-    const double kirchhoff = t_mean + F.zR * F.zR * s11 + 2.0 * F.zR * F.zZ * s12 + F.zZ * F.zZ * s22;
+    const double kirchhoff =
+        t_mean + F.zR * F.zR * s11 + 2.0 * F.zR * F.zZ * s12 + F.zZ * F.zZ * s22;
     total += weight * (kirchhoff / J + pressure);
   }
   return total;
@@ -517,8 +553,9 @@ std::string Body::describe(ElementIndex element) const {
     Z_mm += 250.0 * mesh_.Z_m[node];
   }
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "element %zu of row %zu in block %zu (R %.2f mm, Z %.2f mm)",
-                element.column, element.row, element.block, R_mm, Z_mm);
+  std::snprintf(text.data(), text.size(),
+                "element %zu of row %zu in block %zu (R %.2f mm, Z %.2f mm)", element.column,
+                element.row, element.block, R_mm, Z_mm);
   return text.data();
 }
 

@@ -16,13 +16,12 @@ struct ElementIndex {
   std::size_t row = 0;
 };
 
-/// A meshed body with its motion: nodal arrays and the elements' state. Allocates when it is made and never
-/// after.
+/// A meshed body with its motion: nodal arrays and the elements' state. Allocates when it is made
+/// and never after.
 class Body {
  public:
   /// @param solids  by the regions' numbers
-  Body(Mesh mesh, std::vector<Solid> solids,
-       const ElementKernel& kernel = element_kernel());
+  Body(Mesh mesh, std::vector<Solid> solids, const ElementKernel& kernel = element_kernel());
   Body(const Body&) = delete;  // the ranges point into the arrays
   Body& operator=(const Body&) = delete;
   Body(Body&&) = default;
@@ -32,9 +31,14 @@ class Body {
   /// The coming call to find_forces ends a step of `now_s`, and is followed by one of `next_s`.
   void set_steps(double now_s, double next_s);
 
-  /// The forces that the elements put on the nodes, at the present displacements. Advances the elements'
-  /// state: once per step.
+  /// The forces that the elements put on the nodes, at the present displacements. Advances the
+  /// elements' state: once per step.
   ElementSums find_forces(bool survey);
+
+  /// Power of the elements' forces on the nodes with the present velocities: with those of
+  /// find_forces, kept aside by `keep_forces` before anything is added to them.
+  void keep_forces();
+  [[nodiscard]] double kept_power() const;
 
   /// Makes tied nodes' forces the sum of theirs; after everything has been added to them.
   void join_ties();
@@ -50,8 +54,8 @@ class Body {
     double stiffness_N_per_m = 0.0;
   };
 
-  /// Highest natural frequency [rad/s] of the body as it is made, with springs to the ground, by Lanczos on
-  /// the elements' forces; the state is as new afterwards.
+  /// Highest natural frequency [rad/s] of the body as it is made, with springs to the ground, by
+  /// Lanczos on the elements' forces; the state is as new afterwards.
   [[nodiscard]] double highest_frequency(const std::vector<Spring>& springs = {});
 
   /// Largest of wave speed squared times squared gradient, of the last survey [1/s2].
@@ -76,10 +80,13 @@ class Body {
     fz_[node] += axial_N;
   }
 
-  /// Axial Cauchy stress, tension positive, and ln of an axial fibre's stretch: means over an element. Call
-  /// between find_forces and the next.
+  /// Axial Cauchy stress, tension positive, and ln of an axial fibre's stretch: means over an
+  /// element. Call between find_forces and the next.
   [[nodiscard]] double axial_stress_Pa(ElementIndex element) const;
   [[nodiscard]] double axial_log_stretch(ElementIndex element) const;
+
+  /// Share of each solid's volume whose equivalent Hencky strain is beyond `strain`.
+  [[nodiscard]] std::vector<double> strained_share(double strain) const;
 
   /// The element whose area has shrunk most: the inverted one, where there is one.
   [[nodiscard]] ElementIndex most_squeezed() const;
@@ -109,6 +116,7 @@ class Body {
   const ElementKernel* kernel_;
   std::vector<Range> ranges_;
   std::vector<double> ur_, uz_, vr_, vz_, fr_, fz_, mass_, by_mass_r_, by_mass_z_;
+  std::vector<double> kept_r_, kept_z_;
   std::vector<double> contributions_;
   double steepness_ = 0.0;
 };

@@ -85,8 +85,7 @@ Contact::Contact(const Body& ball, std::span<const std::size_t> nodes, double fr
   }
   least_mass_per_area_ = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    least_mass_per_area_ =
-        std::min(least_mass_per_area_, ball.nodal_mass_kg(nodes[k]) / area[k]);
+    least_mass_per_area_ = std::min(least_mass_per_area_, ball.nodal_mass_kg(nodes[k]) / area[k]);
   }
 }
 

@@ -21,13 +21,13 @@ struct ContactSums {
   double friction_J = 0.0;  ///< lost since the call before
 };
 
-/// How much of the circle of radius r about the ball's axis lies on a disc of radius `disc_m` whose axis is
-/// `offset_m` away.
+/// How much of the circle of radius r about the ball's axis lies on a disc of radius `disc_m` whose
+/// axis is `offset_m` away.
 [[nodiscard]] double covered_share(double r_m, double disc_m, double offset_m);
 
-/// Penalty contact with Coulomb friction: pressure proportional to penetration at points along the ball's
-/// surface, each with its share of the undeformed area, so that the patch grows smoothly and not node by
-/// node.
+/// Penalty contact with Coulomb friction: pressure proportional to penetration at points along the
+/// ball's surface, each with its share of the undeformed area, so that the patch grows smoothly and
+/// not node by node.
 class Contact {
  public:
   /// @param nodes  the ball's surface, in order
@@ -52,10 +52,10 @@ class Contact {
   struct Point {
     std::size_t a = 0;
     std::size_t b = 0;
-    double at_b = 0.0;     ///< between the nodes: 0 at a, 1 at b
+    double at_b = 0.0;  ///< between the nodes: 0 at a, 1 at b
     double area_m2 = 0.0;
-    double anchor_m = 0.0; ///< where it would stick
-    double held_N = 0.0;   ///< friction, outwards
+    double anchor_m = 0.0;  ///< where it would stick
+    double held_N = 0.0;    ///< friction, outwards
     bool touching = false;
   };
 

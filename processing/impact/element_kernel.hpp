@@ -56,7 +56,7 @@ struct ElementSums {
   double dissipated_W = 0.0;
   double least_area_ratio = 1.0;  ///< least determinant of the in-plane deformation
   double stored_J = 0.0;
-  double steepest_per_m2 = 0.0;   ///< largest squared gradient of an element's own coordinates
+  double steepest_per_m2 = 0.0;  ///< largest squared gradient of an element's own coordinates
 };
 
 /// Internal forces of axisymmetric four-node quadrilaterals, 2 x 2 points, dilatation averaged over

@@ -33,8 +33,8 @@ void check_solid(const Solid& solid, const std::string& place) {
   bool passive = positive(solid.density_kg_m3) && positive(solid.shear_relaxed_Pa) &&
                  positive(solid.bulk_relaxed_Pa) && std::isfinite(solid.nonlinearity);
   for (const SolidArm& arm : solid.arms) {
-    passive = passive && not_negative(arm.shear_Pa) && not_negative(arm.bulk_Pa) &&
-              positive(arm.time_s);
+    passive =
+        passive && not_negative(arm.shear_Pa) && not_negative(arm.bulk_Pa) && positive(arm.time_s);
   }
   require(passive, place, "has a modulus, a density or a time that no passive solid has",
           "give positive numbers");
@@ -98,8 +98,8 @@ double Target::impedance_kg_per_s() const {
 
 void check(const ImpactModel& model) {
   check_layers(model.layers);
-  require(positive(model.speed_m_per_s) && model.speed_m_per_s <= kFastest_m_per_s,
-          "speed_m_per_s", in_words(model.speed_m_per_s, "m/s") + " is not an impact speed",
+  require(positive(model.speed_m_per_s) && model.speed_m_per_s <= kFastest_m_per_s, "speed_m_per_s",
+          in_words(model.speed_m_per_s, "m/s") + " is not an impact speed",
           "give m/s, above 0 and at most 500");
   require(not_negative(model.friction) && model.friction <= 10.0, "friction",
           in_words(model.friction, "") + " is not a coefficient of friction",
@@ -110,12 +110,12 @@ void check(const ImpactModel& model) {
   check_target(model.target, model.offset_m);
   require(model.elements >= 64 && model.elements <= 1'000'000, "elements",
           std::to_string(model.elements) + " cannot mesh a ball", "give 64 to 1000000");
-  require(model.bar_elements_across >= 2 && model.bar_elements_across <= 200,
-          "bar_elements_across", "is out of range", "give 2 to 200");
+  require(model.bar_elements_across >= 2 && model.bar_elements_across <= 200, "bar_elements_across",
+          "is out of range", "give 2 to 200");
   require(not_negative(model.time_step_s), "time_step_s", "is not a time",
           "give seconds, 0 for the largest safe one");
-  require(positive(model.output_interval_s) && model.output_interval_s <= 1e-4,
-          "output_interval_s", "is out of range", "give seconds, at most 1e-4");
+  require(positive(model.output_interval_s) && model.output_interval_s <= 1e-4, "output_interval_s",
+          "is out of range", "give seconds, at most 1e-4");
   require(not_negative(model.duration_s) && model.duration_s <= 0.1, "duration_s",
           "is out of range", "give seconds, at most 0.1, 0 until the ball has left");
   const double radius_m = 0.5 * model.layers.back().outer_diameter_m;

@@ -38,8 +38,8 @@ struct Target {
   [[nodiscard]] double impedance_kg_per_s() const;  ///< rho c0 A
 };
 
-/// A material point of the ball whose axial strain is recorded: undeformed place from the centre, axial
-/// towards the target positive.
+/// A material point of the ball whose axial strain is recorded: undeformed place from the centre,
+/// axial towards the target positive.
 struct Probe {
   double radial_m = 0.0;
   double axial_m = 0.0;
@@ -50,15 +50,15 @@ struct ImpactModel {
   std::vector<Layer> layers;
   Target target;
   double speed_m_per_s = 0.0;
-  double friction = 0.3;          ///< Coulomb
-  double sabot_mass_kg = 0.0;     ///< a rigid mass that follows and touches the rear pole
-  double offset_m = 0.0;          ///< ball's axis off the bar's: what overhangs carries no load
+  double friction = 0.3;       ///< Coulomb
+  double sabot_mass_kg = 0.0;  ///< a rigid mass that follows and touches the rear pole
+  double offset_m = 0.0;       ///< ball's axis off the bar's: what overhangs carries no load
 
-  std::size_t elements = 2048;    ///< of the ball, about
+  std::size_t elements = 2048;          ///< of the ball, about
   std::size_t bar_elements_across = 8;  ///< over the bar's radius; the mesh along it is as fine
-  double time_step_s = 0.0;       ///< 0: what stability allows
+  double time_step_s = 0.0;             ///< 0: what stability allows
   double output_interval_s = 1e-6;
-  double duration_s = 0.0;        ///< 0: until the ball has left (and the gauges have seen it)
+  double duration_s = 0.0;  ///< 0: until the ball has left (and the gauges have seen it)
 
   std::vector<Probe> probes;
   std::vector<double> gauge_positions_m;  ///< on a meshed bar, from the struck end
@@ -66,7 +66,8 @@ struct ImpactModel {
   bool field_at_peak = false;             ///< and at the largest force
 };
 
-/// @throws InputError whose place is the member: geometry that does not fit, a solid that is not passive,
+/// @throws InputError whose place is the member: geometry that does not fit, a solid that is not
+/// passive,
 ///   numbers that are not finite
 void check(const ImpactModel& model);
 

@@ -12,9 +12,10 @@
 namespace kolsky::impact {
 namespace {
 
-constexpr double kBulge = 0.5;        // of the inner square: 0 straight sides, 1 a circle
+constexpr double kBulge = 0.5;  // of the inner square: 0 straight sides, 1 a circle
 constexpr double kMiddle = 0.5 * (std::numbers::sqrt2 / 2.0 + 1.0);  // of its side, by that bulge
-constexpr double kPoleGrading = 0.25;  // edges at the struck pole are this much shorter than the mean
+constexpr double kPoleGrading =
+    0.25;  // edges at the struck pole are this much shorter than the mean
 constexpr std::size_t kLeastRings = 4;
 constexpr std::size_t kLeastCoreRings = 2;
 
@@ -58,14 +59,15 @@ Pattern pattern_for(std::span<const double> diameters_m, std::size_t elements) {
   const std::size_t least = kLeastCoreRings + kLeastRings * (diameters_m.size() - 1);
   const std::size_t all = (elements - std::min(inside, elements)) / (4 * pattern.n);
   if (all < least) {
-    throw InputError("elements", std::to_string(elements) + " are too few for the ball's layers",
-                     "give at least " + std::to_string(8 * least * least) +
-                         ": every shell needs four rings");
+    throw InputError(
+        "elements", std::to_string(elements) + " are too few for the ball's layers",
+        "give at least " + std::to_string(8 * least * least) + ": every shell needs four rings");
   }
   std::size_t left = all;
   pattern.rings.resize(diameters_m.size());
   for (std::size_t layer = diameters_m.size(); layer-- > 1;) {
-    const double share = (diameters_m[layer] - diameters_m[layer - 1]) / (0.72 * diameters_m.back());
+    const double share =
+        (diameters_m[layer] - diameters_m[layer - 1]) / (0.72 * diameters_m.back());
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(all)));
     const std::size_t keep = kLeastCoreRings + kLeastRings * (layer - 1);
     pattern.rings[layer] = std::clamp(wanted, kLeastRings, left - keep);
@@ -170,15 +172,14 @@ std::size_t Mesh::elements() const {
 Mesh ball_mesh(std::span<const double> outer_diameters_m, std::size_t elements) {
   const Pattern pattern = pattern_for(outer_diameters_m, elements);
   const std::size_t n = pattern.n;
-  const std::size_t rings = std::accumulate(pattern.rings.begin(), pattern.rings.end(),
-                                            std::size_t{0});
+  const std::size_t rings =
+      std::accumulate(pattern.rings.begin(), pattern.rings.end(), std::size_t{0});
   Mesh mesh;
   add_block(mesh, n, 2 * n);
   add_block(mesh, 4 * n, rings);
   // The square is as large as makes its elements as thick as the core's rings.
   const double core_m = 0.5 * outer_diameters_m.front();
-  const double share =
-      1.0 / (1.0 + static_cast<double>(pattern.rings[0]) / static_cast<double>(n));
+  const double share = 1.0 / (1.0 + static_cast<double>(pattern.rings[0]) / static_cast<double>(n));
   fill_square(mesh, mesh.blocks[0], core_m * share / kMiddle, 0.5 * outer_diameters_m.back());
   fill_rings(mesh, mesh.blocks[0], mesh.blocks[1], pattern, outer_diameters_m);
   restore_volume(mesh, outer_diameters_m.back());

@@ -6,7 +6,8 @@
 
 namespace kolsky::impact {
 
-/// A structured patch of quadrilaterals; node (i, j) has the number first_node + j (columns + 1) + i.
+/// A structured patch of quadrilaterals; node (i, j) has the number first_node + j (columns + 1) +
+/// i.
 struct Block {
   std::size_t first_node = 0;
   std::size_t columns = 0;
@@ -47,15 +48,16 @@ struct Mesh {
   [[nodiscard]] std::size_t elements() const;
 };
 
-/// A ball whose struck pole is at the origin and whose centre is at Z = +radius: a rounded square of
-/// n x 2n inside, rings of 4n elements round it, at least four rings in every layer outside the core.
+/// A ball whose struck pole is at the origin and whose centre is at Z = +radius: a rounded square
+/// of n x 2n inside, rings of 4n elements round it, at least four rings in every layer outside the
+/// core.
 /// @param outer_diameters_m  of the layers from the inside, growing
 /// @param elements  about so many; what comes out is the nearest number the pattern gives
 /// @throws InputError "elements": too few for the layers
 [[nodiscard]] Mesh ball_mesh(std::span<const double> outer_diameters_m, std::size_t elements);
 
-/// A bar that is struck at Z = 0 and lies along -Z. Rows run from the far end; `surface` is the struck
-/// face, from the axis outwards.
+/// A bar that is struck at Z = 0 and lies along -Z. Rows run from the far end; `surface` is the
+/// struck face, from the axis outwards.
 [[nodiscard]] Mesh bar_mesh(double diameter_m, double length_m, std::size_t radial,
                             std::size_t axial);
 

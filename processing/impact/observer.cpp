@@ -7,7 +7,10 @@ namespace kolsky::impact {
 namespace {
 
 constexpr double kContactShare = 0.01;  // of the peak: contact_time_s counts above it
-constexpr double kPatchShare = 0.07;    // a probe's patch, of the ball's radius
+constexpr double kPassed = 0.02;
+constexpr double kEarliestPeak_s = 60e-6;  // before it, the first touch's ringing
+constexpr double kSmallStrain = 0.1;       // to which the linear laws were identified
+constexpr double kPatchShare = 0.07;       // a probe's patch, of the ball's radius
 
 std::array<std::size_t, 4> corners_round(const Block& block, std::size_t column, std::size_t row) {
   return {block.node(column, row), block.node(column + 1, row), block.node(column + 1, row + 1),
@@ -147,12 +150,15 @@ void Observer::keep_fields(double time_s, double force_N, const Body& ball) {
     fields_.push_back(field_of(ball, time_s));
     field_times_s_.pop_back();
   }
-  // The force ripples: the peak is passed when it has fallen by a hundredth.
+  // The force ripples: the peak is passed when it has fallen by a fiftieth.
   peak_N_ = std::max(peak_N_, force_N);
-  if (field_at_peak_ && !peak_kept_ && peak_N_ > 0.0 && force_N < 0.99 * peak_N_ &&
-      time_s > 100.0 * interval_s_) {
-    fields_.push_back(field_of(ball, time_s));
-    peak_kept_ = true;
+  if (!peak_passed_ && force_N > 0.0 && force_N < (1.0 - kPassed) * peak_N_ &&
+      time_s > kEarliestPeak_s) {
+    peak_passed_ = true;
+    strained_share_ = ball.strained_share(kSmallStrain);
+    if (field_at_peak_) {
+      fields_.push_back(field_of(ball, time_s));
+    }
   }
 }
 
@@ -192,6 +198,7 @@ ImpactHistory Observer::history() {
   history.probe_strain = std::move(probe_strain_);
   history.gauge_strain = std::move(gauge_strain_);
   history.fields = std::move(fields_);
+  history.strained_share = std::move(strained_share_);
   history.largest_contact_radius_m = largest_radius_m_;
   return history;
 }

@@ -25,7 +25,7 @@ class Observer {
     std::vector<double> weights;
   };
   struct Station {
-    std::size_t low = 0;   ///< surface nodes below and above the gauge, one element apart each
+    std::size_t low = 0;  ///< surface nodes below and above the gauge, one element apart each
     std::size_t row = 0;
     double share = 0.0;
   };
@@ -48,7 +48,8 @@ class Observer {
   double peak_N_ = 0.0;
   double last_s_ = 0.0;
   double largest_radius_m_ = 0.0;
-  bool peak_kept_ = false;
+  bool peak_passed_ = false;
+  std::vector<double> strained_share_;
   std::vector<Field> fields_;
 };
 

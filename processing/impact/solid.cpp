@@ -50,7 +50,8 @@ struct ComplianceAt {
   double slope;
 };
 
-ComplianceAt compliance_at(double instantaneous, const std::vector<KelvinUnit>& units, double rate) {
+ComplianceAt compliance_at(double instantaneous, const std::vector<KelvinUnit>& units,
+                           double rate) {
   ComplianceAt J{instantaneous, 0.0};
   for (const KelvinUnit& unit : units) {
     const double factor = 1.0 / (1.0 - rate * unit.time_s);
@@ -205,8 +206,7 @@ double Solid::fastest_wave_m_per_s() const {
                    density_kg_m3);
 }
 
-Solid solid_of(double density_kg_m3, double poisson_ratio, const CreepLaw& creep,
-               Reading reading) {
+Solid solid_of(double density_kg_m3, double poisson_ratio, const CreepLaw& creep, Reading reading) {
   require_positive("density_kg_m3", density_kg_m3, "kg/m3");
   if (!(poisson_ratio >= 0.0 && poisson_ratio < 0.5)) {
     throw InputError("poisson_ratio", in_words(poisson_ratio, "") + " has no finite bulk modulus",

@@ -9,10 +9,10 @@ namespace kolsky::impact {
 
 /// How a uniaxial law E(t) with one Poisson's ratio is read in three dimensions.
 enum class Reading {
-  full,      ///< G and K relax as E does, Poisson's ratio constant
-  bulk_E1,   ///< K = E1/3(1-2nu) elastic, G(t) = E(t)/2(1+nu)
-  bulk_Einf, ///< K = Einf/3(1-2nu) elastic, G(t) = E(t)/2(1+nu)
-  exact,     ///< K = E1/3(1-2nu) elastic, G(t) such that the uniaxial J(t) is kept
+  full,       ///< G and K relax as E does, Poisson's ratio constant
+  bulk_E1,    ///< K = E1/3(1-2nu) elastic, G(t) = E(t)/2(1+nu)
+  bulk_Einf,  ///< K = Einf/3(1-2nu) elastic, G(t) = E(t)/2(1+nu)
+  exact,      ///< K = E1/3(1-2nu) elastic, G(t) such that the uniaxial J(t) is kept
 };
 
 /// "full", "bulk-E1", "bulk-Einf", "exact".
@@ -26,8 +26,8 @@ struct KelvinUnit {
   double time_s = 0.0;
 };
 
-/// A uniaxial linear solid by its creep: J = 1/E1 + sum of Kelvin units. Any number of units; none is an
-/// elastic solid.
+/// A uniaxial linear solid by its creep: J = 1/E1 + sum of Kelvin units. Any number of units; none
+/// is an elastic solid.
 struct CreepLaw {
   double instantaneous_per_Pa = 0.0;
   std::vector<KelvinUnit> units;
@@ -62,7 +62,8 @@ struct SolidArm {
 };
 
 /// An isotropic solid, linear viscoelastic in Hencky's strain: deviatoric Kirchhoff stress
-/// 2 G(t) * d[(1 + nonlinearity x equivalent strain) deviatoric strain], mean stress K(t) * d[ln J].
+/// 2 G(t) * d[(1 + nonlinearity x equivalent strain) deviatoric strain], mean stress K(t) * d[ln
+/// J].
 struct Solid {
   double density_kg_m3 = 0.0;
   double shear_relaxed_Pa = 0.0;
@@ -76,7 +77,8 @@ struct Solid {
   [[nodiscard]] double fastest_wave_m_per_s() const;
 };
 
-/// @throws InputError, place "poisson_ratio", "E1_Pa", ...: numbers that are not positive, a ratio outside
+/// @throws InputError, place "poisson_ratio", "E1_Pa", ...: numbers that are not positive, a ratio
+/// outside
 ///   [0, 0.5), a reading in which some modulus would not be passive
 [[nodiscard]] Solid solid_of(double density_kg_m3, double poisson_ratio, const CreepLaw& creep,
                              Reading reading);
