@@ -100,6 +100,7 @@ Body::Body(Mesh mesh, std::vector<Solid> solids, const ElementKernel& kernel)
     array->assign(nodes, 0.0);
   }
   contributions_.assign(kForceArrays * nodes, 0.0);
+  volume_m3_.assign(solids_.size(), 0.0);
   ranges_.resize(mesh_.regions.size());
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     ranges_[i].region = mesh_.regions[i];
@@ -147,6 +148,7 @@ void Body::measure(Range& range) {
         element[(kGeometryPerPoint * g + 4) * pitch] /= volume;
       }
       element[(kGeometryArrays - 1) * pitch] = volume;
+      volume_m3_[range.region.solid] += volume;
     }
   }
   const std::size_t first = block.node(0, range.region.first_row);
@@ -270,6 +272,18 @@ void Body::advance(double velocity_step_s, double step_s) {
   };
   move(fr_.data(), by_mass_r_.data(), vr_.data(), ur_.data());
   move(fz_.data(), by_mass_z_.data(), vz_.data(), uz_.data());
+}
+
+void Body::place(std::span<const double> radial_m, std::span<const double> axial_m) {
+  // Copied, not swapped: the ranges point into the arrays.
+  std::copy(radial_m.begin(), radial_m.end(), ur_.begin());
+  std::copy(axial_m.begin(), axial_m.end(), uz_.begin());
+}
+
+void Body::set_velocity(std::span<const double> radial_m_per_s,
+                        std::span<const double> axial_m_per_s) {
+  std::copy(radial_m_per_s.begin(), radial_m_per_s.end(), vr_.begin());
+  std::copy(axial_m_per_s.begin(), axial_m_per_s.end(), vz_.begin());
 }
 
 void Body::set_axial_velocity(double velocity_m_per_s) {
@@ -433,9 +447,8 @@ double Body::axial_log_stretch(ElementIndex element) const {
   return total;
 }
 
-std::vector<double> Body::strained_share(double strain) const {
-  std::vector<double> beyond(solids_.size(), 0.0);
-  std::vector<double> all(solids_.size(), 0.0);
+void Body::find_strained_share(double strain, std::span<double> share) const {
+  std::fill(share.begin(), share.end(), 0.0);
   for (const Range& range : ranges_) {
     const Block& block = mesh_.blocks[range.region.block];
     for (std::size_t row = 0; row < range.region.rows; ++row) {
@@ -449,15 +462,11 @@ std::vector<double> Body::strained_share(double strain) const {
         const double equivalent = std::sqrt(4.0 * mean * mean + 4.0 / 3.0 * slope_q * slope_q);
         const double volume = range.geometry[(kGeometryArrays - 1) * range.elements.pitch +
                                              row * block.stride() + column];
-        all[range.region.solid] += volume;
-        beyond[range.region.solid] += equivalent > strain ? volume : 0.0;
+        share[range.region.solid] +=
+            equivalent > strain ? volume / volume_m3_[range.region.solid] : 0.0;
       }
     }
   }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    beyond[i] /= all[i];
-  }
-  return beyond;
 }
 
 double Body::axial_stress_Pa(ElementIndex element) const {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processing/impact/element_kernel.hpp"
@@ -46,6 +48,13 @@ class Body {
   /// Velocities by `velocity_step_s` of acceleration, displacements by `step_s` of velocity.
   void advance(double velocity_step_s, double step_s);
 
+  /// Puts every node at a displacement. @pre as many as the mesh has node numbers
+  void place(std::span<const double> radial_m, std::span<const double> axial_m);
+
+  /// Gives every node a velocity; same sizes.
+  void set_velocity(std::span<const double> radial_m_per_s,
+                    std::span<const double> axial_m_per_s);
+
   void set_axial_velocity(double velocity_m_per_s);
 
   /// A spring that holds a node, radially and axially.
@@ -75,6 +84,11 @@ class Body {
   [[nodiscard]] double axial_velocity(std::size_t node) const { return vz_[node]; }
   [[nodiscard]] double nodal_mass_kg(std::size_t node) const { return mass_[node]; }
 
+  /// On a node now: radial, axial.
+  [[nodiscard]] std::pair<double, double> force(std::size_t node) const {
+    return {fr_[node], fz_[node]};
+  }
+
   void push(std::size_t node, double radial_N, double axial_N) {
     fr_[node] += radial_N;
     fz_[node] += axial_N;
@@ -86,7 +100,8 @@ class Body {
   [[nodiscard]] double axial_log_stretch(ElementIndex element) const;
 
   /// Share of each solid's volume whose equivalent Hencky strain is beyond `strain`.
-  [[nodiscard]] std::vector<double> strained_share(double strain) const;
+  /// @pre as many shares as solids
+  void find_strained_share(double strain, std::span<double> share) const;
 
   /// The element whose area has shrunk most: the inverted one, where there is one.
   [[nodiscard]] ElementIndex most_squeezed() const;
@@ -118,6 +133,7 @@ class Body {
   std::vector<double> ur_, uz_, vr_, vz_, fr_, fz_, mass_, by_mass_r_, by_mass_z_;
   std::vector<double> kept_r_, kept_z_;
   std::vector<double> contributions_;
+  std::vector<double> volume_m3_;  // by solid
   double steepness_ = 0.0;
 };
 

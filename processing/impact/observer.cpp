@@ -47,6 +47,7 @@ Observer::Observer(const ImpactModel& model, const Body& ball, const Body* /*bar
       positions_m_(model.gauge_positions_m),
       field_times_s_(model.field_times_s),
       field_at_peak_(model.field_at_peak) {
+  strained_share_.assign(model.layers.size(), 0.0);
   const auto room = static_cast<std::size_t>(longest_s / interval_s_) + 3;
   impulse_.assign(room, 0.0);
   radius_m_.reserve(room);
@@ -155,7 +156,7 @@ void Observer::keep_fields(double time_s, double force_N, const Body& ball) {
   if (!peak_passed_ && force_N > 0.0 && force_N < (1.0 - kPassed) * peak_N_ &&
       time_s > kEarliestPeak_s) {
     peak_passed_ = true;
-    strained_share_ = ball.strained_share(kSmallStrain);
+    ball.find_strained_share(kSmallStrain, strained_share_);
     if (field_at_peak_) {
       fields_.push_back(field_of(ball, time_s));
     }
