@@ -68,7 +68,7 @@ JsonValue describe(const ImpactRun& run) {
                     {"friction", run.model.friction},
                     {"target", impact::name_of(run.model.target.kind)},
                     {"reading", impact::name_of(run.core.reading)},
-                    {"law", "Hencky strain, Kirchhoff stress"},
+                    {"law", impact::name_of(run.core.law)},
                     {"peak_force_N", history.peak_force_N},
                     {"peak_time_s", history.peak_time_s},
                     {"contact_time_s", history.contact_time_s},

@@ -76,7 +76,8 @@ std::string report(const ImpactRun& run, const Terminal& terminal) {
             Ink::bold, terminal.colour) +
       "\n";
   text += row("ball", ball_text(run));
-  text += row("reading", impact::name_of(run.core.reading));
+  text += row("reading", impact::name_of(run.core.reading) + ", " + impact::name_of(run.core.law) +
+                             " stress from Hencky's strain");
   text += row("core", solid_text(run.model.layers.front().solid, run.core));
   text += row("cover", solid_text(run.model.layers.back().solid, run.cover));
   text += row("peak force", fmt::format("{} at {}", with_unit(history.peak_force_N, "N"),

@@ -52,6 +52,7 @@ Solid solid_of(const BallMaterial& material) {
   Solid solid = solid_of(material.material.density_kg_m3, material.material.poisson_ratio,
                          creep_of(material.material, material.second), material.reading);
   solid.nonlinearity = material.nonlinearity;
+  solid.law = material.law;
   return solid;
 }
 

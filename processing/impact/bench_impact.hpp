@@ -13,6 +13,7 @@ struct BallMaterial {
   Reading reading = Reading::full;
   double nonlinearity = 0.0;  ///< b of core-, cover-nonlinearity
   KelvinUnit second{};        ///< D and tau of core-, cover-second-relaxation
+  FiniteStrain law = FiniteStrain::kirchhoff;
 };
 
 /// @throws InputError as solid_of does

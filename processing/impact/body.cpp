@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kGaussLow = 0.21132486540518712;  // (1 - 1/sqrt(3))/2
 constexpr double kGaussHigh = 0.78867513459481288;
-constexpr int kLanczosSteps = 40;
 
 std::size_t padded(std::size_t count) {
   return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
@@ -82,12 +81,19 @@ double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector
   return high;
 }
 
+// Four sums at a time: one alone waits for each of its additions.
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += a[i] * b[i];
+  std::array<double, 4> sums{};
+  std::size_t i = 0;
+  for (; i + 4 <= a.size(); i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      sums[k] += a[i + k] * b[i + k];
+    }
   }
-  return sum;
+  for (; i < a.size(); ++i) {
+    sums[0] += a[i] * b[i];
+  }
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 }  // namespace
@@ -165,6 +171,7 @@ void Body::measure(Range& range) {
   e.shear_Pa = 2.0 * solid.shear_relaxed_Pa;
   e.bulk_Pa = solid.bulk_relaxed_Pa;
   e.nonlinearity = solid.nonlinearity;
+  e.cauchy = solid.law == FiniteStrain::cauchy ? 1.0 : 0.0;
   e.branches = static_cast<int>(solid.arms.size());
   range.wave_speed_squared = solid.fastest_wave_m_per_s() * solid.fastest_wave_m_per_s();
   for (std::size_t b = 0; b < solid.arms.size(); ++b) {
@@ -301,7 +308,7 @@ void Body::forget() {
   }
 }
 
-double Body::highest_frequency(const std::vector<Spring>& springs) {
+double Body::highest_frequency(const std::vector<Spring>& springs, int steps) {
   // Arms that do not yield: the instantaneous moduli.
   for (Range& range : ranges_) {
     for (int b = 0; b < range.elements.branches; ++b) {
@@ -340,7 +347,7 @@ double Body::highest_frequency(const std::vector<Spring>& springs) {
   const double small = 1e-10 * length_m * std::sqrt(mass_kg());
   std::vector<double> diagonal, off;
   double coupling = 0.0;
-  for (int k = 0; k < kLanczosSteps; ++k) {
+  for (int k = 0; k < steps; ++k) {
     for (std::size_t n = 0; n < nodes; ++n) {
       ur_[n] = small * root_r[n] * q[n];
       uz_[n] = small * root_z[n] * q[nodes + n];
@@ -365,7 +372,7 @@ double Body::highest_frequency(const std::vector<Spring>& springs) {
       next[i] -= along * q[i] + coupling * before[i];
     }
     coupling = std::sqrt(dot(next, next));
-    if (!(coupling > 1e-12 * along) || k + 1 == kLanczosSteps) {
+    if (!(coupling > 1e-12 * along) || k + 1 == steps) {
       break;
     }
     off.push_back(coupling);
@@ -501,7 +508,8 @@ double Body::axial_stress_Pa(ElementIndex element) const {
     }
     return stress;
   };
-  const double pressure = stress_of(e.bulk_Pa, std::log(volume_ratio), 12, false) / volume_ratio;
+  const double pressure = stress_of(e.bulk_Pa, std::log(volume_ratio), 12, false) *
+                          (1.0 + e.cauchy * (volume_ratio - 1.0)) / volume_ratio;
   double total = 0.0;
   for (std::size_t g = 0; g < 4; ++g) {
     const auto& [F, area, J, weight] = points[g];
@@ -528,7 +536,7 @@ double Body::axial_stress_Pa(ElementIndex element) const {
     const double s12 = 2.0 * slope * t_shear + bend * c12;
     const double kirchhoff =
         t_mean + F.zR * F.zR * s11 + 2.0 * F.zR * F.zZ * s12 + F.zZ * F.zZ * s22;
-    total += weight * (kirchhoff / J + pressure);
+    total += weight * (kirchhoff * (1.0 + e.cauchy * (J - 1.0)) / J + pressure);
   }
   return total;
 }

@@ -52,8 +52,7 @@ class Body {
   void place(std::span<const double> radial_m, std::span<const double> axial_m);
 
   /// Gives every node a velocity; same sizes.
-  void set_velocity(std::span<const double> radial_m_per_s,
-                    std::span<const double> axial_m_per_s);
+  void set_velocity(std::span<const double> radial_m_per_s, std::span<const double> axial_m_per_s);
 
   void set_axial_velocity(double velocity_m_per_s);
 
@@ -65,7 +64,7 @@ class Body {
 
   /// Highest natural frequency [rad/s] of the body as it is made, with springs to the ground, by
   /// Lanczos on the elements' forces; the state is as new afterwards.
-  [[nodiscard]] double highest_frequency(const std::vector<Spring>& springs = {});
+  [[nodiscard]] double highest_frequency(const std::vector<Spring>& springs = {}, int steps = 40);
 
   /// Largest of wave speed squared times squared gradient, of the last survey [1/s2].
   [[nodiscard]] double steepness_per_s2() const { return steepness_; }

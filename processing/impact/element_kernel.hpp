@@ -47,6 +47,7 @@ struct ElementRange {
   double shear_Pa = 0.0;  ///< 2 G, fully relaxed
   double bulk_Pa = 0.0;   ///< K, fully relaxed
   double nonlinearity = 0.0;
+  double cauchy = 0.0;  ///< 1: the law's stress is per deformed area, 0: per undeformed
   int branches = 0;
   BranchStep branch[kMostBranches];
 };

@@ -19,8 +19,9 @@ struct EnergyLedger {
   double sabot_J = 0.0;        ///< kinetic, of the sabot
   double closure = 0.0;        ///< (sum - initial)/initial at the end
   double worst_closure = 0.0;  ///< largest magnitude of it on the way
-  /// With a non-linear solid the dissipated part is what is missing in the internal work, so that
-  /// the closure tests the motion alone; with linear solids it is summed over the dashpots.
+  /// With a non-linear solid or Cauchy stress the dissipated part is what is missing in the
+  /// internal work, so that the closure tests the motion alone; with linear ones it is summed over
+  /// the dashpots.
   bool dissipated_by_difference = false;
 };
 

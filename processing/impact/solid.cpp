@@ -143,6 +143,18 @@ Reading reading_named(const std::string& name, const std::string& place) {
   return static_cast<Reading>(found - kReadingNames.begin());
 }
 
+FiniteStrain finite_strain_named(const std::string& name, const std::string& place) {
+  if (name != "kirchhoff" && name != "cauchy") {
+    throw InputError(place, "\"" + name + "\" is not a finite-strain law",
+                     "give kirchhoff or cauchy");
+  }
+  return name == "kirchhoff" ? FiniteStrain::kirchhoff : FiniteStrain::cauchy;
+}
+
+std::string name_of(FiniteStrain law) {
+  return law == FiniteStrain::kirchhoff ? "kirchhoff" : "cauchy";
+}
+
 double RelaxationLaw::instantaneous_Pa() const {
   double modulus = relaxed_Pa;
   for (const MaxwellArm& arm : arms) {

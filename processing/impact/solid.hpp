@@ -54,6 +54,17 @@ struct RelaxationLaw {
 /// The creep of a material file, with a further Kelvin unit where `second` has a compliance.
 [[nodiscard]] CreepLaw creep_of(const Material& material, KelvinUnit second = {});
 
+/// Which stress the linear law gives, from Hencky's strain. They part with the change of volume, at
+/// 51 m/s by about a hundredth of the peak force.
+enum class FiniteStrain {
+  kirchhoff,  ///< per undeformed area: hyperelastic where nothing relaxes, energy is a state
+  cauchy,     ///< per deformed area, as hypoelastic codes integrate it; not quite conservative
+};
+
+/// "kirchhoff", "cauchy". @throws InputError at `place` for any other name
+[[nodiscard]] FiniteStrain finite_strain_named(const std::string& name, const std::string& place);
+[[nodiscard]] std::string name_of(FiniteStrain law);
+
 /// One Maxwell arm in three dimensions.
 struct SolidArm {
   double shear_Pa = 0.0;
@@ -61,7 +72,7 @@ struct SolidArm {
   double time_s = 0.0;
 };
 
-/// An isotropic solid, linear viscoelastic in Hencky's strain: deviatoric Kirchhoff stress
+/// An isotropic solid, linear viscoelastic in Hencky's strain: deviatoric stress
 /// 2 G(t) * d[(1 + nonlinearity x equivalent strain) deviatoric strain], mean stress K(t) * d[ln
 /// J].
 struct Solid {
@@ -70,6 +81,7 @@ struct Solid {
   double bulk_relaxed_Pa = 0.0;
   std::vector<SolidArm> arms;  ///< at most six
   double nonlinearity = 0.0;   ///< b; 0 is linear
+  FiniteStrain law = FiniteStrain::kirchhoff;
 
   [[nodiscard]] double shear_instantaneous_Pa() const;
   [[nodiscard]] double bulk_instantaneous_Pa() const;

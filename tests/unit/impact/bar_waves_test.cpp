@@ -32,8 +32,9 @@ std::complex<double> component(const std::vector<double>& samples, double interv
 // From two gauges; the nominal speed finds the turn of the phase.
 Wave wave_between(const BarRecords& records, double distance_m, double frequency_Hz,
                   double nominal_m_per_s) {
-  const std::complex<double> ratio = component(records.strain[1], records.interval_s, frequency_Hz) /
-                                     component(records.strain[0], records.interval_s, frequency_Hz);
+  const std::complex<double> ratio =
+      component(records.strain[1], records.interval_s, frequency_Hz) /
+      component(records.strain[0], records.interval_s, frequency_Hz);
   const double foretold = 2.0 * std::numbers::pi * frequency_Hz * distance_m / nominal_m_per_s;
   const double turns = std::round((foretold + std::arg(ratio)) / (2.0 * std::numbers::pi));
   const double phase = 2.0 * std::numbers::pi * turns - std::arg(ratio);
@@ -65,9 +66,13 @@ PressedBar titanium(std::size_t across) {
 }
 
 // Pochhammer and Chree, nu 0.33, a 13.5 mm.
-constexpr std::array<std::pair<double, double>, 7> kTitaniumPhase = {
-    {{10e3, 0.99923}, {20e3, 0.99687}, {30e3, 0.99275}, {50e3, 0.97785},
-     {60e3, 0.96573}, {80e3, 0.92503}, {100e3, 0.84124}}};
+constexpr std::array<std::pair<double, double>, 7> kTitaniumPhase = {{{10e3, 0.99923},
+                                                                      {20e3, 0.99687},
+                                                                      {30e3, 0.99275},
+                                                                      {50e3, 0.97785},
+                                                                      {60e3, 0.96573},
+                                                                      {80e3, 0.92503},
+                                                                      {100e3, 0.84124}}};
 
 TEST(TitaniumBar, PhaseVelocityIsPochhammersAndChrees) {
   const PressedBar bar = titanium(12);

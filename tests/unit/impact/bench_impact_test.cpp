@@ -18,8 +18,8 @@ using kolsky::testing::paper_core;
 using kolsky::testing::paper_cover;
 
 TEST(BenchImpact, TakesWhatTheBenchSays) {
-  const ImpactModel model = impact_on(paper_bench(), {paper_core()}, {paper_cover()},
-                                      TargetKind::dashpot, 40.3);
+  const ImpactModel model =
+      impact_on(paper_bench(), {paper_core()}, {paper_cover()}, TargetKind::dashpot, 40.3);
   ASSERT_EQ(model.layers.size(), 2U);
   EXPECT_EQ(model.layers[0].outer_diameter_m, 0.03565);
   EXPECT_EQ(model.layers[0].solid.density_kg_m3, 1140.0);
@@ -64,8 +64,7 @@ TEST(BenchImpact, RefusesABarWithoutAModulusUnlessTheTargetIsRigid) {
   bench.input.youngs_modulus_Pa.reset();
   EXPECT_THROW((void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::dashpot, 40.3),
                InputError);
-  EXPECT_NO_THROW(
-      (void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::rigid, 40.3));
+  EXPECT_NO_THROW((void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::rigid, 40.3));
   bench.ball.reset();
   EXPECT_THROW((void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::rigid, 40.3),
                InputError);

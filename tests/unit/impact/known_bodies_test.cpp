@@ -15,7 +15,8 @@ namespace {
 constexpr double kDiameter_m = 0.0427;
 constexpr double kRadius_m = 0.5 * kDiameter_m;
 
-// Frequency of the mode in which the whole sphere breathes, by the zero crossings of its volume-like sum.
+// Frequency of the mode in which the whole sphere breathes, by the zero crossings of its
+// volume-like sum.
 double breathing_frequency_Hz(std::size_t elements) {
   constexpr std::array kDiameters = {kDiameter_m};
   Body body(ball_mesh(kDiameters, elements), {elastic_solid(1100.0, 100e6, 0.3)});
@@ -46,8 +47,8 @@ double breathing_frequency_Hz(std::size_t elements) {
     body.join_ties();
     double swelling = 0.0;
     along_mode([&](std::size_t node, double R, double Z) {
-      swelling += body.nodal_mass_kg(node) * (R * (body.r_m(node) - R) +
-                                              Z * (body.z_m(node) - kRadius_m - Z));
+      swelling += body.nodal_mass_kg(node) *
+                  (R * (body.r_m(node) - R) + Z * (body.z_m(node) - kRadius_m - Z));
     });
     if (n > 1 && before * swelling < 0.0) {
       crossings_s.push_back((static_cast<double>(n) - swelling / (swelling - before)) * step_s);
@@ -74,7 +75,8 @@ struct HertzRun {
   double impulse;  // over 2 m V
 };
 
-// An elastic sphere on a rigid wall. Hertz: delta = (5 m V^2 / 4 k)^0.4, k = 4/3 E* sqrt(R), T = 2.943 delta/V.
+// An elastic sphere on a rigid wall. Hertz: delta = (5 m V^2 / 4 k)^0.4, k = 4/3 E* sqrt(R), T
+// = 2.943 delta/V.
 HertzRun hertz(double speed_m_per_s, std::size_t elements) {
   ImpactModel model;
   model.layers = {{kDiameter_m, elastic_solid(1100.0, 100e6, 0.3)}};
@@ -106,9 +108,10 @@ TEST(HertzImpact, DISABLED_ExtrapolatesToUnityOnFineMeshes) {
   const HertzRun large = hertz(2.0, 8192);
   const HertzRun small = hertz(0.5, 32768);
   const double slope = (large.ratio - small.ratio) / (large.patch - small.patch);
-  std::printf("a/R %.4f T/T_H %.5f F/F_H %.5f; a/R %.4f T/T_H %.5f F/F_H %.5f; slope %.3f, at 0 %.5f\n",
-              large.patch, large.ratio, large.peak, small.patch, small.ratio, small.peak, slope,
-              small.ratio - slope * small.patch);
+  std::printf(
+      "a/R %.4f T/T_H %.5f F/F_H %.5f; a/R %.4f T/T_H %.5f F/F_H %.5f; slope %.3f, at 0 %.5f\n",
+      large.patch, large.ratio, large.peak, small.patch, small.ratio, small.peak, slope,
+      small.ratio - slope * small.patch);
   EXPECT_NEAR(small.ratio - slope * small.patch, 1.0, 0.005);
 }
 

@@ -26,8 +26,8 @@ TEST(BallMesh, HasAboutTheElementsAskedForAndFourRingsInTheCover) {
 }
 
 TEST(BallMesh, WeighsWhatTheSphereWeighs) {
-  const Body ball(ball_mesh(kTwoPiece, 512), {elastic_solid(1140.0, 1e8, 0.3),
-                                              elastic_solid(960.0, 1e8, 0.3)});
+  const Body ball(ball_mesh(kTwoPiece, 512),
+                  {elastic_solid(1140.0, 1e8, 0.3), elastic_solid(960.0, 1e8, 0.3)});
   const auto sphere = [](double d) { return std::numbers::pi / 6.0 * d * d * d; };
   const double core = sphere(0.03565);
   const double mass = 1140.0 * core + 960.0 * (sphere(0.0427) - core);

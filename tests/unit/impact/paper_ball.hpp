@@ -26,11 +26,11 @@ inline Bench paper_bench() {
   return bench;
 }
 
-inline impact::ImpactModel paper_impact(
-    double speed_m_per_s, impact::TargetKind target = impact::TargetKind::dashpot,
-    impact::Reading reading = impact::Reading::full) {
-  return impact::impact_on(paper_bench(), {paper_core(), reading}, {paper_cover(), reading},
-                           target, speed_m_per_s);
+inline impact::ImpactModel paper_impact(double speed_m_per_s,
+                                        impact::TargetKind target = impact::TargetKind::dashpot,
+                                        impact::Reading reading = impact::Reading::full) {
+  return impact::impact_on(paper_bench(), {paper_core(), reading}, {paper_cover(), reading}, target,
+                           speed_m_per_s);
 }
 
 }  // namespace kolsky::testing
