@@ -53,7 +53,7 @@ void run_all(std::vector<Pair>& pairs) {
         pairs[i].coarse = impact::simulate(pairs[i].model);
         ImpactModel finer = pairs[i].model;
         finer.elements = kFineElements;
-        finer.field_at_peak = false;
+        finer.field_at_turn = false;
         pairs[i].fine = impact::simulate(finer);
       } catch (...) {
         const std::lock_guard lock(guard);
@@ -127,7 +127,7 @@ class Paper {
     const bool pictured = core_m == kCores_m[0] && reading == Reading::full && friction == 0.3 &&
                           speed_m_per_s == 40.3;
     if (pictured) {
-      pair.model.field_at_peak = true;
+      pair.model.field_at_turn = true;
       for (const NamedProbe& probe : paper_probes()) {
         pair.model.probes.push_back(probe.probe);
       }

@@ -25,7 +25,7 @@ Panel contact_radius_panel(const impact::ImpactHistory& history) {
 
 Panel probe_rate_panel(const impact::ImpactHistory& history,
                        const std::vector<std::string>& names) {
-  Panel panel{"axial strain rate, mean over 20 us", {"time", "s"}, {"strain rate", "1/s"}, {}};
+  Panel panel{"axial strain rate, 20 us mean", {"time", "s"}, {"strain rate", "1/s"}, {}};
   for (std::size_t i = 0; i < history.probe_strain.size(); ++i) {
     panel.series.push_back(
         {names.at(i), history.time_s,

@@ -120,6 +120,7 @@ double Contact::drag(Point& point, double r_m, double normal_N, ContactSums& sum
 template <typename Face>
 ContactSums Contact::push_on(Body& ball, const Face& face) {
   ContactSums sums;
+  double inner_depth_m = 0.0;  // of the touching point before, whose radius is sums.radius_m
   for (Point& point : points_) {
     const double at_a = 1.0 - point.at_b;
     const double z_m = at_a * ball.z_m(point.a) + point.at_b * ball.z_m(point.b);
@@ -127,6 +128,11 @@ ContactSums Contact::push_on(Body& ball, const Face& face) {
     const double depth_m = face.sense() * (face.z_at(r_m) - z_m);
     const double share = depth_m > 0.0 ? covered_share(r_m, disc_m_, offset_m_) : 0.0;
     if (share == 0.0) {
+      if (inner_depth_m > 0.0 && depth_m < 0.0) {
+        // The patch ends where the gap opens, between this point and the one before.
+        sums.radius_m += (r_m - sums.radius_m) * inner_depth_m / (inner_depth_m - depth_m);
+      }
+      inner_depth_m = 0.0;
       if (point.touching) {
         // The friction spring lets go of what it held.
         sums.friction_J += 0.5 * point.held_N * point.held_N / (stiffness_ * point.area_m2);
@@ -144,6 +150,7 @@ ContactSums Contact::push_on(Body& ball, const Face& face) {
     sums.force_N += normal_N;
     sums.energy_J += 0.5 * normal_N * depth_m;
     sums.radius_m = std::max(sums.radius_m, r_m);
+    inner_depth_m = depth_m;
   }
   return sums;
 }

@@ -284,11 +284,11 @@ class Run {
     for (std::size_t i = 0; !energy_.dissipated_by_difference && i < history.strained_share.size();
          ++i) {
       if (history.strained_share[i] > 0.05) {
-        history.remarks.push_back(
-            in_words(std::round(100.0 * history.strained_share[i]), "%") + " of layer " +
-            std::to_string(i + 1) +
-            " is beyond a strain of 0.1 at the peak: agreement here does not validate the linear "
-            "law at small strains, nor its failure refute it");
+        history.remarks.push_back(in_words(std::round(100.0 * history.strained_share[i]), "%") +
+                                  " of layer " + std::to_string(i + 1) +
+                                  " is beyond a strain of 0.1 at the largest deformation: "
+                                  "agreement here does not validate the linear "
+                                  "law at small strains, nor its failure refute it");
       }
     }
   }

@@ -63,7 +63,7 @@ struct ImpactModel {
   std::vector<Probe> probes;
   std::vector<double> gauge_positions_m;  ///< on a meshed bar, from the struck end
   std::vector<double> field_times_s;      ///< when to keep the deformed ball
-  bool field_at_peak = false;             ///< and at the largest force
+  bool field_at_turn = false;  ///< and where it is deformed most, as its centre of mass turns round
 };
 
 /// @throws InputError whose place is the member: geometry that does not fit, a solid that is not

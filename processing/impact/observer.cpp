@@ -7,10 +7,8 @@ namespace kolsky::impact {
 namespace {
 
 constexpr double kContactShare = 0.01;  // of the peak: contact_time_s counts above it
-constexpr double kPassed = 0.02;
-constexpr double kEarliestPeak_s = 60e-6;  // before it, the first touch's ringing
-constexpr double kSmallStrain = 0.1;       // to which the linear laws were identified
-constexpr double kPatchShare = 0.07;       // a probe's patch, of the ball's radius
+constexpr double kSmallStrain = 0.1;    // to which the linear laws were identified
+constexpr double kPatchShare = 0.07;    // a probe's patch, of the ball's radius
 
 std::array<std::size_t, 4> corners_round(const Block& block, std::size_t column, std::size_t row) {
   return {block.node(column, row), block.node(column + 1, row), block.node(column + 1, row + 1),
@@ -46,7 +44,7 @@ Observer::Observer(const ImpactModel& model, const Body& ball, const Body* /*bar
     : interval_s_(model.output_interval_s),
       positions_m_(model.gauge_positions_m),
       field_times_s_(model.field_times_s),
-      field_at_peak_(model.field_at_peak) {
+      field_at_turn_(model.field_at_turn) {
   strained_share_.assign(model.layers.size(), 0.0);
   const auto room = static_cast<std::size_t>(longest_s / interval_s_) + 3;
   impulse_.assign(room, 0.0);
@@ -146,20 +144,22 @@ void Observer::look(const Body& ball, const Body* bar, double radius_m) {
   }
 }
 
-void Observer::keep_fields(double time_s, double force_N, const Body& ball) {
+void Observer::keep_fields(double time_s, const Body& ball) {
   while (!field_times_s_.empty() && time_s >= field_times_s_.back()) {
     fields_.push_back(field_of(ball, time_s));
     field_times_s_.pop_back();
   }
-  // The force ripples: the peak is passed when it has fallen by a fiftieth.
-  peak_N_ = std::max(peak_N_, force_N);
-  if (!peak_passed_ && force_N > 0.0 && force_N < (1.0 - kPassed) * peak_N_ &&
-      time_s > kEarliestPeak_s) {
-    peak_passed_ = true;
-    ball.find_strained_share(kSmallStrain, strained_share_);
-    if (field_at_peak_) {
-      fields_.push_back(field_of(ball, time_s));
-    }
+}
+
+// The largest deformation is where the centre of mass turns round.
+void Observer::watch_turn(double time_s, const Body& ball) {
+  if (turned_ || ball.axial_momentum() < 0.0) {
+    return;
+  }
+  turned_ = true;
+  ball.find_strained_share(kSmallStrain, strained_share_);
+  if (field_at_turn_) {
+    fields_.push_back(field_of(ball, time_s));
   }
 }
 
@@ -171,8 +171,9 @@ void Observer::add(double time_s, double width_s, const ContactSums& touch, cons
   while (static_cast<double>(radius_m_.size()) * interval_s_ <= time_s &&
          radius_m_.size() < impulse_.size()) {
     look(ball, bar, touch.radius_m);
+    watch_turn(time_s, ball);
   }
-  keep_fields(time_s, touch.force_N, ball);
+  keep_fields(time_s, ball);
 }
 
 ImpactHistory Observer::history() {

@@ -32,7 +32,8 @@ class Observer {
 
   void spread(double from_s, double to_s, double force_N);
   void look(const Body& ball, const Body* bar, double radius_m);
-  void keep_fields(double time_s, double force_N, const Body& ball);
+  void keep_fields(double time_s, const Body& ball);
+  void watch_turn(double time_s, const Body& ball);
   [[nodiscard]] static Patch patch_round(const Body& ball, const Probe& probe);
   [[nodiscard]] static double bar_strain(const Body& bar, double position_m);
 
@@ -44,11 +45,10 @@ class Observer {
   std::vector<double> positions_m_;
   std::vector<std::vector<double>> gauge_strain_;
   std::vector<double> field_times_s_;
-  bool field_at_peak_;
-  double peak_N_ = 0.0;
+  bool field_at_turn_;
   double last_s_ = 0.0;
   double largest_radius_m_ = 0.0;
-  bool peak_passed_ = false;
+  bool turned_ = false;
   std::vector<double> strained_share_;
   std::vector<Field> fields_;
 };

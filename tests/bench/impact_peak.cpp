@@ -14,6 +14,9 @@ double fused_in_registers() {
   Lanes sums[kChains] = {};
   Lanes factor = Lanes{} + 0.999999;
   asm volatile("" : "+x"(factor));
+  for (Lanes& sum : sums) {
+    asm volatile("" : "+x"(sum));  // else twelve equal chains become one
+  }
   for (int i = 0; i < kRounds; ++i) {
 #pragma GCC unroll 12
     for (int k = 0; k < kChains; ++k) {

@@ -17,7 +17,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr mode_t kReadableByAll = 0644;
-constexpr double kProgressAfter_s = 1.0;
+constexpr double kTellEvery_s = 1.0;
+constexpr double kLogEvery_s = 15.0;
 
 struct Settings {
   std::string bench;
@@ -144,16 +145,17 @@ void prepare(ImpactRun& run, const Settings& settings) {
   for (const std::string& time : settings.fields) {
     run.model.field_times_s.push_back(number_in(time, "--field"));
   }
-  run.model.field_at_peak = settings.svg.has_value() && settings.fields.empty();
+  run.model.field_at_turn = settings.svg.has_value() && settings.fields.empty();
 }
 
-// A line on a terminal's stderr once a run takes longer than a person likes to wait.
+// A line on stderr once a run takes longer than a person likes to wait, and now and then in a log.
 class ProgressLine {
  public:
-  explicit ProgressLine(Clock::time_point start) : last_(start) {}
+  explicit ProgressLine(Clock::time_point start)
+      : last_(start), every_s_(terminal_of(2).interactive ? kTellEvery_s : kLogEvery_s) {}
 
   void show(const impact::Progress& progress) {
-    if (std::chrono::duration<double>(Clock::now() - last_).count() < kProgressAfter_s) {
+    if (std::chrono::duration<double>(Clock::now() - last_).count() < every_s_) {
       return;
     }
     last_ = Clock::now();
@@ -163,6 +165,7 @@ class ProgressLine {
 
  private:
   Clock::time_point last_;
+  double every_s_;
 };
 
 void simulate(ImpactRun& run) {
@@ -208,9 +211,7 @@ int run_command(const Settings& settings, Context& context) {
 }  // namespace
 
 std::vector<NamedProbe> paper_probes() {
-  return {{"1 (10 mm to the front)", {0.0, 0.010}},
-          {"2 (centre)", {0.0, 0.0}},
-          {"3 (10 mm to the rear)", {0.0, -0.010}}};
+  return {{"1 front", {0.0, 0.010}}, {"2 centre", {0.0, 0.0}}, {"3 rear", {0.0, -0.010}}};
 }
 
 Command impact_command() {
@@ -260,7 +261,8 @@ Command impact_command() {
       option("--offset", "M", "ball's axis off the bar's, in m: what overhangs carries no load",
              &s.offset),
       option("--time-step", "S", "largest step in s; else what is stable", &s.time_step),
-      option("--field", "S", "a time at which the picture shows the ball; else the peak's",
+      option("--field", "S",
+             "a time at which the picture shows the ball; else that of the largest deformation",
              &s.fields),
       option("--svg", "FILE", "a page to write: deformed ball with axial stress, and histories",
              &s.svg),

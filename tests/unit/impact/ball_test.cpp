@@ -167,7 +167,7 @@ TEST(PaperBall, KeepsTheFieldsAskedFor) {
   ImpactModel model = paper_impact(40.3);
   model.elements = 256;
   model.field_times_s = {2e-4, 1e-4};
-  model.field_at_peak = true;
+  model.field_at_turn = true;
   const ImpactHistory history = simulate(model);
   ASSERT_EQ(history.fields.size(), 3U);
   EXPECT_NEAR(history.fields[0].time_s, 1e-4, 1e-6);
