@@ -3,97 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 
+#include "processing/impact/lanczos.hpp"
+#include "processing/impact/quadrilateral.hpp"
+
 namespace kolsky::impact {
 namespace {
-
-constexpr double kGaussLow = 0.21132486540518712;  // (1 - 1/sqrt(3))/2
-constexpr double kGaussHigh = 0.78867513459481288;
 
 std::size_t padded(std::size_t count) {
   return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
 }
 
-double gauss_xi(std::size_t g) {
-  return g % 2 == 0 ? kGaussLow : kGaussHigh;
-}
-
-double gauss_eta(std::size_t g) {
-  return g / 2 == 0 ? kGaussLow : kGaussHigh;
-}
-
-std::array<double, 4> shape(double xi, double eta) {
-  return {(1.0 - xi) * (1.0 - eta), xi * (1.0 - eta), (1.0 - xi) * eta, xi * eta};
-}
-
-std::array<std::size_t, 4> corners(const Block& block, std::size_t column, std::size_t row) {
-  const std::size_t n = block.node(column, row);
-  return {n, n + 1, n + block.stride(), n + block.stride() + 1};
-}
-
-struct Jacobian {
-  double R_xi = 0.0, R_eta = 0.0, Z_xi = 0.0, Z_eta = 0.0, R = 0.0;
-
-  [[nodiscard]] double determinant() const { return R_xi * Z_eta - R_eta * Z_xi; }
-};
-
-Jacobian jacobian_at(const Mesh& mesh, const std::array<std::size_t, 4>& nodes, double xi,
-                     double eta) {
-  const std::array<double, 4> by_xi = {-(1.0 - eta), 1.0 - eta, -eta, eta};
-  const std::array<double, 4> by_eta = {-(1.0 - xi), -xi, 1.0 - xi, xi};
-  const std::array<double, 4> N = shape(xi, eta);
-  Jacobian J;
-  for (std::size_t a = 0; a < 4; ++a) {
-    const double R = mesh.R_m[nodes[a]];
-    const double Z = mesh.Z_m[nodes[a]];
-    J.R_xi += by_xi[a] * R;
-    J.R_eta += by_eta[a] * R;
-    J.Z_xi += by_xi[a] * Z;
-    J.Z_eta += by_eta[a] * Z;
-    J.R += N[a] * R;
+// Numbers without a pattern where `weights` is not zero; the same each time.
+std::vector<double> random_where(const std::vector<double>& weights) {
+  unsigned state = 12345;
+  std::vector<double> values(weights.size(), 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    state = state * 1664525U + 1013904223U;
+    const double value = static_cast<double>(state >> 8U) / static_cast<double>(1U << 24U) - 0.5;
+    values[i] = weights[i] > 0.0 ? value : 0.0;
   }
-  return J;
-}
-
-// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on Sturm's count.
-double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& off) {
-  double high = 0.0;
-  for (std::size_t i = 0; i < diagonal.size(); ++i) {
-    const double before = i > 0 ? std::abs(off[i - 1]) : 0.0;
-    const double after = i < off.size() ? std::abs(off[i]) : 0.0;
-    high = std::max(high, diagonal[i] + before + after);
-  }
-  double low = 0.0;
-  for (int step = 0; step < 60; ++step) {
-    const double guess = 0.5 * (low + high);
-    double pivot = 1.0;
-    bool one_above = false;
-    for (std::size_t i = 0; i < diagonal.size(); ++i) {
-      const double coupling = i > 0 ? off[i - 1] * off[i - 1] / pivot : 0.0;
-      pivot = guess - diagonal[i] - coupling;
-      one_above = one_above || pivot < 0.0;
-    }
-    (one_above ? low : high) = guess;
-  }
-  return high;
-}
-
-// Four sums at a time: one alone waits for each of its additions.
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  std::array<double, 4> sums{};
-  std::size_t i = 0;
-  for (; i + 4 <= a.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      sums[k] += a[i + k] * b[i + k];
-    }
-  }
-  for (; i < a.size(); ++i) {
-    sums[0] += a[i] * b[i];
-  }
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  return values;
 }
 
 }  // namespace
@@ -316,75 +248,41 @@ double Body::highest_frequency(const std::vector<Spring>& springs, int steps) {
       step.weight_now = step.decay = step.weight_next = 0.0;
     }
   }
-  // Lanczos in u = M^(-1/2) q. Tied nodes share one unknown: the copy follows.
+  // In q = M^(1/2) u, radial then axial. Tied nodes share one unknown: the copy follows.
   const std::size_t nodes = ur_.size();
-  std::vector<double> root_r(nodes), root_z(nodes), counted(nodes, 1.0);
+  std::vector<double> root(2 * nodes);
   for (std::size_t n = 0; n < nodes; ++n) {
-    root_r[n] = std::sqrt(by_mass_r_[n]);
-    root_z[n] = std::sqrt(by_mass_z_[n]);
+    root[n] = std::sqrt(by_mass_r_[n]);
+    root[nodes + n] = std::sqrt(by_mass_z_[n]);
   }
   for (const Tie& tie : mesh_.ties) {
-    counted[tie.b] = 0.0;
+    root[tie.b] = root[nodes + tie.b] = 0.0;
   }
-  std::vector<double> q(2 * nodes), before(2 * nodes, 0.0), next(2 * nodes);
-  unsigned seed = 12345;
-  const auto random = [&seed] {
-    seed = seed * 1664525U + 1013904223U;
-    return static_cast<double>(seed >> 8U) / static_cast<double>(1U << 24U) - 0.5;
-  };
-  for (std::size_t n = 0; n < nodes; ++n) {
-    q[n] = random() * counted[n] * (root_r[n] > 0.0 ? 1.0 : 0.0);
-    q[nodes + n] = random() * counted[n] * (root_z[n] > 0.0 ? 1.0 : 0.0);
-  }
-  const double norm = std::sqrt(dot(q, q));
-  for (double& value : q) {
-    value /= norm;
-  }
-  double length_m = 0.0;
-  for (const double R : mesh_.R_m) {
-    length_m = std::max(length_m, R);
-  }
-  const double small = 1e-10 * length_m * std::sqrt(mass_kg());
-  std::vector<double> diagonal, off;
-  double coupling = 0.0;
-  for (int k = 0; k < steps; ++k) {
-    for (std::size_t n = 0; n < nodes; ++n) {
-      ur_[n] = small * root_r[n] * q[n];
-      uz_[n] = small * root_z[n] * q[nodes + n];
-    }
-    for (const Tie& tie : mesh_.ties) {
-      ur_[tie.b] = ur_[tie.a];
-      uz_[tie.b] = uz_[tie.a];
-    }
-    find_forces(false);
-    for (const Spring& spring : springs) {
-      push(spring.node, -spring.stiffness_N_per_m * ur_[spring.node],
-           -spring.stiffness_N_per_m * uz_[spring.node]);
-    }
-    join_ties();
-    for (std::size_t n = 0; n < nodes; ++n) {
-      next[n] = -fr_[n] * root_r[n] * counted[n] / small;
-      next[nodes + n] = -fz_[n] * root_z[n] * counted[n] / small;
-    }
-    const double along = dot(next, q);
-    diagonal.push_back(along);
-    for (std::size_t i = 0; i < next.size(); ++i) {
-      next[i] -= along * q[i] + coupling * before[i];
-    }
-    coupling = std::sqrt(dot(next, next));
-    if (!(coupling > 1e-12 * along) || k + 1 == steps) {
-      break;
-    }
-    off.push_back(coupling);
-    before = q;
-    for (std::size_t i = 0; i < next.size(); ++i) {
-      q[i] = next[i] / coupling;
-    }
-  }
-  std::fill(ur_.begin(), ur_.end(), 0.0);
-  std::fill(uz_.begin(), uz_.end(), 0.0);
+  const double longest_m = *std::max_element(mesh_.R_m.begin(), mesh_.R_m.end());
+  const double small = 1e-10 * longest_m * std::sqrt(mass_kg());
+  const double value = largest_eigenvalue(
+      random_where(root), steps, [&](std::span<const double> q, std::span<double> product) {
+        for (std::size_t n = 0; n < nodes; ++n) {
+          ur_[n] = small * root[n] * q[n];
+          uz_[n] = small * root[nodes + n] * q[nodes + n];
+        }
+        for (const Tie& tie : mesh_.ties) {
+          ur_[tie.b] = ur_[tie.a];
+          uz_[tie.b] = uz_[tie.a];
+        }
+        (void)find_forces(false);
+        for (const Spring& spring : springs) {
+          push(spring.node, -spring.stiffness_N_per_m * ur_[spring.node],
+               -spring.stiffness_N_per_m * uz_[spring.node]);
+        }
+        join_ties();
+        for (std::size_t n = 0; n < nodes; ++n) {
+          product[n] = -fr_[n] * root[n] / small;
+          product[nodes + n] = -fz_[n] * root[nodes + n] / small;
+        }
+      });
   forget();
-  return std::sqrt(largest_eigenvalue(diagonal, off));
+  return std::sqrt(value);
 }
 
 double Body::mass_kg() const {
@@ -423,157 +321,6 @@ double Body::kinetic_energy(double velocity_step_s) const {
     total -= of(tie.b);
   }
   return total;
-}
-
-Body::Gradient Body::gradient_at(ElementIndex element, double xi, double eta) const {
-  const auto nodes = corners(mesh_.blocks[element.block], element.column, element.row);
-  const Jacobian J = jacobian_at(mesh_, nodes, xi, eta);
-  const double determinant = J.determinant();
-  const std::array<double, 4> by_xi = {-(1.0 - eta), 1.0 - eta, -eta, eta};
-  const std::array<double, 4> by_eta = {-(1.0 - xi), -xi, 1.0 - xi, xi};
-  const std::array<double, 4> N = shape(xi, eta);
-  Gradient F{1.0, 0.0, 0.0, 1.0, 1.0};
-  for (std::size_t a = 0; a < 4; ++a) {
-    const double by_R = (by_xi[a] * J.Z_eta - by_eta[a] * J.Z_xi) / determinant;
-    const double by_Z = (by_eta[a] * J.R_xi - by_xi[a] * J.R_eta) / determinant;
-    F.rR += ur_[nodes[a]] * by_R;
-    F.rZ += ur_[nodes[a]] * by_Z;
-    F.zR += uz_[nodes[a]] * by_R;
-    F.zZ += uz_[nodes[a]] * by_Z;
-    F.hoop += N[a] * ur_[nodes[a]] / J.R;
-  }
-  return F;
-}
-
-double Body::axial_log_stretch(ElementIndex element) const {
-  double total = 0.0;
-  for (std::size_t g = 0; g < 4; ++g) {
-    const Gradient F = gradient_at(element, gauss_xi(g), gauss_eta(g));
-    total += 0.25 * std::log(std::hypot(F.zZ, F.rZ));
-  }
-  return total;
-}
-
-void Body::find_strained_share(double strain, std::span<double> share) const {
-  std::fill(share.begin(), share.end(), 0.0);
-  for (const Range& range : ranges_) {
-    const Block& block = mesh_.blocks[range.region.block];
-    for (std::size_t row = 0; row < range.region.rows; ++row) {
-      for (std::size_t column = 0; column < block.columns; ++column) {
-        const Gradient F =
-            gradient_at({range.region.block, column, range.region.first_row + row}, 0.5, 0.5);
-        const double area = F.rR * F.zZ - F.rZ * F.zR;
-        const double half = 0.5 * (F.rR * F.rR + F.zR * F.zR - F.rZ * F.rZ - F.zZ * F.zZ);
-        const double slope_q = 0.5 * std::asinh(std::hypot(half, F.rR * F.rZ + F.zR * F.zZ) / area);
-        const double mean = (std::log(area) - 2.0 * std::log(F.hoop)) / 6.0;
-        const double equivalent = std::sqrt(4.0 * mean * mean + 4.0 / 3.0 * slope_q * slope_q);
-        const double volume = range.geometry[(kGeometryArrays - 1) * range.elements.pitch +
-                                             row * block.stride() + column];
-        share[range.region.solid] +=
-            equivalent > strain ? volume / volume_m3_[range.region.solid] : 0.0;
-      }
-    }
-  }
-}
-
-double Body::axial_stress_Pa(ElementIndex element) const {
-  const auto found = std::find_if(ranges_.begin(), ranges_.end(), [&](const Range& range) {
-    return range.region.block == element.block && element.row >= range.region.first_row &&
-           element.row < range.region.first_row + range.region.rows;
-  });
-  const ElementRange& e = found->elements;
-  const std::size_t index = (element.row - found->region.first_row) * e.stride + element.column;
-  struct Point {
-    Gradient F;
-    double area, J, weight;
-  };
-  std::array<Point, 4> points{};
-  double volume_ratio = 0.0;
-  for (std::size_t g = 0; g < 4; ++g) {
-    const Gradient F = gradient_at(element, gauss_xi(g), gauss_eta(g));
-    const double area = F.rR * F.zZ - F.rZ * F.zR;
-    const double weight = e.geometry[(kGeometryPerPoint * g + 4) * e.pitch + index];
-    points[g] = {F, area, area * F.hoop, weight};
-    volume_ratio += weight * area * F.hoop;
-  }
-  // The kept number is ahead by the coming step: take that back to have the dashpot's strain.
-  const auto stress_of = [&](double relaxed, double strain, std::size_t component, bool shear) {
-    double stress = relaxed * strain;
-    for (int b = 0; b < e.branches; ++b) {
-      const BranchStep& step = e.branch[b];
-      const double kept =
-          e.state[(kStatePerBranch * static_cast<std::size_t>(b) + component) * e.pitch + index];
-      const double dashpot = (kept - step.weight_next * strain) / step.decay;
-      stress += (shear ? step.shear_Pa : step.bulk_Pa) * (strain - dashpot);
-    }
-    return stress;
-  };
-  const double pressure = stress_of(e.bulk_Pa, std::log(volume_ratio), 12, false) *
-                          (1.0 + e.cauchy * (volume_ratio - 1.0)) / volume_ratio;
-  double total = 0.0;
-  for (std::size_t g = 0; g < 4; ++g) {
-    const auto& [F, area, J, weight] = points[g];
-    const double c11 = F.rR * F.rR + F.zR * F.zR;
-    const double c22 = F.rZ * F.rZ + F.zZ * F.zZ;
-    const double c12 = F.rR * F.rZ + F.zR * F.zZ;
-    const double half = 0.5 * (c11 - c22);
-    const double q = std::hypot(half, c12);
-    const double twice = std::asinh(q / area);  // ln of the ratio of the principal stretches
-    const double slope = q > 1e-12 ? 0.5 * twice / q : 0.5 / area;
-    const double mean = (std::log(area) - 2.0 * std::log(F.hoop)) / 6.0;
-    const double squared = 6.0 * mean * mean + 2.0 * slope * slope * q * q;
-    const double factor = 1.0 + e.nonlinearity * std::sqrt(2.0 / 3.0 * squared);
-    const double t_mean = stress_of(e.shear_Pa, factor * mean, 3 * g, true);
-    const double t_half = stress_of(e.shear_Pa, factor * slope * half, 3 * g + 1, true);
-    const double t_shear = stress_of(e.shear_Pa, factor * slope * c12, 3 * g + 2, true);
-    // Kirchhoff stress F S F' with S as in the kernel.
-    const double product = t_half * half + t_shear * c12;
-    const double bend = q > 1e-4 * area
-                            ? product * (0.5 * (c11 + c22) / (area * area) - 2.0 * slope) / (q * q)
-                            : product * 2.0 / (3.0 * area * area * area);
-    const double s22 = -product / (area * area) - 2.0 * slope * t_half - bend * half;
-    const double s11 = -product / (area * area) + 2.0 * slope * t_half + bend * half;
-    const double s12 = 2.0 * slope * t_shear + bend * c12;
-    const double kirchhoff =
-        t_mean + F.zR * F.zR * s11 + 2.0 * F.zR * F.zZ * s12 + F.zZ * F.zZ * s22;
-    total += weight * (kirchhoff * (1.0 + e.cauchy * (J - 1.0)) / J + pressure);
-  }
-  return total;
-}
-
-ElementIndex Body::most_squeezed() const {
-  ElementIndex worst;
-  double least = 2.0;
-  for (std::size_t b = 0; b < mesh_.blocks.size(); ++b) {
-    for (std::size_t row = 0; row < mesh_.blocks[b].rows; ++row) {
-      for (std::size_t column = 0; column < mesh_.blocks[b].columns; ++column) {
-        for (std::size_t g = 0; g < 4; ++g) {
-          const Gradient F = gradient_at({b, column, row}, gauss_xi(g), gauss_eta(g));
-          const double area = F.rR * F.zZ - F.rZ * F.zR;
-          if (!(area >= least)) {
-            least = area;
-            worst = {b, column, row};
-          }
-        }
-      }
-    }
-  }
-  return worst;
-}
-
-std::string Body::describe(ElementIndex element) const {
-  const auto nodes = corners(mesh_.blocks[element.block], element.column, element.row);
-  double R_mm = 0.0;
-  double Z_mm = 0.0;
-  for (const std::size_t node : nodes) {
-    R_mm += 250.0 * mesh_.R_m[node];
-    Z_mm += 250.0 * mesh_.Z_m[node];
-  }
-  std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(),
-                "element %zu of row %zu in block %zu (R %.2f mm, Z %.2f mm)", element.column,
-                element.row, element.block, R_mm, Z_mm);
-  return text.data();
 }
 
 }  // namespace kolsky::impact

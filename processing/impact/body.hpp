@@ -123,6 +123,16 @@ class Body {
   void spread_mass(const Range& range, double density_kg_m3);
   void gather(const Block& block);
   void forget();
+  /// Of a branch's state: 3 by point, then the volume's.
+  struct Component {
+    std::size_t number;
+  };
+  static constexpr std::size_t kVolumeComponent = 12;
+  [[nodiscard]] const Range& range_of(ElementIndex element) const;
+  [[nodiscard]] double law_at(const Range& range, std::size_t index, Component component,
+                              double strain) const;
+  [[nodiscard]] double deviatoric_at(const Range& range, std::size_t index, std::size_t g,
+                                     const Gradient& F) const;
   [[nodiscard]] Gradient gradient_at(ElementIndex element, double xi, double eta) const;
 
   Mesh mesh_;

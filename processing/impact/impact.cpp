@@ -69,7 +69,7 @@ class Run {
                  model.target.kind == TargetKind::rigid ? 0.0 : 0.5 * model.target.diameter_m,
                  model.offset_m),
         rear_contact_(ball_, half_surface(ball_, false), 0.0, 0.0, 0.0),
-        observer_(model, ball_, bar_ ? &*bar_ : nullptr, longest_s()) {
+        observer_(model, ball_, longest_s()) {
     ball_.set_axial_velocity(-model.speed_m_per_s);
     rear_.sense = -1.0;
     rear_.z_m = ball_.z_m(ball_.mesh().surface.back());

@@ -39,8 +39,7 @@ Field field_of(const Body& ball, double time_s) {
 
 }  // namespace
 
-Observer::Observer(const ImpactModel& model, const Body& ball, const Body* /*bar*/,
-                   double longest_s)
+Observer::Observer(const ImpactModel& model, const Body& ball, double longest_s)
     : interval_s_(model.output_interval_s),
       positions_m_(model.gauge_positions_m),
       field_times_s_(model.field_times_s),

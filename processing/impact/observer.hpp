@@ -10,7 +10,7 @@ namespace kolsky::impact {
 /// Writes an impact's histories down while it runs. Its room is taken when it is made.
 class Observer {
  public:
-  Observer(const ImpactModel& model, const Body& ball, const Body* bar, double longest_s);
+  Observer(const ImpactModel& model, const Body& ball, double longest_s);
 
   /// A step's forces, at `time_s`, which stand for the `width_s` round it.
   void add(double time_s, double width_s, const ContactSums& touch, const Body& ball,
@@ -24,12 +24,6 @@ class Observer {
     std::vector<ElementIndex> elements;
     std::vector<double> weights;
   };
-  struct Station {
-    std::size_t low = 0;  ///< surface nodes below and above the gauge, one element apart each
-    std::size_t row = 0;
-    double share = 0.0;
-  };
-
   void spread(double from_s, double to_s, double force_N);
   void look(const Body& ball, const Body* bar, double radius_m);
   void keep_fields(double time_s, const Body& ball);

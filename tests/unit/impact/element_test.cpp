@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -221,6 +222,37 @@ TEST(Element, AxialStressIsTheLaws) {
   EXPECT_NEAR(body.axial_stress_Pa({0, 1, 2}), kirchhoff / std::exp(dilatation),
               1e-8 * std::abs(kirchhoff));
   EXPECT_NEAR(body.axial_log_stretch({0, 1, 2}), std::log(axial), 1e-12);
+}
+
+// What the velocities have grown to after a thousand steps from noise.
+double growth(double share_of_critical) {
+  Body body(cylinder(), {elastic_solid(1000.0, 50e6, 0.3)});
+  const double step_s = share_of_critical * 2.0 / body.highest_frequency();
+  std::vector<double> radial(body.mesh().R_m.size(), 0.0);
+  std::vector<double> axial(body.mesh().R_m.size(), 0.0);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1e-6, 1e-6);
+  for (std::size_t n = 0; n < radial.size(); ++n) {
+    const bool there = body.nodal_mass_kg(n) > 0.0;
+    radial[n] = there && body.mesh().R_m[n] > 0.0 ? any(random) : 0.0;
+    axial[n] = there ? any(random) : 0.0;
+  }
+  body.set_velocity(radial, axial);
+  for (int n = 0; n < 1000; ++n) {
+    (void)body.find_forces(false);
+    body.advance(step_s, step_s);
+  }
+  double largest = 0.0;
+  for (std::size_t n = 0; n < radial.size(); ++n) {
+    largest = std::max(largest, std::abs(body.axial_velocity(n)));
+  }
+  return largest / 1e-6;
+}
+
+TEST(Body, CriticalStepIsTheEdgeOfStability) {
+  EXPECT_LT(growth(0.99), 100.0);
+  const double beyond = growth(1.02);
+  EXPECT_FALSE(beyond < 1e4);  // huge, or not a number any more
 }
 
 }  // namespace
