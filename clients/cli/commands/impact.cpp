@@ -220,9 +220,8 @@ Command impact_command() {
   Command command;
   command.name = "impact";
   command.purpose =
-      "a layered ball on the end of an elastic bar, from material models: force, restitution\n"
-      "Axisymmetric, finite deformation, explicit in time; compression positive, t = 0 at first "
-      "touch.\nSays where the energy went and what the run cannot show.";
+      "a layered ball on the end of a bar: force and restitution from material models\n"
+      "Axisymmetric, finite deformation, explicit; compression positive, t = 0 at first touch.";
   command.examples =
       "  kolsky impact --bench impact.toml --core core.toml --cover cover.toml --speed 40.3\n"
       "  kolsky impact --bench impact.toml --core core.toml --cover cover.toml --speed 51 \\\n"
