@@ -56,6 +56,8 @@ const std::map<std::string, std::function<void(BarWorld&, const HiddenEffect&)>>
       {"amplitude-dependence", [](W& w, const H& e) { w.material.per_peak_strain = e.strength; }},
       {"temperature", [](W& w, const H& e) { w.material.per_kelvin = e.strength; }},
       {"end-reflection", [](W& w, const H& e) { w.end_r = e.strength; }},
+      {"geometric-dispersion", [](W& w, const H& e) { w.dispersive = e.strength != 0.0; }},
+      {"bending", [](W& w, const H& e) { w.bending_m = e.strength; }},
       {"bar-length", [](W& w, const H& e) { w.length_m += e.strength; }},
       {"bridge-nonlinearity", [](W& w, const H& e) { w.bridge_b = e.strength; }},
       {"mains-hum",

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/base/error.hpp"
+#include "tests/generators/bar2d.hpp"
+#include "tests/generators/beam.hpp"
 #include "tests/generators/interpolation.hpp"
 #include "tests/generators/sensor_chain.hpp"
 
@@ -51,6 +54,37 @@ BarProblem problem_of(const BarWorld& world, const KelvinChain& chain) {
     problem.far_end = FarEndReturn{world.length_m, *world.end_r};
   }
   return problem;
+}
+
+SolidBarProblem solid_problem_of(const BarWorld& world, const KelvinChain& chain) {
+  if (world.clamp != 0.0 || world.taper != 0.0 || world.end_r.value_or(0.0) != 0.0) {
+    throw InputError("--effect geometric-dispersion",
+                     "goes with uniform bars that end freely or not at all",
+                     "leave the other effect out, or make the reflection 0");
+  }
+  SolidBarProblem problem{chain,
+                          world.material.density_kg_m3,
+                          world.material.poisson_ratio,
+                          world.radius_m,
+                          stations(world),
+                          {},
+                          world.timing.window_s()};
+  if (world.end_r) {
+    problem.free_end_m = world.length_m;
+  }
+  return problem;
+}
+
+std::vector<double> key_numbers(const BarWorld& world, const KelvinChain& chain) {
+  std::vector<double> numbers{chain.glassy_Pa,         world.material.density_kg_m3,
+                              world.radius_m,          world.material.poisson_ratio,
+                              world.timing.window_s(), world.timing.knot_s()};
+  for (const KelvinElement& element : chain.elements) {
+    numbers.insert(numbers.end(), {element.stiffness_Pa, element.viscosity_Pa_s});
+  }
+  const std::vector<double> places = stations(world);
+  numbers.insert(numbers.end(), places.begin(), places.end());
+  return numbers;
 }
 
 std::vector<double> finer(const std::vector<double>& history) {
@@ -146,17 +180,8 @@ double peak(const std::vector<double>& record) {
 
 }  // namespace
 
-const Responses& BarForward::wave_responses(const BarWorld& world, const KelvinChain& chain) {
-  Key key{{chain.glassy_Pa, world.material.density_kg_m3, world.length_m,
-           world.end_r.value_or(-1.0), world.clamp, world.clamp_at_m, world.taper,
-           world.timing.window_s(), world.timing.knot_s(), world.dispersive ? world.radius_m : 0.0,
-           world.material.poisson_ratio}};
-  for (const KelvinElement& element : chain.elements) {
-    key.numbers.insert(key.numbers.end(), {element.stiffness_Pa, element.viscosity_Pa_s});
-  }
-  const std::vector<double> places = stations(world);
-  key.numbers.insert(key.numbers.end(), places.begin(), places.end());
-  for (auto& [known, responses] : known_) {
+const Responses& BarForward::remembered(const Key& key, const std::function<Responses()>& reckon) {
+  for (const auto& [known, responses] : known_) {
     if (known == key) {
       return responses;
     }
@@ -164,14 +189,44 @@ const Responses& BarForward::wave_responses(const BarWorld& world, const KelvinC
   if (known_.size() >= kKept) {
     known_.pop_front();
   }
-  known_.emplace_back(key, bar_response(problem_of(world, chain), {world.timing.knot_s()}));
+  known_.emplace_back(key, reckon());
   return known_.back().second;
+}
+
+const Responses& BarForward::wave_responses(const BarWorld& world, const KelvinChain& chain) {
+  Key key{key_numbers(world, chain)};
+  key.numbers.insert(key.numbers.end(),
+                     {world.length_m, world.end_r.value_or(-1.0), world.clamp, world.clamp_at_m,
+                      world.taper, world.dispersive ? 1.0 : 0.0});
+  return remembered(key, [&] {
+    const UnitSource source{world.timing.knot_s()};
+    return world.dispersive ? solid_bar_response(solid_problem_of(world, chain), source)
+                            : bar_response(problem_of(world, chain), source);
+  });
+}
+
+const Responses& BarForward::bending_responses(const BarWorld& world, const KelvinChain& chain) {
+  Key key{key_numbers(world, chain)};
+  key.numbers.push_back(-1.0);
+  return remembered(key, [&] {
+    return beam_response({chain, world.material.density_kg_m3, world.material.poisson_ratio,
+                          world.radius_m, stations(world), world.timing.window_s()},
+                         {world.timing.knot_s()});
+  });
 }
 
 Responses BarForward::sensor_responses(const BarWorld& world, const TrueShot& shot) {
   const KelvinChain chain =
       world.material.chain(shot.temperature_K - world.reference_K, shot.peak_strain);
-  const Responses& waves = wave_responses(world, chain);
+  Responses waves = wave_responses(world, chain);
+  if (world.bending_m != 0.0) {
+    const Responses& bending = bending_responses(world, chain);
+    for (std::size_t i = 0; i < waves.strain.size(); ++i) {
+      for (std::size_t n = 0; n < waves.strain[i].size(); ++n) {
+        waves.strain[i][n] += world.bending_m * bending.strain[i][n];
+      }
+    }
+  }
   Responses out{waves.step_s, {}};
   std::size_t station = 0;
   for (const TrueGauge& gauge : world.gauges) {

@@ -22,6 +22,8 @@ class BarForward {
     bool operator==(const Key&) const = default;
   };
   const Responses& wave_responses(const BarWorld& world, const KelvinChain& chain);
+  const Responses& bending_responses(const BarWorld& world, const KelvinChain& chain);
+  const Responses& remembered(const Key& key, const std::function<Responses()>& reckon);
 
   std::list<std::pair<Key, Responses>> known_;
 };

@@ -59,6 +59,8 @@ const std::vector<EffectKind>& bar_effects() {
       {"fractional-damping", "-", 1.0, 0.95, false, true},
       {"amplitude-dependence", "-", 0.0, 2.0, false, false},
       {"temperature", "1/K", 0.0, 3e-3, false, false},
+      {"geometric-dispersion", "-", 0.0, 1.0, false, false},
+      {"bending", "m", 0.0, 2e-4, false, false},
       {"end-reflection", "-", 0.0, 0.05, false, true},
       {"gauge-position", "m", 0.0, 1e-3, true, false},
       {"gauge-factor", "-", 0.0, 0.01, true, false},
