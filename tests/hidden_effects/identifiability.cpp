@@ -1,0 +1,342 @@
+#include "tests/hidden_effects/identifiability.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/generators/unit_source.hpp"
+#include "tests/hidden_effects/source_freedom.hpp"
+#include "tests/hidden_effects/whitening.hpp"
+
+namespace kolsky::scoring {
+
+namespace {
+
+using testing::BarCampaign;
+using testing::BarForward;
+using testing::BarWorld;
+using testing::EffectKind;
+using testing::HiddenEffect;
+using testing::Readings;
+
+constexpr double kDetect = 6.0;
+constexpr double kAgainstRival = 5.0;
+// A size beyond this many typical ones is nothing a laboratory has.
+constexpr double kBeyondReason = 10.0;
+// Below this exponent the generator's own error is no longer small.
+constexpr double kMostFractional = 0.25;
+
+Whitening whitening_of(const BarCampaign& campaign) {
+  const double step =
+      campaign.bits > 0 ? std::ldexp(campaign.full_scale_strain, 1 - campaign.bits) : 0.0;
+  const double rms = campaign.wishes.noise_strain;
+  const double quantised = step / std::sqrt(12.0);
+  if (campaign.wishes.colour == testing::NoiseColour::white) {
+    return Whitening(std::hypot(rms, quantised));
+  }
+  std::mt19937_64 random(17);
+  std::vector<std::vector<double>> samples;
+  std::normal_distribution<double> rounding(0.0, quantised);
+  for (int i = 0; i < 64; ++i) {
+    samples.push_back(testing::noise(campaign.wishes.colour, rms, campaign.world.timing.period_s(),
+                                     4096, random, campaign.wishes.measured_noise));
+    for (double& value : samples.back()) {
+      value += rounding(random);
+    }
+  }
+  return Whitening(samples, 48);
+}
+
+Readings difference(const Readings& changed, const Readings& base, double step,
+                    const Whitening& whiten) {
+  Readings out = changed;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (std::size_t g = 0; g < out[i].size(); ++g) {
+      for (std::size_t n = 0; n < out[i][g].size(); ++n) {
+        out[i][g][n] = (out[i][g][n] - base[i][g][n]) / step;
+      }
+      out[i][g] = whiten(out[i][g]);
+    }
+  }
+  return out;
+}
+
+// Only one gauge's share of a change made at all gauges at once.
+Readings of_gauge(const Readings& all, std::size_t gauge) {
+  Readings out = all;
+  for (auto& shot : out) {
+    for (std::size_t g = 0; g < shot.size(); ++g) {
+      if (g != gauge) {
+        std::ranges::fill(shot[g], 0.0);
+      }
+    }
+  }
+  return out;
+}
+
+struct Direction {
+  Readings readings;
+  double prior_sd = 0.0;  // 0: free
+};
+
+class Prober {
+ public:
+  explicit Prober(const BarCampaign& campaign)
+      : campaign_(campaign),
+        whiten_(whitening_of(campaign)),
+        base_(forward_.readings(campaign.world)) {}
+
+  std::vector<Direction> nuisances() {
+    std::vector<Direction> out;
+    const auto scale = [&](double testing::TrueMaterial::*member) {
+      BarWorld world = campaign_.world;
+      const double step = 1e-3 * (world.material.*member);
+      world.material.*member += step;
+      out.push_back({changed(world, 1e-3), 0.0});
+    };
+    scale(&testing::TrueMaterial::E1_Pa);
+    if (campaign_.world.material.elastic) {
+      const Measured E = *campaign_.bench.input.youngs_modulus_Pa;
+      out.back().prior_sd = std::max(E.sd / E.value, 1e-9);
+      return with_gauges(std::move(out));
+    }
+    scale(&testing::TrueMaterial::E2_Pa);
+    scale(&testing::TrueMaterial::eta2_Pa_s);
+    return with_gauges(std::move(out));
+  }
+
+  Readings unit_change(const Candidate& candidate) {
+    BarWorld world = campaign_.world;
+    testing::plant(world, candidate.effect);
+    return changed(world, candidate.effect.strength - candidate.null);
+  }
+
+  // The same change at every gauge, at the cost of one.
+  Readings unit_change_everywhere(const std::string& id, double strength) {
+    BarWorld world = campaign_.world;
+    for (const testing::TrueGauge& gauge : campaign_.world.gauges) {
+      testing::plant(world, {id, gauge.name, strength, {}});
+    }
+    return changed(world, strength);
+  }
+
+  SourceFreedom freedom() {
+    const testing::Timing& timing = campaign_.world.timing;
+    const testing::Responses responses =
+        forward_.sensor_responses(campaign_.world, campaign_.world.shots.front());
+    std::vector<std::vector<double>> bells;
+    const auto first = -static_cast<std::ptrdiff_t>(std::floor(timing.lead_s / timing.period_s()));
+    const std::size_t length = timing.samples + static_cast<std::size_t>(-first);
+    double largest = 0.0;
+    for (std::size_t g = 0; g < responses.strain.size(); ++g) {
+      std::vector<double> bell =
+          testing::superpose(responses.strain[g], responses.step_s, std::vector<double>{1.0}, 1,
+                             timing.period_s(), 0.0, length);
+      for (double& value : bell) {
+        value *= campaign_.world.gauges[g].gain;
+        largest = std::max(largest, std::abs(value));
+      }
+      bells.push_back(whiten_(bell));
+    }
+    return {std::move(bells),        whiten_(std::vector<double>(timing.samples, 1.0)),
+            timing.samples,          first,
+            timing.periods_per_knot, 3e-3 / largest};
+  }
+
+ private:
+  Readings changed(const BarWorld& world, double step) {
+    return difference(forward_.readings(world), base_, step, whiten_);
+  }
+
+  std::vector<Direction> with_gauges(std::vector<Direction> out) {
+    for (std::size_t g = 0; g < campaign_.world.gauges.size(); ++g) {
+      const Gauge& filed = campaign_.bench.gauges[g];
+      const std::string& name = campaign_.world.gauges[g].name;
+      if (filed.position_m.sd > 0.0) {
+        out.push_back(
+            {unit_change({{"gauge-position", name, 1e-4, {}}, {}, 0.0}), filed.position_m.sd});
+      }
+      if (filed.strain_per_V && filed.strain_per_V->sd > 0.0) {
+        out.push_back({unit_change({{"gauge-factor", name, 1e-3, {}}, {}, 0.0}),
+                       filed.strain_per_V->sd / filed.strain_per_V->value});
+      }
+    }
+    return out;
+  }
+
+  const BarCampaign& campaign_;
+  BarForward forward_;
+  Whitening whiten_;
+  Readings base_;
+};
+
+// Strengths at which differences are taken: small, but for what is there or not.
+HiddenEffect probe_of(const EffectKind& kind, const std::string& gauge) {
+  HiddenEffect effect{kind.id, gauge, 0.0, {}};
+  if (kind.id == "geometric-dispersion" || kind.id == "end-reflection") {
+    effect.strength = kind.typical;
+  } else {
+    effect.strength = kind.null + 0.2 * (kind.typical - kind.null);
+  }
+  return effect;
+}
+
+std::vector<Candidate> all_candidates(const BarCampaign& campaign) {
+  std::vector<Candidate> out;
+  for (const EffectKind& kind : testing::bar_effects()) {
+    if (!kind.per_gauge) {
+      out.push_back({probe_of(kind, ""), kind, kind.null});
+      if (kind.id == "second-relaxation") {
+        out.back().effect.details["tau"] = 3e-4;
+        for (const double tau : {2e-5, 8e-5, 1.5e-3}) {
+          out.push_back({probe_of(kind, ""), kind, kind.null});
+          out.back().effect.details["tau"] = tau;
+        }
+      }
+      continue;
+    }
+    for (const testing::TrueGauge& gauge : campaign.world.gauges) {
+      out.push_back({probe_of(kind, gauge.name), kind, kind.null});
+    }
+  }
+  return out;
+}
+
+Eigen::MatrixXd without(const Eigen::MatrixXd& products, const Eigen::MatrixXd& cross,
+                        const Eigen::MatrixXd& nuisance) {
+  return products - cross * nuisance.ldlt().solve(cross.transpose());
+}
+
+bool moves_places(const std::string& id) {
+  return id == "gauge-position" || id == "gauge-length";
+}
+
+bool same_family(const Candidate& a, const Candidate& b) {
+  return a.effect.name() == b.effect.name();
+}
+
+}  // namespace
+
+bool Identifiable::all_or_nothing() const {
+  return candidate.kind.id == "geometric-dispersion" || candidate.kind.id == "end-reflection";
+}
+
+bool Identifiable::possible() const {
+  if (all_or_nothing()) {
+    return smallest > 0.0 && smallest <= candidate.kind.typical;
+  }
+  if (candidate.kind.id == "fractional-damping" && smallest > kMostFractional) {
+    return false;
+  }
+  return smallest > 0.0 && std::isfinite(smallest) &&
+         smallest <= kBeyondReason * std::abs(candidate.kind.typical - candidate.null);
+}
+
+Identifiability::Identifiability(const BarCampaign& campaign)
+    : candidates_(all_candidates(campaign)) {
+  Prober prober(campaign);
+  std::vector<Direction> directions = prober.nuisances();
+  const auto nuisances = static_cast<Eigen::Index>(directions.size());
+  std::string everywhere_id;
+  Readings everywhere;
+  std::size_t gauge = 0;
+  for (const Candidate& candidate : candidates_) {
+    if (!moves_places(candidate.effect.id)) {
+      directions.push_back({prober.unit_change(candidate), 0.0});
+      continue;
+    }
+    if (candidate.effect.id != everywhere_id) {
+      everywhere_id = candidate.effect.id;
+      everywhere = prober.unit_change_everywhere(everywhere_id, candidate.effect.strength);
+      gauge = 0;
+    }
+    directions.push_back({of_gauge(everywhere, gauge++), 0.0});
+  }
+  const SourceFreedom freedom = prober.freedom();
+  const auto count = static_cast<Eigen::Index>(directions.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  for (std::size_t shot = 0; shot < campaign.world.shots.size(); ++shot) {
+    std::vector<const std::vector<std::vector<double>>*> of_shot;
+    for (const Direction& direction : directions) {
+      of_shot.push_back(&direction.readings[shot]);
+    }
+    information += freedom.remaining_products(of_shot);
+  }
+  Eigen::MatrixXd nuisance = information.topLeftCorner(nuisances, nuisances);
+  for (Eigen::Index i = 0; i < nuisances; ++i) {
+    const double sd = directions[static_cast<std::size_t>(i)].prior_sd;
+    nuisance(i, i) += sd > 0.0 ? 1.0 / (sd * sd) : 0.0;
+  }
+  const Eigen::Index wanted = count - nuisances;
+  products_ = without(information.bottomRightCorner(wanted, wanted),
+                      information.bottomLeftCorner(wanted, nuisances), nuisance);
+  judge();
+}
+
+void Identifiability::judge() {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    Identifiable found{candidates_[i], 0.0, 0.0, "", 1.0};
+    const double own = std::max(products_(row, row), 0.0);
+    double least = own;
+    for (std::size_t j = 0; j < candidates_.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      if (same_family(candidates_[i], candidates_[j]) || candidates_[j].kind.withheld ||
+          products_(column, column) <= 0.0) {
+        continue;
+      }
+      const double cross = products_(row, column);
+      const double left = own - cross * cross / products_(column, column);
+      if (left < least) {
+        least = left;
+        found.closest = candidates_[j].effect.name();
+      }
+    }
+    found.detect = kDetect / std::sqrt(own);
+    found.smallest = std::max(found.detect, kAgainstRival / std::sqrt(std::max(least, 0.0)));
+    found.rival_share = own > 0.0 ? std::sqrt(std::max(least, 0.0) / own) : 0.0;
+    effects_.push_back(found);
+  }
+}
+
+double Identifiable::most() const {
+  return candidate.kind.id == "fractional-damping" ? kMostFractional
+                                                   : std::numeric_limits<double>::infinity();
+}
+
+double Identifiability::withheld_size(const Identifiable& effect, double sigmas) const {
+  const auto of = [&](std::size_t i) { return static_cast<Eigen::Index>(i); };
+  const auto found = std::ranges::find_if(candidates_, [&](const Candidate& candidate) {
+    return candidate.effect.name() == effect.candidate.effect.name();
+  });
+  const Eigen::Index row = of(static_cast<std::size_t>(found - candidates_.begin()));
+  double least = products_(row, row);
+  for (std::size_t a = 0; a < candidates_.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (candidates_[a].kind.withheld || candidates_[b].kind.withheld) {
+        continue;
+      }
+      Eigen::Matrix2d pair;
+      pair << products_(of(a), of(a)), products_(of(a), of(b)), products_(of(a), of(b)),
+          products_(of(b), of(b));
+      pair.diagonal() *= 1.0 + 1e-9;
+      const Eigen::Vector2d cross(products_(row, of(a)), products_(row, of(b)));
+      least = std::min(least, products_(row, row) - cross.dot(pair.ldlt().solve(cross)));
+    }
+  }
+  return sigmas / std::sqrt(std::max(least, 0.0));
+}
+
+double Identifiability::signal_to_noise(const std::string& name, double strength) const {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (candidates_[i].effect.name() == name) {
+      const auto row = static_cast<Eigen::Index>(i);
+      return std::abs(strength - candidates_[i].null) *
+             std::sqrt(std::max(products_(row, row), 0.0));
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace kolsky::scoring
