@@ -20,6 +20,8 @@ struct CampaignFolder {
 /// @return the captures, or the tables where none are written
 std::vector<std::filesystem::path> write_campaign(const CampaignFolder& to,
                                                   std::vector<Shot> shots);
+/// bars.toml for `--bar-model`.
+void write_bars(const CampaignFolder& to, const Material& bars);
 
 [[nodiscard]] std::string bench_text(const Bench& bench);
 

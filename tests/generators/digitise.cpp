@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky::testing {
 
 Shot digitised(const Bench& bench, const std::vector<std::vector<double>>& readings,
@@ -35,6 +37,10 @@ Shot digitised(const Bench& bench, const std::vector<std::vector<double>>& readi
         noise(digitiser.colour, digitiser.noise_strain, shot.rate.period_s(), readings[g].size(),
               random, digitiser.measured_noise);
     for (std::size_t n = 0; n < readings[g].size(); ++n) {
+      if (!std::isfinite(readings[g][n])) {
+        throw InputError("campaign", "the calculation of " + gauge.name + " ran away",
+                         "take weaker effects or gentler shots");
+      }
       const double value = sign * (readings[g][n] + offset_strain[g] + jitter[n]) / per_unit;
       channel.codes.push_back(static_cast<std::int32_t>(
           std::clamp(std::round(value / channel.scale), -full, full - 1.0)));

@@ -80,7 +80,31 @@ const std::vector<EffectKind>& bar_effects() {
 }
 
 const std::vector<EffectKind>& shpb_effects() {
-  static const std::vector<EffectKind> kinds{};
+  static const std::vector<EffectKind> kinds{
+      {"specimen-second-relaxation", "1/Pa", 0.0, 5e-10, false, true},
+      {"specimen-nonlinearity", "-", 0.0, 1.0, false, false},
+      {"specimen-inertia", "-", 0.0, 1.0, false, true},
+      {"radial-inertia", "-", 0.0, 1.0, false, true},
+      {"interface-friction", "-", 0.0, 0.05, false, true},
+      {"interface-gap", "m", 0.0, 10e-6, false, true},
+      {"punching", "-", 0.0, 1.0, false, true},
+      {"bar-length", "m", 0.0, 2e-3, false, false},
+      {"specimen-dimensions", "m", 0.0, 1e-4, false, false},
+      {"second-relaxation", "1/Pa", 0.0, 3e-12, false, true},
+      {"temperature", "1/K", 0.0, 3e-3, false, false},
+      {"gauge-position", "m", 0.0, 1e-3, true, false},
+      {"gauge-factor", "-", 0.0, 0.01, true, false},
+      {"channel-delay", "s", 0.0, 0.5e-6, true, false},
+      {"amplifier-bandwidth", "s", 0.0, 0.5e-6, true, true},
+      {"baseline-drift", "1/s", 0.0, 0.02, true, false},
+      {"gauge-length", "m", 0.0, 0.01, true, true},
+      {"crosstalk", "-", 0.0, 0.01, true, false},
+      {"mains-hum", "strain", 0.0, 1e-5, false, true},
+      {"bridge-nonlinearity", "-", 0.0, 1.0, false, false},
+      {"x-face-layer", "m/N", 0.0, 1e-8, false, true, true},
+      {"x-permanent-strain", "-", 0.0, 0.1, false, true, true},
+      {"x-gauge-creep", "-", 0.0, 0.03, true, true, true},
+      {"x-time-base", "s", 0.0, 0.3e-6, false, true, true}};
   return kinds;
 }
 

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "processing/base/error.hpp"
-#include "tests/generators/bar_campaign.hpp"
+#include "tests/generators/campaign.hpp"
 #include "tests/generators/campaign_files.hpp"
 #include "tests/generators/truth_file.hpp"
 
@@ -32,8 +32,8 @@ struct Arguments {
   double radius_m = 0.0;
 };
 
-void list_effects() {
-  for (const EffectKind& kind : bar_effects()) {
+void list_effects(bool split) {
+  for (const EffectKind& kind : split ? shpb_effects() : bar_effects()) {
     std::cout << fmt::format("{}{}\t[{}]\tnull {}\ttypical {}{}\n", kind.id,
                              kind.per_gauge ? ":GAUGE" : "", kind.unit, kind.null, kind.typical,
                              kind.withheld ? "\twithheld from the library" : "");
@@ -42,6 +42,7 @@ void list_effects() {
 
 void settle(Arguments& arguments) {
   CampaignWishes& wishes = arguments.wishes;
+  wishes.split = arguments.kind == "shpb";
   wishes.colour = colour_named(arguments.noise);
   wishes.tolerances = arguments.tolerances ? Tolerances::filed : Tolerances::none;
   if (arguments.bits >= 0) {
@@ -63,12 +64,15 @@ void settle(Arguments& arguments) {
 
 int run(Arguments& arguments) {
   settle(arguments);
-  BarCampaign campaign = draw_bar_campaign(arguments.wishes);
+  Campaign campaign = draw_campaign(arguments.wishes);
   for (const std::string& text : arguments.effects) {
     hide(campaign, parse_effect(text));
   }
   const CampaignFolder folder{arguments.out, arguments.form != "captures",
                               arguments.form != "tables", arguments.wishes.seed % 2 == 0};
+  if (campaign.filed_bars) {
+    write_bars(folder, *campaign.filed_bars);
+  }
   write_campaign(folder, shots_of(campaign));
   std::ofstream(arguments.truth) << truth_of(campaign).dump(2) << "\n";
   std::cout << fmt::format("{}: {} shots, truth in {}\n", arguments.out, arguments.wishes.shots,
@@ -81,7 +85,7 @@ int run(Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Writes a campaign of records with hidden effects and, apart from it, the truth.");
-  app.add_option("--kind", arguments.kind, "bar")->check(CLI::IsMember({"bar"}));
+  app.add_option("--kind", arguments.kind, "bar or shpb")->check(CLI::IsMember({"bar", "shpb"}));
   app.add_option(
       "--effect", arguments.effects,
       "ID[:GAUGE]=STRENGTH[,key=value], in the unit of the effects' reference; again for "
@@ -107,7 +111,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   arguments.wishes.noise_strain = microstrain * 1e-6;
   if (arguments.list) {
-    list_effects();
+    list_effects(arguments.kind == "shpb");
     return 0;
   }
   try {

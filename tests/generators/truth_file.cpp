@@ -56,20 +56,30 @@ nlohmann::json list(const std::vector<T>& items, const Make& make) {
 
 }  // namespace
 
-nlohmann::json truth_of(const BarCampaign& campaign) {
+nlohmann::json truth_of(const Campaign& campaign) {
   const BarWorld& world = campaign.world;
-  return {{"kind", "bar"},
-          {"seed", campaign.wishes.seed},
-          {"effects", list(campaign.effects, of_effect)},
-          {"noise_strain", campaign.wishes.noise_strain},
-          {"bits", campaign.bits},
-          {"full_scale_strain", campaign.full_scale_strain},
-          {"material", of_material(world.material)},
-          {"radius_m", world.radius_m},
-          {"length_m", world.length_m},
-          {"pretrigger_samples", world.timing.pretrigger},
-          {"gauges", list(world.gauges, of_gauge)},
-          {"shots", list(world.shots, of_shot)}};
+  nlohmann::json json{{"kind", campaign.split ? "shpb" : "bar"},
+                      {"seed", campaign.wishes.seed},
+                      {"effects", list(campaign.effects, of_effect)},
+                      {"noise_strain", campaign.wishes.noise_strain},
+                      {"bits", campaign.bits},
+                      {"full_scale_strain", campaign.full_scale_strain},
+                      {"material", of_material(world.material)},
+                      {"radius_m", world.radius_m},
+                      {"length_m", world.length_m},
+                      {"pretrigger_samples", world.timing.pretrigger},
+                      {"gauges", list(world.gauges, of_gauge)},
+                      {"shots", list(world.shots, of_shot)}};
+  if (campaign.split) {
+    const TrueSpecimen& specimen = campaign.split->specimen;
+    json["output_length_m"] = campaign.split->output_length_m;
+    json["specimen"] = {{"length_m", specimen.length_m},
+                        {"diameter_m", specimen.diameter_m},
+                        {"E1_Pa", specimen.E1_Pa},
+                        {"E2_Pa", specimen.E2_Pa},
+                        {"eta2_Pa_s", specimen.eta2_Pa_s}};
+  }
+  return json;
 }
 
 }  // namespace kolsky::testing

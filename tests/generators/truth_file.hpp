@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/generators/bar_draw.hpp"
+#include "tests/generators/campaign_draw.hpp"
 
 namespace kolsky::testing {
 
 /// Everything that was drawn or planted, for whoever scores; never beside the campaign.
-[[nodiscard]] nlohmann::json truth_of(const BarCampaign& campaign);
+[[nodiscard]] nlohmann::json truth_of(const Campaign& campaign);
 
 }  // namespace kolsky::testing

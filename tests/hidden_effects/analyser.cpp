@@ -54,9 +54,10 @@ std::string captures_of(const CaseFiles& files) {
 
 Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
   const std::filesystem::path model = files.folder / "model.toml";
+  const std::string bars = files.bars.empty() ? "" : " --bar-model " + quoted(files.bars);
   Answer made = run(analyser, files, "model-new",
-                    fmt::format("model new --kind bar --bench {} -o {} --json", quoted(files.bench),
-                                quoted(model)));
+                    fmt::format("model new --kind {} --bench {}{} -o {} --json", files.kind,
+                                quoted(files.bench), bars, quoted(model)));
   if (made.code != 0) {
     return made;
   }

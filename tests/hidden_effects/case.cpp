@@ -28,6 +28,11 @@ CaseFiles write_case(const Case& drawn, const std::filesystem::path& root) {
   files.folder = root / "cases" / drawn.id;
   files.bench = files.folder / "bench.toml";
   files.truth = root / "truth" / (drawn.id + ".json");
+  if (drawn.campaign.filed_bars) {
+    testing::write_bars({.folder = files.folder}, *drawn.campaign.filed_bars);
+    files.bars = files.folder / "bars.toml";
+  }
+  files.kind = drawn.campaign.split ? "shpb" : "bar";
   files.captures = testing::write_campaign({.folder = files.folder, .tables = false},
                                            testing::shots_of(drawn.campaign));
   std::filesystem::create_directories(files.truth.parent_path());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/generators/bar_campaign.hpp"
+#include "tests/generators/campaign.hpp"
 
 namespace kolsky::scoring {
 
@@ -18,13 +18,15 @@ enum class CaseKind { null, single, two, absorbed, withheld };
 struct Case {
   std::string id;
   CaseKind kind = CaseKind::null;
-  testing::BarCampaign campaign;
+  testing::Campaign campaign;
   std::vector<double> multiples;  ///< one per effect
 };
 
 /// Where a case lies: the analyser gets `captures` and `bench` alone.
 struct CaseFiles {
   std::filesystem::path folder, bench, truth;
+  std::filesystem::path bars;  ///< empty where the bench says all about them
+  std::string kind;
   std::vector<std::filesystem::path> captures;
 };
 

@@ -14,7 +14,7 @@ namespace kolsky::scoring {
 namespace {
 
 using Random = std::mt19937_64;
-using testing::BarCampaign;
+using testing::Campaign;
 using testing::CampaignWishes;
 using testing::HiddenEffect;
 using testing::NoiseColour;
@@ -46,6 +46,7 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
   CampaignWishes wishes;
   wishes.seed = random() % 1000000000u;
   wishes.measured_noise = plan.measured_noise;
+  wishes.split = plan.split;
   if (plan.quick) {
     wishes.shots = 4;
     wishes.gauges = 3;
@@ -54,8 +55,8 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
     wishes.noise_strain = 4e-6;
     return wishes;
   }
-  wishes.shots = std::uniform_int_distribution(4, 10)(random);
-  wishes.gauges = std::uniform_int_distribution(2, 6)(random);
+  wishes.shots = std::uniform_int_distribution(4, plan.split ? 6 : 10)(random);
+  wishes.gauges = std::uniform_int_distribution(2, plan.split ? 4 : 6)(random);
   wishes.noise_strain = uniform(random, 2e-6, 10e-6);
   wishes.colour = draw_colour(random, !plan.measured_noise.empty());
   wishes.tolerances =
@@ -69,8 +70,8 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
 }
 
 // The same bench with other shots, noise and tolerances would need other sizes; only noise is new.
-BarCampaign anew(const BarCampaign& bench, Random& random) {
-  BarCampaign campaign = bench;
+Campaign anew(const Campaign& bench, Random& random) {
+  Campaign campaign = bench;
   campaign.wishes.seed = random() % 1000000000u;
   return campaign;
 }
@@ -96,8 +97,7 @@ Planted sized(const Identifiable& found, double multiple, Random& random) {
   return {effect, size / found.smallest};
 }
 
-Case with(std::string id, CaseKind kind, BarCampaign campaign,
-          const std::vector<Planted>& planted) {
+Case with(std::string id, CaseKind kind, Campaign campaign, const std::vector<Planted>& planted) {
   Case made{std::move(id), kind, std::move(campaign), {}};
   for (const Planted& one : planted) {
     testing::hide(made.campaign, one.effect);
@@ -157,7 +157,7 @@ std::vector<Planted> withheld(const Identifiability& found, Random& random) {
 
 std::vector<Case> draw_cases(const Plan& plan, int bench) {
   Random random(plan.seed * 7919u + static_cast<std::uint64_t>(bench));
-  const BarCampaign campaign = testing::draw_bar_campaign(draw_wishes(random, plan));
+  const Campaign campaign = testing::draw_campaign(draw_wishes(random, plan));
   std::vector<Case> cases;
   const auto id = [&](CaseKind kind) {
     return fmt::format("b{:04}-{:02}-{}", bench, cases.size(), name_of(kind));

@@ -13,6 +13,7 @@ struct Plan {
   int doubles_per_bench = 1;
   int absorbed_per_bench = 1;
   int withheld_per_bench = 1;
+  bool split = false;  ///< split bars
   bool quick = false;  ///< short records on few gauges, white noise
   std::vector<double> measured_noise{};
 };

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/generators/unit_source.hpp"
 #include "tests/hidden_effects/source_freedom.hpp"
 #include "tests/hidden_effects/whitening.hpp"
 
@@ -13,9 +12,7 @@ namespace kolsky::scoring {
 
 namespace {
 
-using testing::BarCampaign;
-using testing::BarForward;
-using testing::BarWorld;
+using testing::Campaign;
 using testing::EffectKind;
 using testing::HiddenEffect;
 using testing::Readings;
@@ -27,7 +24,7 @@ constexpr double kBeyondReason = 10.0;
 // Below this exponent the generator's own error is no longer small.
 constexpr double kMostFractional = 0.25;
 
-Whitening whitening_of(const BarCampaign& campaign) {
+Whitening whitening_of(const Campaign& campaign) {
   const double step =
       campaign.bits > 0 ? std::ldexp(campaign.full_scale_strain, 1 - campaign.bits) : 0.0;
   const double rms = campaign.wishes.noise_strain;
@@ -82,59 +79,53 @@ struct Direction {
 
 class Prober {
  public:
-  explicit Prober(const BarCampaign& campaign)
-      : campaign_(campaign),
-        whiten_(whitening_of(campaign)),
-        base_(forward_.readings(campaign.world)) {}
+  explicit Prober(const Campaign& campaign)
+      : campaign_(campaign), whiten_(whitening_of(campaign)), base_(forward_.readings(campaign)) {}
 
   std::vector<Direction> nuisances() {
     std::vector<Direction> out;
-    const auto scale = [&](double testing::TrueMaterial::*member) {
-      BarWorld world = campaign_.world;
-      const double step = 1e-3 * (world.material.*member);
-      world.material.*member += step;
-      out.push_back({changed(world, 1e-3), 0.0});
-    };
-    scale(&testing::TrueMaterial::E1_Pa);
-    if (campaign_.world.material.elastic) {
-      const Measured E = *campaign_.bench.input.youngs_modulus_Pa;
-      out.back().prior_sd = std::max(E.sd / E.value, 1e-9);
-      return with_gauges(std::move(out));
+    if (campaign_.split) {
+      add_specimen(out);
     }
-    scale(&testing::TrueMaterial::E2_Pa);
-    scale(&testing::TrueMaterial::eta2_Pa_s);
-    return with_gauges(std::move(out));
+    const bool held = campaign_.split.has_value();
+    const auto filed = [&](const Measured& number) { return number.sd / number.value; };
+    const auto& bars = campaign_.filed_bars;
+    if (campaign_.world.material.elastic) {
+      add_modulus(out, &testing::TrueMaterial::E1_Pa, true,
+                  filed(*campaign_.bench.input.youngs_modulus_Pa));
+    } else {
+      add_modulus(out, &testing::TrueMaterial::E1_Pa, held, bars ? filed(bars->E1_Pa) : 0.0);
+      add_modulus(out, &testing::TrueMaterial::E2_Pa, held, bars ? filed(bars->E2_Pa) : 0.0);
+      add_modulus(out, &testing::TrueMaterial::eta2_Pa_s, held,
+                  bars ? filed(bars->eta2_Pa_s) : 0.0);
+    }
+    add_gauges(out);
+    return out;
   }
 
   Readings unit_change(const Candidate& candidate) {
-    BarWorld world = campaign_.world;
-    testing::plant(world, candidate.effect);
-    return changed(world, candidate.effect.strength - candidate.null);
+    Campaign changed_one = campaign_;
+    testing::hide(changed_one, candidate.effect);
+    return changed(changed_one, candidate.effect.strength - candidate.null);
   }
 
   // The same change at every gauge, at the cost of one.
   Readings unit_change_everywhere(const std::string& id, double strength) {
-    BarWorld world = campaign_.world;
+    Campaign changed_one = campaign_;
     for (const testing::TrueGauge& gauge : campaign_.world.gauges) {
-      testing::plant(world, {id, gauge.name, strength, {}});
+      testing::hide(changed_one, {id, gauge.name, strength, {}});
     }
-    return changed(world, strength);
+    return changed(changed_one, strength);
   }
 
   SourceFreedom freedom() {
     const testing::Timing& timing = campaign_.world.timing;
-    const testing::Responses responses =
-        forward_.sensor_responses(campaign_.world, campaign_.world.shots.front());
     std::vector<std::vector<double>> bells;
     const auto first = -static_cast<std::ptrdiff_t>(std::floor(timing.lead_s / timing.period_s()));
     const std::size_t length = timing.samples + static_cast<std::size_t>(-first);
     double largest = 0.0;
-    for (std::size_t g = 0; g < responses.strain.size(); ++g) {
-      std::vector<double> bell =
-          testing::superpose(responses.strain[g], responses.step_s, std::vector<double>{1.0}, 1,
-                             timing.period_s(), 0.0, length);
-      for (double& value : bell) {
-        value *= campaign_.world.gauges[g].gain;
+    for (const std::vector<double>& bell : forward_.bell_records(campaign_, length)) {
+      for (const double value : bell) {
         largest = std::max(largest, std::abs(value));
       }
       bells.push_back(whiten_(bell));
@@ -145,11 +136,39 @@ class Prober {
   }
 
  private:
-  Readings changed(const BarWorld& world, double step) {
-    return difference(forward_.readings(world), base_, step, whiten_);
+  Readings changed(const Campaign& campaign, double step) {
+    return difference(forward_.readings(campaign), base_, step, whiten_);
   }
 
-  std::vector<Direction> with_gauges(std::vector<Direction> out) {
+  // A modulus of the bars, free or within what is filed; held altogether where that is exact.
+  void add_modulus(std::vector<Direction>& out, double testing::TrueMaterial::*member, bool held,
+                   double relative_sd) {
+    if (held && relative_sd == 0.0) {
+      return;
+    }
+    Campaign campaign = campaign_;
+    campaign.world.material.*member *= 1.001;
+    out.push_back({changed(campaign, 1e-3), relative_sd});
+  }
+
+  void add_specimen(std::vector<Direction>& out) {
+    using S = testing::TrueSpecimen;
+    const Specimen& filed = *campaign_.bench.specimen;
+    for (const auto& [member, sd] :
+         {std::pair{&S::E1_Pa, 0.0},
+          {&S::E2_Pa, 0.0},
+          {&S::eta2_Pa_s, 0.0},
+          {&S::length_m, filed.length_m.sd / filed.length_m.value},
+          {&S::diameter_m, filed.diameter_m.sd / filed.diameter_m.value}}) {
+      if (sd > 0.0 || (member != &S::length_m && member != &S::diameter_m)) {
+        Campaign campaign = campaign_;
+        campaign.split->specimen.*member *= 1.001;
+        out.push_back({changed(campaign, 1e-3), sd});
+      }
+    }
+  }
+
+  void add_gauges(std::vector<Direction>& out) {
     for (std::size_t g = 0; g < campaign_.world.gauges.size(); ++g) {
       const Gauge& filed = campaign_.bench.gauges[g];
       const std::string& name = campaign_.world.gauges[g].name;
@@ -162,19 +181,22 @@ class Prober {
                        filed.strain_per_V->sd / filed.strain_per_V->value});
       }
     }
-    return out;
   }
 
-  const BarCampaign& campaign_;
-  BarForward forward_;
+  const Campaign& campaign_;
+  testing::CampaignForward forward_;
   Whitening whiten_;
   Readings base_;
 };
 
+bool is_there_or_not(const std::string& id) {
+  return id == "geometric-dispersion" || id == "end-reflection" || id == "specimen-inertia";
+}
+
 // Strengths at which differences are taken: small, but for what is there or not.
 HiddenEffect probe_of(const EffectKind& kind, const std::string& gauge) {
   HiddenEffect effect{kind.id, gauge, 0.0, {}};
-  if (kind.id == "geometric-dispersion" || kind.id == "end-reflection") {
+  if (is_there_or_not(kind.id)) {
     effect.strength = kind.typical;
   } else {
     effect.strength = kind.null + 0.2 * (kind.typical - kind.null);
@@ -182,9 +204,9 @@ HiddenEffect probe_of(const EffectKind& kind, const std::string& gauge) {
   return effect;
 }
 
-std::vector<Candidate> all_candidates(const BarCampaign& campaign) {
+std::vector<Candidate> all_candidates(const Campaign& campaign) {
   std::vector<Candidate> out;
-  for (const EffectKind& kind : testing::bar_effects()) {
+  for (const EffectKind& kind : campaign.split ? testing::shpb_effects() : testing::bar_effects()) {
     if (!kind.per_gauge) {
       out.push_back({probe_of(kind, ""), kind, kind.null});
       if (kind.id == "second-relaxation") {
@@ -219,7 +241,7 @@ bool same_family(const Candidate& a, const Candidate& b) {
 }  // namespace
 
 bool Identifiable::all_or_nothing() const {
-  return candidate.kind.id == "geometric-dispersion" || candidate.kind.id == "end-reflection";
+  return is_there_or_not(candidate.kind.id);
 }
 
 bool Identifiable::possible() const {
@@ -233,8 +255,7 @@ bool Identifiable::possible() const {
          smallest <= kBeyondReason * std::abs(candidate.kind.typical - candidate.null);
 }
 
-Identifiability::Identifiability(const BarCampaign& campaign)
-    : candidates_(all_candidates(campaign)) {
+Identifiability::Identifiability(const Campaign& campaign) : candidates_(all_candidates(campaign)) {
   Prober prober(campaign);
   std::vector<Direction> directions = prober.nuisances();
   const auto nuisances = static_cast<Eigen::Index>(directions.size());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/generators/bar_campaign.hpp"
+#include "tests/generators/campaign.hpp"
 
 namespace kolsky::scoring {
 
@@ -34,7 +34,7 @@ struct Identifiable {
 /// shots: whitened, with sources, offsets, moduli and known unknowns projected out.
 class Identifiability {
  public:
-  explicit Identifiability(const testing::BarCampaign& campaign);
+  explicit Identifiability(const testing::Campaign& campaign);
 
   [[nodiscard]] const std::vector<Identifiable>& effects() const { return effects_; }
   /// Strength at which a withheld effect still stands at `sigmas` after the best two of the

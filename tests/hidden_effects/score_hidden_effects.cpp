@@ -143,6 +143,7 @@ int main(int argc, char** argv) {
   app.add_option("--noise", settings.noise_table,
                  "a record whose quiet beginning is used as noise: TABLE.csv:COLUMN:ROWS");
   app.add_option("--bench", settings.only_bench, "only this one, as a failed case's id has it");
+  app.add_flag("--split", settings.plan.split, "split bars in place of bars");
   app.add_flag("--refit", settings.refit, "add what is named, fit again, judge the moduli");
   app.add_flag("--keep", settings.keep, "keep the folders of cases that went well");
   app.add_flag("--draw-only", settings.draw_only, "write the campaigns and stop");

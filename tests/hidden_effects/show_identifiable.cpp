@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   app.add_option("--gauges", wishes.gauges);
   app.add_option("--rate", rate_Hz);
   app.add_option("--samples", samples);
+  app.add_flag("--split", wishes.split, "a split bar");
   app.add_flag("--elastic", wishes.elastic);
   app.add_flag("--tolerances", tolerances);
   CLI11_PARSE(app, argc, argv);
@@ -27,7 +28,7 @@ int main(int argc, char** argv) {
   if (samples > 0) {
     wishes.samples = samples;
   }
-  const scoring::Identifiability found(testing::draw_bar_campaign(wishes));
+  const scoring::Identifiability found(testing::draw_campaign(wishes));
   fmt::print("{:<28}{:>12}{:>12}{:>9}  {}\n", "effect", "6 sigma", "smallest", "left", "closest");
   for (const scoring::Identifiable& effect : found.effects()) {
     fmt::print("{:<28}{:>12.3g}{:>12.3g}{:>9.3f}  {}\n", effect.candidate.effect.name(),

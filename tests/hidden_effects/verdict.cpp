@@ -112,9 +112,16 @@ Verdict judge(const Case& drawn, const Answer& answer) {
 }
 
 void judge_refit(Verdict& verdict, const Case& drawn, const Answer& fit) {
-  const testing::TrueMaterial& material = drawn.campaign.world.material;
-  const std::vector<std::pair<std::string, double>> moduli{
-      {"E1_Pa", material.E1_Pa}, {"E2_Pa", material.E2_Pa}, {"eta2_Pa_s", material.eta2_Pa_s}};
+  const testing::Campaign& campaign = drawn.campaign;
+  std::vector<std::pair<std::string, double>> moduli{
+      {"E1_Pa", campaign.world.material.E1_Pa},
+      {"E2_Pa", campaign.world.material.E2_Pa},
+      {"eta2_Pa_s", campaign.world.material.eta2_Pa_s}};
+  if (campaign.split) {
+    moduli = {{"E1_Pa", campaign.split->specimen.E1_Pa},
+              {"E2_Pa", campaign.split->specimen.E2_Pa},
+              {"eta2_Pa_s", campaign.split->specimen.eta2_Pa_s}};
+  }
   if (fit.code != 0 || !fit.json.is_object()) {
     return;
   }
@@ -124,7 +131,8 @@ void judge_refit(Verdict& verdict, const Case& drawn, const Answer& fit) {
       const std::string called = parameters.is_array() ? text_at(parameter, "name") : key;
       const auto value = number_at(parameter, "value");
       const auto sd = number_at(parameter, "sd");
-      if (called.ends_with(name) && value && sd && *sd > 0.0) {
+      const bool of_bars = campaign.split && called.find("bar") != std::string::npos;
+      if (called.ends_with(name) && !of_bars && value && sd && *sd > 0.0) {
         verdict.moduli_in_sd.push_back((*value - truth) / *sd);
         break;
       }

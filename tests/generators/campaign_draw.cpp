@@ -1,4 +1,4 @@
-#include "tests/generators/bar_draw.hpp"
+#include "tests/generators/campaign_draw.hpp"
 
 #include <algorithm>
 #include <array>
@@ -90,7 +90,8 @@ double glassy_speed(const TrueMaterial& material) {
   return std::sqrt(material.E1_Pa / material.density_kg_m3);
 }
 
-void draw_shots(Random& random, BarWorld& world, int count, bool thermostat) {
+void draw_shots(Random& random, BarWorld& world, int count, bool thermostat,
+                double least_length_s = 50e-6) {
   const Timing& timing = world.timing;
   const double travel_s = world.gauges.front().position_m / glassy_speed(world.material);
   const double start_s =
@@ -98,7 +99,7 @@ void draw_shots(Random& random, BarWorld& world, int count, bool thermostat) {
   const auto knots = static_cast<std::size_t>(timing.window_s() / timing.knot_s()) + 1;
   for (int i = 0; i < count; ++i) {
     TrueShot shot;
-    shot.source = draw_pulse(random, start_s, timing.knot_s(), knots);
+    shot.source = draw_pulse(random, start_s, timing.knot_s(), knots, least_length_s);
     shot.peak_strain = uniform(random, 1e-3, 3e-3);
     shot.striker_speed_m_per_s = filed(2.0 * shot.peak_strain * glassy_speed(world.material), 0.01);
     shot.temperature_K = world.reference_K + normal(random, thermostat ? 0.1 : 4.0);
@@ -154,11 +155,155 @@ void loosen(Random& random, BarWorld& world, Bench& bench) {
   }
 }
 
+// Core or cover, more or less; something stiffer between metal bars.
+TrueSpecimen draw_specimen(Random& random, double bar_radius_m, bool stiff) {
+  TrueSpecimen specimen;
+  if (uniform(random, 0.0, 1.0) < 0.4) {
+    specimen.density_kg_m3 = 960.0;
+    specimen.poisson_ratio = 0.319;
+    specimen.E1_Pa = 987e6;
+    specimen.E2_Pa = 452e6;
+    specimen.eta2_Pa_s = 6020.0;
+  }
+  if (stiff) {
+    // Between metal bars: a glassy polymer.
+    specimen.density_kg_m3 = 1190.0;
+    specimen.poisson_ratio = 0.37;
+    specimen.E1_Pa = 4.5e9;
+    specimen.E2_Pa = 8e9;
+    specimen.eta2_Pa_s = 2e5;
+  }
+  specimen.E1_Pa *= uniform(random, 0.8, 1.25);
+  specimen.E2_Pa *= uniform(random, 0.8, 1.25);
+  specimen.eta2_Pa_s *= uniform(random, 0.8, 1.25);
+  specimen.length_m = filed(uniform(random, 3e-3, 6e-3), 1e-4);
+  specimen.diameter_m = filed(uniform(random, 0.55, 0.85) * 2.0 * bar_radius_m, 1e-4);
+  return specimen;
+}
+
+std::vector<TrueGauge> draw_split_gauges(Random& random, int count, double in_m, double out_m) {
+  std::vector<TrueGauge> gauges;
+  for (int g = 0; g < count; ++g) {
+    TrueGauge gauge;
+    gauge.name = "g" + std::to_string(g + 1);
+    gauge.bar = g % 2 == 0 ? "input" : "output";
+    const double share = uniform(random, 0.0, 1.0);
+    // A second gauge on a bar stands apart from the first.
+    const double low = g < 2 ? 0.45 : 0.15;
+    gauge.position_m = g % 2 == 0 ? filed(in_m * (low + 0.2 * share), 1e-3)
+                                  : filed(out_m * (0.6 - low + 0.15 * share), 1e-3);
+    gauges.push_back(gauge);
+  }
+  return gauges;
+}
+
+Material filed_material(const TrueMaterial& material) {
+  Material filed_as;
+  filed_as.density_kg_m3 = {material.density_kg_m3, 0.0};
+  filed_as.poisson_ratio = {material.poisson_ratio, 0.0};
+  filed_as.E1_Pa = {material.E1_Pa, 0.0};
+  filed_as.E2_Pa = {material.E2_Pa, 0.0};
+  filed_as.eta2_Pa_s = {material.eta2_Pa_s, 0.0};
+  return filed_as;
+}
+
+void loosen_bars(Random& random, Campaign& campaign) {
+  const auto loosen_one = [&](Measured& number, double& truth, double share) {
+    number.sd = share * number.value;
+    truth += normal(random, number.sd);
+  };
+  TrueMaterial& material = campaign.world.material;
+  if (campaign.filed_bars) {
+    loosen_one(campaign.filed_bars->E1_Pa, material.E1_Pa, 1e-4);
+    loosen_one(campaign.filed_bars->E2_Pa, material.E2_Pa, 2e-3);
+    loosen_one(campaign.filed_bars->eta2_Pa_s, material.eta2_Pa_s, 2e-3);
+  }
+  TrueSpecimen& specimen = campaign.split->specimen;
+  loosen_one(campaign.bench.specimen->length_m, specimen.length_m, 0.002);
+  loosen_one(campaign.bench.specimen->diameter_m, specimen.diameter_m, 0.001);
+}
+
+void file_split(Campaign& campaign) {
+  const SplitParts& split = *campaign.split;
+  campaign.bench = file_bench(campaign.world);
+  Bench& bench = campaign.bench;
+  bench.kind = BenchKind::shpb;
+  bench.output = bench.input;
+  bench.output->length_m = {split.output_length_m, 0.0};
+  for (std::size_t g = 0; g < bench.gauges.size(); ++g) {
+    bench.gauges[g].bar = campaign.world.gauges[g].bar;
+  }
+  bench.specimen = Specimen{{split.specimen.length_m, 0.0},
+                            {split.specimen.diameter_m, 0.0},
+                            Measured{split.specimen.density_kg_m3, 0.0},
+                            Measured{split.specimen.poisson_ratio, 0.0}};
+  if (!campaign.world.material.elastic) {
+    campaign.filed_bars = filed_material(campaign.world.material);
+  }
+}
+
+// Stress at the impacted end for a peak of about that strain, less where the specimen would be
+// crushed: rigid bars would shorten it by twice the pulse's displacement.
+void scale_sources(Random& random, BarWorld& world, double specimen_length_m) {
+  constexpr double kMostStrain = 0.35;
+  for (TrueShot& shot : world.shots) {
+    const double most = *std::ranges::max_element(shot.source);
+    double lasting_s = 0.0;
+    for (const double bell : shot.source) {
+      lasting_s += std::max(bell, 0.0) / most * world.timing.knot_s();
+    }
+    const double crushing =
+        kMostStrain * specimen_length_m / (2.0 * glassy_speed(world.material) * lasting_s);
+    shot.peak_strain = std::min(shot.peak_strain, crushing * uniform(random, 0.6, 1.0));
+    for (double& bell : shot.source) {
+      bell *= shot.peak_strain * world.material.E1_Pa / most;
+    }
+  }
+}
+
+void draw_split(Random& random, Campaign& campaign) {
+  const CampaignWishes& wishes = campaign.wishes;
+  BarWorld& world = campaign.world;
+  // The paper's bars half of the time.
+  if (wishes.elastic || uniform(random, 0.0, 1.0) < 0.5) {
+    world.material = draw_material(random, wishes.elastic);
+  }
+  world.timing = draw_timing(random, wishes);
+  // Split bars are recorded for a few milliseconds at most.
+  world.timing.samples = std::min(
+      world.timing.samples, static_cast<std::size_t>(std::lround(2.5e-3 * world.timing.rate_Hz)));
+  world.timing.pretrigger = std::min(world.timing.pretrigger, world.timing.samples / 5);
+  if (!wishes.samples) {
+    const double least =
+        1.3e-3 * world.timing.rate_Hz + static_cast<double>(world.timing.pretrigger);
+    world.timing.samples = std::max(world.timing.samples, static_cast<std::size_t>(least));
+  }
+  world.radius_m = wishes.radius_m.value_or(filed(uniform(random, 6e-3, 10e-3), 0.5e-3));
+  world.length_m = filed(uniform(random, 0.6, 1.5), 1e-2);
+  SplitParts split;
+  split.output_length_m = uniform(random, 0.0, 1.0) < 0.6
+                              ? world.length_m
+                              : filed(world.length_m * uniform(random, 0.7, 1.0), 1e-2);
+  split.specimen = draw_specimen(random, world.radius_m, world.material.elastic);
+  world.gauges = draw_split_gauges(random, wishes.gauges, world.length_m, split.output_length_m);
+  campaign.split = split;
+  draw_shots(random, world, wishes.shots, uniform(random, 0.0, 1.0) < 0.5, 110e-6);
+  scale_sources(random, world, split.specimen.length_m);
+  file_split(campaign);
+  if (wishes.tolerances == Tolerances::filed) {
+    loosen(random, world, campaign.bench);
+    // Both bars are of one stock: one density is filed, and exactly.
+    world.material.density_kg_m3 = campaign.bench.input.density_kg_m3;
+    campaign.bench.input.density_kg_m3.sd = 0.0;
+    loosen_bars(random, campaign);
+  }
+}
+
 }  // namespace
 
 std::vector<double> draw_pulse(std::mt19937_64& random, double start_s, double knot_s,
-                               std::size_t knots) {
-  const double length_s = uniform(random, 50e-6, 220e-6);
+                               std::size_t knots, double least_length_s) {
+  const double length_s = uniform(random, least_length_s, 220e-6);
   const double rise_s = std::min(uniform(random, 15e-6, 45e-6), 0.5 * length_s);
   const double fall_s = std::min(uniform(random, 15e-6, 80e-6), length_s - rise_s);
   const double ripple = uniform(random, 0.0, 0.12);
@@ -184,25 +329,40 @@ std::vector<double> draw_pulse(std::mt19937_64& random, double start_s, double k
   return c;
 }
 
-BarCampaign draw_bar_campaign(const CampaignWishes& wishes) {
+ShpbWorld split_world(const Campaign& campaign) {
+  return {campaign.world, campaign.split->output_length_m, campaign.split->specimen};
+}
+
+Campaign draw_campaign(const CampaignWishes& wishes) {
   Random random(wishes.seed);
-  BarCampaign campaign;
+  Campaign campaign;
   campaign.wishes = wishes;
   BarWorld& world = campaign.world;
+  campaign.bits = wishes.bits.value_or(one_of(random, std::array{12, 14, 16, 16}));
+  campaign.full_scale_strain = uniform(random, 4e-3, 6e-3);
+  const bool tension = uniform(random, 0.0, 1.0) < 0.1;
+  if (wishes.split) {
+    draw_split(random, campaign);
+    campaign.bench.positive = tension ? PositiveSense::tension : PositiveSense::compression;
+    return campaign;
+  }
   world.material = draw_material(random, wishes.elastic);
   world.timing = draw_timing(random, wishes);
   world.radius_m = wishes.radius_m.value_or(filed(uniform(random, 6e-3, 12e-3), 0.5e-3));
   world.length_m = filed(uniform(random, 0.7, 3.0), 1e-3);
-  const double longest_m = std::min(world.length_m - 0.1, 1.6);
+  // Every gauge sees most of the pulse before the record ends.
+  const double after_s =
+      static_cast<double>(world.timing.samples - world.timing.pretrigger) * world.timing.period_s();
+  const double longest_m = std::min(
+      {world.length_m - 0.1, 1.6, 0.2 + glassy_speed(world.material) * (after_s - 250e-6)});
   world.gauges = draw_gauges(random, wishes.gauges, longest_m, world.radius_m);
   const bool thermostat = uniform(random, 0.0, 1.0) < 0.5;
   draw_shots(random, world, wishes.shots, thermostat);
   campaign.bench = file_bench(world);
+  campaign.bench.positive = tension ? PositiveSense::tension : PositiveSense::compression;
   if (wishes.tolerances == Tolerances::filed) {
     loosen(random, world, campaign.bench);
   }
-  campaign.bits = wishes.bits.value_or(one_of(random, std::array{12, 14, 16, 16}));
-  campaign.full_scale_strain = uniform(random, 4e-3, 6e-3);
   return campaign;
 }
 

@@ -4,8 +4,10 @@
 #include <random>
 
 #include "processing/base/bench.hpp"
+#include "processing/base/material.hpp"
 #include "tests/generators/bar_world.hpp"
 #include "tests/generators/noise.hpp"
+#include "tests/generators/shpb_world.hpp"
 
 namespace kolsky::testing {
 
@@ -24,13 +26,22 @@ struct CampaignWishes {
   std::optional<std::size_t> samples;
   std::optional<double> rate_Hz;
   std::optional<double> radius_m;
+  bool split = false;  ///< a split Hopkinson bar in place of a bar
   bool elastic = false;
 };
 
+/// The other half of a split bar.
+struct SplitParts {
+  double output_length_m = 0.7;
+  TrueSpecimen specimen;
+};
+
 /// A campaign ready to be written: what really is, what is filed, and what the digitiser adds.
-struct BarCampaign {
+struct Campaign {
   BarWorld world;
-  Bench bench;  ///< as filed
+  std::optional<SplitParts> split;
+  Bench bench;                         ///< as filed
+  std::optional<Material> filed_bars;  ///< viscoelastic split bars: what is known of them
   CampaignWishes wishes;
   int bits = 14;
   double full_scale_strain = 5e-3;
@@ -39,11 +50,14 @@ struct BarCampaign {
 
 /// Draws bar, gauges, pulses and digitiser without any effect: the base model holds exactly, but
 /// for filed tolerances, within which the true values are drawn.
-[[nodiscard]] BarCampaign draw_bar_campaign(const CampaignWishes& wishes);
+[[nodiscard]] Campaign draw_campaign(const CampaignWishes& wishes);
+
+/// The whole split bar. @pre campaign.split
+[[nodiscard]] ShpbWorld split_world(const Campaign& campaign);
 
 /// Random coefficients of a pulse's bells: shapes, lengths and edges as bars see them.
 /// @param start_s  from the first bell's beginning
 [[nodiscard]] std::vector<double> draw_pulse(std::mt19937_64& random, double start_s, double knot_s,
-                                             std::size_t knots);
+                                             std::size_t knots, double least_length_s = 50e-6);
 
 }  // namespace kolsky::testing
