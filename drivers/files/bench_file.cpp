@@ -78,7 +78,30 @@ Bridge read_bridge(const TomlTable& table) {
   return bridge;
 }
 
-void refuse_bridge_keys_alone(const TomlTable& table) {
+/// What is filed beside samples that are strain already takes no part in converting them; its
+/// deviations say how well they are known. A deviation alone is relative: of a factor 1.
+double read_gain_sd(const TomlTable& table) {
+  double variance = 0.0;
+  for (const std::string key : {"gauge_factor", "excitation_V", "gain"}) {
+    Measured factor{1.0, 0.0};
+    if (table.has(key)) {
+      factor = table.measured(key);
+    } else if (table.has(key + "_sd")) {
+      factor.sd = table.number(key + "_sd");
+    }
+    if (factor.value == 0.0 || factor.sd < 0.0) {
+      throw table.error(key, "cannot be a factor with that deviation",
+                        "give a number above 0 and its standard deviation");
+    }
+    variance += factor.sd * factor.sd / (factor.value * factor.value);
+  }
+  return std::sqrt(variance);
+}
+
+void refuse_bridge_keys_alone(const TomlTable& table, bool strain) {
+  if (strain) {
+    return;
+  }
   for (const char* const key :
        {"gauge_factor", "excitation_V", "gain", "gauge_resistance_ohm", "lead_resistance_ohm",
         "lead_wires", "gauges_in_series", "shunt_resistance_ohm", "shunt_reading_V"}) {
@@ -104,7 +127,10 @@ Gauge read_gauge(const TomlTable& table) {
   if (table.has("bridge")) {
     gauge.bridge = read_bridge(table);
   } else {
-    refuse_bridge_keys_alone(table);
+    refuse_bridge_keys_alone(table, gauge.unit == "strain");
+    if (gauge.unit == "strain") {
+      gauge.gain_sd = read_gain_sd(table);
+    }
   }
   return gauge;
 }

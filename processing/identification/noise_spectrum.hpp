@@ -6,7 +6,7 @@
 namespace kolsky {
 
 /// Power of a gauge's noise over frequency, from quiet stretches of its records: an autoregressive
-/// model whose order is chosen by Akaike's criterion, because a few hundred samples are too few for
+/// model whose order is chosen by Schwarz's criterion (Akaike's takes white noise for coloured too often), because a few hundred samples are too few for
 /// an averaged periodogram at the frequencies where the pulses live. White noise comes out with
 /// order 0.
 class NoiseSpectrum {
