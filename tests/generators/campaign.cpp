@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "processing/base/error.hpp"
 #include "tests/generators/digitise.hpp"
 
 namespace kolsky::testing {
@@ -77,23 +76,6 @@ std::vector<std::vector<double>> CampaignForward::bell_records(const Campaign& c
     }
   }
   return records;
-}
-
-NoiseColour colour_named(const std::string& name) {
-  if (name == "white") {
-    return NoiseColour::white;
-  }
-  if (name == "coloured") {
-    return NoiseColour::coloured;
-  }
-  if (name == "pink") {
-    return NoiseColour::pink;
-  }
-  if (name == "measured") {
-    return NoiseColour::measured;
-  }
-  throw InputError("--noise-colour", "\"" + name + "\" is no colour of noise",
-                   "write white, coloured, pink or measured");
 }
 
 }  // namespace kolsky::testing

@@ -28,6 +28,4 @@ class CampaignForward {
 /// The same from readings that are there already.
 [[nodiscard]] std::vector<Shot> shots_of(const Campaign& campaign, const Readings& readings);
 
-[[nodiscard]] NoiseColour colour_named(const std::string& name);
-
 }  // namespace kolsky::testing

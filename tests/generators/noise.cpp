@@ -3,10 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+
+#include "processing/base/error.hpp"
 
 namespace kolsky::testing {
 
 namespace {
+
+constexpr std::array<std::pair<const char*, NoiseColour>, 4> kNames{
+    {{"white", NoiseColour::white},
+     {"coloured", NoiseColour::coloured},
+     {"pink", NoiseColour::pink},
+     {"measured", NoiseColour::measured}}};
 
 // First-order noise of unit variance.
 std::vector<double> slow(double time_s, double period_s, std::size_t samples,
@@ -57,6 +66,25 @@ std::vector<double> stretch(const std::vector<double>& record, std::size_t sampl
 }
 
 }  // namespace
+
+std::string name_of(NoiseColour colour) {
+  for (const auto& [name, other] : kNames) {
+    if (other == colour) {
+      return name;
+    }
+  }
+  return "";
+}
+
+NoiseColour colour_named(const std::string& name) {
+  for (const auto& [known, colour] : kNames) {
+    if (name == known) {
+      return colour;
+    }
+  }
+  throw InputError("--noise-colour", "\"" + name + "\" is no colour of noise",
+                   "write white, coloured, pink or measured");
+}
 
 std::vector<double> noise(NoiseColour colour, double rms, double period_s, std::size_t samples,
                           std::mt19937_64& random, const std::vector<double>& measured) {

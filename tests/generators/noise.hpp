@@ -13,6 +13,10 @@ enum class NoiseColour {
   measured,  ///< cut from the pre-trigger of somebody's records
 };
 
+[[nodiscard]] std::string name_of(NoiseColour colour);
+/// @throws InputError
+[[nodiscard]] NoiseColour colour_named(const std::string& name);
+
 /// One record of noise of that rms.
 [[nodiscard]] std::vector<double> noise(NoiseColour colour, double rms, double period_s,
                                         std::size_t samples, std::mt19937_64& random,

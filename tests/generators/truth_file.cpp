@@ -62,6 +62,7 @@ nlohmann::json truth_of(const Campaign& campaign) {
                       {"seed", campaign.wishes.seed},
                       {"effects", list(campaign.effects, of_effect)},
                       {"noise_strain", campaign.wishes.noise_strain},
+                      {"noise_colour", name_of(campaign.wishes.colour)},
                       {"bits", campaign.bits},
                       {"full_scale_strain", campaign.full_scale_strain},
                       {"material", of_material(world.material)},

@@ -13,6 +13,8 @@ std::string name_of(CaseKind kind) {
       return "null";
     case CaseKind::single:
       return "single";
+    case CaseKind::tied:
+      return "tied";
     case CaseKind::two:
       return "double";
     case CaseKind::absorbed:

@@ -9,7 +9,7 @@
 
 namespace kolsky::scoring {
 
-enum class CaseKind { null, single, two, absorbed, withheld };
+enum class CaseKind { null, single, tied, two, absorbed, withheld };
 
 [[nodiscard]] std::string name_of(CaseKind kind);
 

@@ -63,7 +63,9 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
       uniform(random, 0.0, 1.0) < 0.4 ? testing::Tolerances::filed : testing::Tolerances::none;
   const double u = uniform(random, 0.0, 1.0);
   if (u < 0.1) {
+    // Where steps are coarse the noise is as others measured it; without any nothing would dither.
     wishes.bits = 8;
+    wishes.noise_strain = uniform(random, 10e-6, 16e-6);
   }
   wishes.elastic = u > 0.9;
   return wishes;
@@ -123,6 +125,21 @@ std::vector<const Identifiable*> drawn_families(const std::vector<Identifiable>&
   return out;
 }
 
+// Clearly there, and nobody could say which of several it is.
+std::vector<Planted> tied(const std::vector<Identifiable>& effects, Random& random) {
+  std::vector<Planted> out;
+  for (const Identifiable& effect : effects) {
+    if (!effect.candidate.kind.withheld && effect.seen_but_tied()) {
+      const double multiple = kMultiples[1 + random() % 2];
+      Identifiable to_be_seen = effect;
+      to_be_seen.smallest = effect.detect;
+      out.push_back(sized(to_be_seen, multiple, random));
+    }
+  }
+  std::ranges::shuffle(out, random);
+  return out;
+}
+
 // Unseen even at several times what laboratories meet.
 std::vector<Planted> absorbed(const std::vector<Identifiable>& effects, Random& random) {
   std::vector<Planted> out;
@@ -165,8 +182,8 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
   for (int i = 0; i < plan.nulls_per_bench; ++i) {
     cases.push_back(with(id(CaseKind::null), CaseKind::null, anew(campaign, random), {}));
   }
-  if (plan.singles_per_bench + plan.doubles_per_bench + plan.absorbed_per_bench +
-          plan.withheld_per_bench ==
+  if (plan.singles_per_bench + plan.tied_per_bench + plan.doubles_per_bench +
+          plan.absorbed_per_bench + plan.withheld_per_bench ==
       0) {
     return cases;
   }
@@ -183,6 +200,11 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
     const double multiple = kMultiples[1 + random() % 2];
     cases.push_back(with(id(CaseKind::two), CaseKind::two, anew(campaign, random),
                          {sized(*pair[0], multiple, random), sized(*pair[1], multiple, random)}));
+  }
+  const auto unclear = tied(found.effects(), random);
+  for (std::size_t i = 0; i < unclear.size() && i < static_cast<std::size_t>(plan.tied_per_bench);
+       ++i) {
+    cases.push_back(with(id(CaseKind::tied), CaseKind::tied, anew(campaign, random), {unclear[i]}));
   }
   const auto unseen = absorbed(found.effects(), random);
   for (std::size_t i = 0;

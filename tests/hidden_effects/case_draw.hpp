@@ -10,6 +10,7 @@ struct Plan {
   int benches = 4;
   int nulls_per_bench = 1;
   int singles_per_bench = 6;
+  int tied_per_bench = 1;
   int doubles_per_bench = 1;
   int absorbed_per_bench = 1;
   int withheld_per_bench = 1;

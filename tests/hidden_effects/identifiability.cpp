@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tests/hidden_effects/source_freedom.hpp"
@@ -17,6 +18,7 @@ using testing::EffectKind;
 using testing::HiddenEffect;
 using testing::Readings;
 
+constexpr double kModulusStep = 5e-4;
 constexpr double kDetect = 6.0;
 constexpr double kAgainstRival = 5.0;
 // A size beyond this many typical ones is nothing a laboratory has.
@@ -72,6 +74,21 @@ Readings of_gauge(const Readings& all, std::size_t gauge) {
   return out;
 }
 
+bool is_there_or_not(const std::string& id) {
+  return id == "geometric-dispersion" || id == "end-reflection" || id == "specimen-inertia";
+}
+
+// The mean over a gauge's length misses the middle by its square.
+double power_of(const EffectKind& kind) {
+  return kind.id == "gauge-length" ? 2.0 : 1.0;
+}
+
+// A strength from what a linear effect with the same change at the probe's strength would need.
+double bent(const Candidate& candidate, double linear) {
+  const double probe = std::abs(candidate.effect.strength - candidate.null);
+  return probe * std::pow(linear / probe, 1.0 / power_of(candidate.kind));
+}
+
 struct Direction {
   Readings readings;
   double prior_sd = 0.0;  // 0: free
@@ -104,18 +121,28 @@ class Prober {
   }
 
   Readings unit_change(const Candidate& candidate) {
-    Campaign changed_one = campaign_;
-    testing::hide(changed_one, candidate.effect);
-    return changed(changed_one, candidate.effect.strength - candidate.null);
+    const double step = candidate.effect.strength - candidate.null;
+    const auto at = [&](double share) {
+      Campaign changed_one = campaign_;
+      HiddenEffect effect = candidate.effect;
+      effect.strength = candidate.null + share * step;
+      testing::hide(changed_one, effect);
+      return changed_one;
+    };
+    return unit_change(at, step, differences_of(candidate.kind));
   }
 
   // The same change at every gauge, at the cost of one.
-  Readings unit_change_everywhere(const std::string& id, double strength) {
-    Campaign changed_one = campaign_;
-    for (const testing::TrueGauge& gauge : campaign_.world.gauges) {
-      testing::hide(changed_one, {id, gauge.name, strength, {}});
-    }
-    return changed(changed_one, strength);
+  Readings unit_change_everywhere(const Candidate& candidate) {
+    const double step = candidate.effect.strength;
+    const auto at = [&](double share) {
+      Campaign changed_one = campaign_;
+      for (const testing::TrueGauge& gauge : campaign_.world.gauges) {
+        testing::hide(changed_one, {candidate.effect.id, gauge.name, share * step, {}});
+      }
+      return changed_one;
+    };
+    return unit_change(at, step, differences_of(candidate.kind));
   }
 
   SourceFreedom freedom() {
@@ -136,8 +163,34 @@ class Prober {
   }
 
  private:
-  Readings changed(const Campaign& campaign, double step) {
-    return difference(forward_.readings(campaign), base_, step, whiten_);
+  // Ties are exact to first order: differences must be better than that.
+  enum class Differences { central, one_sided, whole };
+
+  static Differences differences_of(const EffectKind& kind) {
+    if (is_there_or_not(kind.id) || kind.id == "gauge-length") {
+      return Differences::whole;
+    }
+    return kind.one_sided ? Differences::one_sided : Differences::central;
+  }
+
+  Readings unit_change(const std::function<Campaign(double)>& at, double step,
+                       Differences differences) {
+    if (differences == Differences::central) {
+      return difference(forward_.readings(at(1.0)), forward_.readings(at(-1.0)), 2.0 * step,
+                        whiten_);
+    }
+    Readings out = difference(forward_.readings(at(1.0)), base_, step, whiten_);
+    if (differences == Differences::one_sided) {
+      const Readings half = difference(forward_.readings(at(0.5)), base_, 0.5 * step, whiten_);
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        for (std::size_t g = 0; g < out[i].size(); ++g) {
+          for (std::size_t n = 0; n < out[i][g].size(); ++n) {
+            out[i][g][n] = 2.0 * half[i][g][n] - out[i][g][n];
+          }
+        }
+      }
+    }
+    return out;
   }
 
   // A modulus of the bars, free or within what is filed; held altogether where that is exact.
@@ -146,9 +199,12 @@ class Prober {
     if (held && relative_sd == 0.0) {
       return;
     }
-    Campaign campaign = campaign_;
-    campaign.world.material.*member *= 1.001;
-    out.push_back({changed(campaign, 1e-3), relative_sd});
+    const auto at = [&](double share) {
+      Campaign campaign = campaign_;
+      campaign.world.material.*member *= 1.0 + share * kModulusStep;
+      return campaign;
+    };
+    out.push_back({unit_change(at, kModulusStep, Differences::central), relative_sd});
   }
 
   void add_specimen(std::vector<Direction>& out) {
@@ -161,9 +217,12 @@ class Prober {
           {&S::length_m, filed.length_m.sd / filed.length_m.value},
           {&S::diameter_m, filed.diameter_m.sd / filed.diameter_m.value}}) {
       if (sd > 0.0 || (member != &S::length_m && member != &S::diameter_m)) {
-        Campaign campaign = campaign_;
-        campaign.split->specimen.*member *= 1.001;
-        out.push_back({changed(campaign, 1e-3), sd});
+        const auto at = [&](double share) {
+          Campaign campaign = campaign_;
+          campaign.split->specimen.*member *= 1.0 + share * kModulusStep;
+          return campaign;
+        };
+        out.push_back({unit_change(at, kModulusStep, Differences::central), sd});
       }
     }
   }
@@ -188,10 +247,6 @@ class Prober {
   Whitening whiten_;
   Readings base_;
 };
-
-bool is_there_or_not(const std::string& id) {
-  return id == "geometric-dispersion" || id == "end-reflection" || id == "specimen-inertia";
-}
 
 // Strengths at which differences are taken: small, but for what is there or not.
 HiddenEffect probe_of(const EffectKind& kind, const std::string& gauge) {
@@ -244,6 +299,12 @@ bool Identifiable::all_or_nothing() const {
   return is_there_or_not(candidate.kind.id);
 }
 
+bool Identifiable::seen_but_tied() const {
+  const double typical = std::abs(candidate.kind.typical - candidate.null);
+  return !all_or_nothing() && !possible() && std::isfinite(detect) && detect < 2.0 * typical &&
+         4.0 * detect < most();
+}
+
 bool Identifiable::possible() const {
   if (all_or_nothing()) {
     return smallest > 0.0 && smallest <= candidate.kind.typical;
@@ -269,7 +330,7 @@ Identifiability::Identifiability(const Campaign& campaign) : candidates_(all_can
     }
     if (candidate.effect.id != everywhere_id) {
       everywhere_id = candidate.effect.id;
-      everywhere = prober.unit_change_everywhere(everywhere_id, candidate.effect.strength);
+      everywhere = prober.unit_change_everywhere(candidate);
       gauge = 0;
     }
     directions.push_back({of_gauge(everywhere, gauge++), 0.0});
@@ -314,8 +375,10 @@ void Identifiability::judge() {
         found.closest = candidates_[j].effect.name();
       }
     }
-    found.detect = kDetect / std::sqrt(own);
-    found.smallest = std::max(found.detect, kAgainstRival / std::sqrt(std::max(least, 0.0)));
+    const double detect = kDetect / std::sqrt(own);
+    const double against_rival = kAgainstRival / std::sqrt(std::max(least, 0.0));
+    found.detect = bent(found.candidate, detect);
+    found.smallest = bent(found.candidate, std::max(detect, against_rival));
     found.rival_share = own > 0.0 ? std::sqrt(std::max(least, 0.0) / own) : 0.0;
     effects_.push_back(found);
   }
@@ -347,17 +410,6 @@ double Identifiability::withheld_size(const Identifiable& effect, double sigmas)
     }
   }
   return sigmas / std::sqrt(std::max(least, 0.0));
-}
-
-double Identifiability::signal_to_noise(const std::string& name, double strength) const {
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (candidates_[i].effect.name() == name) {
-      const auto row = static_cast<Eigen::Index>(i);
-      return std::abs(strength - candidates_[i].null) *
-             std::sqrt(std::max(products_(row, row), 0.0));
-    }
-  }
-  return 0.0;
 }
 
 }  // namespace kolsky::scoring

@@ -27,6 +27,8 @@ struct Identifiable {
   /// Whether the effect is there or not, at one strength, rather than more or less.
   [[nodiscard]] bool all_or_nothing() const;
   [[nodiscard]] bool possible() const;
+  /// Rivals cannot be told from it at any reasonable size.
+  [[nodiscard]] bool seen_but_tied() const;
   [[nodiscard]] double most() const;  ///< strength from null that the generator can still make
 };
 
@@ -40,8 +42,6 @@ class Identifiability {
   /// Strength at which a withheld effect still stands at `sigmas` after the best two of the
   /// library.
   [[nodiscard]] double withheld_size(const Identifiable& effect, double sigmas) const;
-  /// Signal to noise of that strength after all nuisances.
-  [[nodiscard]] double signal_to_noise(const std::string& name, double strength) const;
 
  private:
   struct Bench;

@@ -44,6 +44,8 @@ bool went_well(const Verdict& verdict) {
       return verdict.answered == "unknown";
     case CaseKind::absorbed:
       return verdict.named.empty() && verdict.answered != "failed";
+    case CaseKind::tied:
+      return verdict.found == 1;
     case CaseKind::single:
     case CaseKind::two:
       return verdict.exact;
@@ -79,7 +81,7 @@ void work(const Settings& settings, std::atomic<int>& next, Scores& scores) {
     Plan plan = settings.plan;
     if (bench >= settings.plan.benches) {
       plan.nulls_per_bench = 1;
-      plan.singles_per_bench = plan.doubles_per_bench = 0;
+      plan.singles_per_bench = plan.tied_per_bench = plan.doubles_per_bench = 0;
       plan.absorbed_per_bench = plan.withheld_per_bench = 0;
     }
     for (const Case& drawn : draw_cases(plan, bench)) {
@@ -133,6 +135,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", settings.plan.seed);
   app.add_option("--benches", settings.plan.benches);
   app.add_option("--singles", settings.plan.singles_per_bench, "per bench");
+  app.add_option("--tied", settings.plan.tied_per_bench, "per bench");
   app.add_option("--doubles", settings.plan.doubles_per_bench, "per bench");
   app.add_option("--withheld", settings.plan.withheld_per_bench, "per bench");
   app.add_option("--absorbed", settings.plan.absorbed_per_bench, "per bench");
@@ -154,6 +157,7 @@ int main(int argc, char** argv) {
     settings.plan.quick = true;
     settings.plan.benches = 1;
     settings.plan.singles_per_bench = 3;
+    settings.plan.tied_per_bench = 0;
     settings.plan.doubles_per_bench = settings.plan.absorbed_per_bench = 0;
   }
   if (full) {

@@ -132,7 +132,10 @@ std::vector<Measure> measures(const std::vector<Verdict>& verdicts) {
   const auto strange = of_kind(CaseKind::withheld);
   const auto found = [](const Verdict& v) { return v.found >= 1 ? 1.0 : 0.0; };
   const auto named_any = [](const Verdict& v) { return v.named.empty() ? 0.0 : 1.0; };
-  const auto named_single = [&](const Verdict& v) { return single(v) && !v.named.empty(); };
+  const auto tied = of_kind(CaseKind::tied);
+  const auto named_single = [&](const Verdict& v) {
+    return (single(v) || tied(v)) && !v.named.empty();
+  };
   const auto closed = [&](const Verdict& v) {
     return single(v) && v.found == 1 && v.closure && v.multiples.front() >= 2.0;
   };
@@ -145,6 +148,7 @@ std::vector<Measure> measures(const std::vector<Verdict>& verdicts) {
       measure("exact name, single effect",
               values(verdicts, single, [](const Verdict& v) { return v.exact ? 1.0 : 0.0; }), 0.95,
               Sense::at_least),
+      measure("right class, effect in a tie", values(verdicts, tied, found), 0.97, Sense::at_least),
       measure("reported set holds the truth", values(verdicts, named_single, found), 0.99,
               Sense::at_least),
       measure("mean size of the set",

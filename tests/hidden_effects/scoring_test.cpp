@@ -138,7 +138,8 @@ TEST(Identifiability, TwiceTheNoiseNeedsTwiceTheSize) {
   });
   ASSERT_NE(delay, quiet.effects().end());
   EXPECT_EQ(delay->closest, "amplifier-bandwidth:g2");
-  EXPECT_LT(delay->rival_share, 0.1);
+  EXPECT_LT(delay->rival_share, 1e-3);
+  EXPECT_TRUE(delay->seen_but_tied());
 }
 
 TEST(Campaign, TablesAndCapturesHoldTheSame) {
