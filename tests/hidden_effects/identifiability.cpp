@@ -167,7 +167,8 @@ class Prober {
   enum class Differences { central, one_sided, whole };
 
   static Differences differences_of(const EffectKind& kind) {
-    if (is_there_or_not(kind.id) || kind.id == "gauge-length") {
+    // Bending adds what is proportional to it: no difference is more exact than another.
+    if (is_there_or_not(kind.id) || kind.id == "gauge-length" || kind.id == "bending") {
       return Differences::whole;
     }
     return kind.one_sided ? Differences::one_sided : Differences::central;
