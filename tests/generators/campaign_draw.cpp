@@ -93,7 +93,11 @@ double glassy_speed(const TrueMaterial& material) {
 void draw_shots(Random& random, BarWorld& world, int count, bool thermostat,
                 double least_length_s = 50e-6) {
   const Timing& timing = world.timing;
-  const double travel_s = world.gauges.front().position_m / glassy_speed(world.material);
+  double nearest_m = world.length_m;
+  for (const TrueGauge& gauge : world.gauges) {
+    nearest_m = gauge.bar == "input" ? std::min(nearest_m, gauge.position_m) : nearest_m;
+  }
+  const double travel_s = nearest_m / glassy_speed(world.material);
   const double start_s =
       timing.lead_s + static_cast<double>(timing.pretrigger) * timing.period_s() - travel_s;
   const auto knots = static_cast<std::size_t>(timing.window_s() / timing.knot_s()) + 1;
