@@ -27,7 +27,8 @@ void read_covariance(const TomlTable& table, BarPrior& prior) {
   for (std::size_t i = 0; i < kParameters; ++i) {
     for (std::size_t j = 0; j < kParameters; ++j) {
       const double value = numbers[i * kParameters + j];
-      const double most = std::sqrt(numbers[i * (kParameters + 1)] * numbers[j * (kParameters + 1)]);
+      const double most =
+          std::sqrt(numbers[i * (kParameters + 1)] * numbers[j * (kParameters + 1)]);
       if (std::abs(value - numbers[j * kParameters + i]) > 1e-6 * most ||
           std::abs(value) > most * (1.0 + 1e-6)) {
         throw table.error("covariance", "is not a covariance",
@@ -54,8 +55,7 @@ BarModelFile read_bar_model(const std::filesystem::path& path) {
 std::optional<double> temperature_of(const Shot& shot) {
   const auto fact = shot.meta.find("temperature_K");
   if (fact == shot.meta.end()) {
-    return shot.bench.temperature_K ? std::optional(shot.bench.temperature_K->value)
-                                    : std::nullopt;
+    return shot.bench.temperature_K ? std::optional(shot.bench.temperature_K->value) : std::nullopt;
   }
   char* end = nullptr;
   const double value = std::strtod(fact->second.c_str(), &end);
@@ -69,11 +69,10 @@ std::optional<double> temperature_of(const Shot& shot) {
 void require_temperature(const BarModelFile& model, const Shot& shot) {
   const std::optional<double> there = temperature_of(shot);
   if (model.temperature_K && there && std::abs(*there - *model.temperature_K) > kNearEnough_K) {
-    throw InputError(
-        model.name,
-        fmt::format("was identified at {:.1f} K, and capture {} was taken at {:.1f} K",
-                    *model.temperature_K, shot.id, *there),
-        fmt::format("identify the bars within {:.0f} K of the shots", kNearEnough_K));
+    throw InputError(model.name,
+                     fmt::format("was identified at {:.1f} K, and capture {} was taken at {:.1f} K",
+                                 *model.temperature_K, shot.id, *there),
+                     fmt::format("identify the bars within {:.0f} K of the shots", kNearEnough_K));
   }
 }
 

@@ -12,9 +12,9 @@ namespace kolsky::cli {
 /// A material file with what its identification filed beside the numbers.
 struct BarModelFile {
   BarPrior prior;
-  std::string name;                          ///< of the file, for messages
-  std::optional<double> band_limit_Hz;       ///< up to which it was identified
-  std::optional<double> temperature_K;       ///< at which it was identified
+  std::string name;                     ///< of the file, for messages
+  std::optional<double> band_limit_Hz;  ///< up to which it was identified
+  std::optional<double> temperature_K;  ///< at which it was identified
 };
 
 /// Reads a material file, its `covariance` (nine numbers, row by row, of E1_Pa, E2_Pa and

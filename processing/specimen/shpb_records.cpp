@@ -29,8 +29,7 @@ std::vector<double> readings_of(const Shot& shot, const ShpbStation& station) {
   for (const std::size_t index : station.channels) {
     const ChannelRecord& channel = shot.channels[index];
     for (std::size_t n = 0; n < readings.size(); ++n) {
-      readings[n] +=
-          channel.value(channel.codes[n]) / static_cast<double>(station.channels.size());
+      readings[n] += channel.value(channel.codes[n]) / static_cast<double>(station.channels.size());
     }
   }
   return readings;
@@ -80,8 +79,7 @@ Start start_of(const Shot& shot, const ShpbStation& station) {
   const double peak = *std::max_element(shifted.begin() + half, shifted.end());
   Start start;
   start.foot = foot_of(shifted, rise->index, peak, 0.0).index;
-  start.quiet =
-      static_cast<std::size_t>(std::max(0.0, start.foot - kFootClearance_s * rate_Hz));
+  start.quiet = static_cast<std::size_t>(std::max(0.0, start.foot - kFootClearance_s * rate_Hz));
   if (start.quiet < kFewestQuiet) {
     throw InputError("capture " + shot.id,
                      "has " + std::to_string(start.quiet) + " quiet samples before the pulse",
@@ -140,14 +138,13 @@ std::vector<ShpbStation> shpb_stations(const Bench& bench) {
     throw InputError("gauges", "none is on the " + bar + " bar",
                      "add one with bar = \"" + bar + "\"");
   }
-  std::stable_sort(stations.begin(), stations.end(),
-                   [](const ShpbStation& a, const ShpbStation& b) {
-                     if (a.on_input != b.on_input) {
-                       return a.on_input;
-                     }
-                     return a.on_input ? a.to_specimen_m > b.to_specimen_m
-                                       : a.to_specimen_m < b.to_specimen_m;
-                   });
+  std::stable_sort(
+      stations.begin(), stations.end(), [](const ShpbStation& a, const ShpbStation& b) {
+        if (a.on_input != b.on_input) {
+          return a.on_input;
+        }
+        return a.on_input ? a.to_specimen_m > b.to_specimen_m : a.to_specimen_m < b.to_specimen_m;
+      });
   return stations;
 }
 

@@ -58,12 +58,13 @@ void add_bar(std::vector<ShpbUnknown>& list, const Bar& bar, std::size_t index) 
   add(list, "bar-diameter" + name, Of::bar_diameter, index, relative_sd(bar.diameter_m));
   add(list, "poisson-ratio" + name, Of::bar_poisson, index, relative_sd(bar.poisson_ratio));
   if (bar.youngs_modulus_Pa) {
-    add(list, "youngs-modulus" + name, Of::bar_modulus, index,
-        relative_sd(*bar.youngs_modulus_Pa));
+    add(list, "youngs-modulus" + name, Of::bar_modulus, index, relative_sd(*bar.youngs_modulus_Pa));
   }
 }
 
-void scale(Measured& number, double move) { number.value *= 1.0 + move; }
+void scale(Measured& number, double move) {
+  number.value *= 1.0 + move;
+}
 
 }  // namespace
 
@@ -73,8 +74,7 @@ BarPrior::BarPrior(const Material& m) : material(m) {
   covariance[2][2] = m.eta2_Pa_s.sd * m.eta2_Pa_s.sd;
 }
 
-std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench,
-                                       const std::vector<ShpbStation>& stations,
+std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<ShpbStation>& stations,
                                        const BarPrior& bars) {
   std::vector<ShpbUnknown> list;
   for (std::size_t j = 0; j < stations.size(); ++j) {

@@ -47,8 +47,7 @@ class TheoryChoice {
         kinds_(kinds_of_waves(options, *likelihood.bench().specimen)) {}
 
   Fitted choose() {
-    start_ = SpecimenSearch(likelihood_, options_.solid,
-                            {WaveTheory::elementary, kinds_.front()})
+    start_ = SpecimenSearch(likelihood_, options_.solid, {WaveTheory::elementary, kinds_.front()})
                  .start();
     const WaveTheory first = options_.bars.value_or(WaveTheory::elementary);
     for (const SpecimenWaves kind : kinds_) {
@@ -79,7 +78,8 @@ class TheoryChoice {
  private:
   void attempt(const ShpbTheory& theory) {
     try {
-      fits_.push_back({theory, SpecimenSearch(likelihood_, options_.solid, theory).minimise(start_)});
+      fits_.push_back(
+          {theory, SpecimenSearch(likelihood_, options_.solid, theory).minimise(start_)});
       if (fits_.size() == 1 || best().theory == theory) {
         start_ = fits_.back().minimum.parameters;
       }
@@ -119,8 +119,7 @@ double degrees_of_freedom(const SpecimenLikelihood& likelihood, SolidKind solid)
 bool same_model(double chi2, double dof, double longer_chi2, double longer_dof) {
   const double scale = std::max(1.0, chi2 / dof);
   const double added = longer_dof - dof;
-  return added > 0.0 &&
-         longer_chi2 - chi2 <= scale * (added + kSameModel * std::sqrt(2.0 * added));
+  return added > 0.0 && longer_chi2 - chi2 <= scale * (added + kSameModel * std::sqrt(2.0 * added));
 }
 
 std::vector<double> moduli(const SpecimenMinimum& minimum) {
@@ -241,8 +240,7 @@ void warn(SpecimenFit& fit) {
   constexpr double kClearly = 3.0;
   for (const CompliancePoint& p : fit.spectrum) {
     if (p.J2_per_Pa < -kClearly * p.J2_mean_sd) {
-      fit.warnings.push_back("J2 is negative at " +
-                             std::to_string(std::lround(p.frequency_Hz)) +
+      fit.warnings.push_back("J2 is negative at " + std::to_string(std::lround(p.frequency_Hz)) +
                              " Hz: no passive material does that");
       break;
     }
@@ -279,8 +277,8 @@ SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
   fit.tried = choice.tried();
   if (may_extend && longest->judged_s() > likelihood->judged_s()) {
     const double longer_dof = degrees_of_freedom(*longest, options.solid);
-    const SpecimenMinimum longer = SpecimenSearch(*longest, options.solid, fitted.theory)
-                                       .minimise(fitted.minimum.parameters);
+    const SpecimenMinimum longer =
+        SpecimenSearch(*longest, options.solid, fitted.theory).minimise(fitted.minimum.parameters);
     if (same_model(fitted.minimum.chi2, dof, longer.chi2, longer_dof)) {
       fitted.minimum = longer;
       likelihood = std::move(longest);

@@ -11,10 +11,10 @@ namespace kolsky {
 
 struct SpecimenFitOptions {
   SolidKind solid = SolidKind::three_element;
-  std::optional<WaveTheory> bars;          ///< else elementary, unless the data speak for exact
-  std::optional<SpecimenWaves> specimen;   ///< else massless, unless the data speak for its mass
-  double band_limit_Hz = 0.0;              ///< 0: where the pulses fall below the noise
-  std::optional<double> most_band_Hz;      ///< in which the bars are known
+  std::optional<WaveTheory> bars;         ///< else elementary, unless the data speak for exact
+  std::optional<SpecimenWaves> specimen;  ///< else massless, unless the data speak for its mass
+  double band_limit_Hz = 0.0;             ///< 0: where the pulses fall below the noise
+  std::optional<double> most_band_Hz;     ///< in which the bars are known
   /// Judged after the pulse's foot at the first station. None: until a far end answers, and on to
   /// the record's end where the same model holds there too.
   std::optional<double> after_foot_s;
@@ -31,7 +31,7 @@ struct CompliancePoint {
   double frequency_Hz = 0.0;
   double J1_per_Pa = 0.0;
   double J2_per_Pa = 0.0;
-  double J1_sd = 0.0;       ///< of one shot; what all shots share (bench, bars) is in it too
+  double J1_sd = 0.0;  ///< of one shot; what all shots share (bench, bars) is in it too
   double J2_sd = 0.0;
   double J1_mean_sd = 0.0;  ///< of the mean over the shots
   double J2_mean_sd = 0.0;
@@ -48,7 +48,7 @@ struct SpecimenFit {
   double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
   std::size_t degrees_of_freedom = 0;
   double band_limit_Hz = 0.0;
-  double judged_s = 0.0;  ///< of each record
+  double judged_s = 0.0;    ///< of each record
   bool to_the_end = false;  ///< judged past the far ends' first answers
   std::vector<CompliancePoint> spectrum;
   std::vector<std::string> warnings;  ///< what keeps the result from being taken at its word

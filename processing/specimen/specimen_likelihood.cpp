@@ -102,10 +102,10 @@ SpecimenLikelihood::SpecimenLikelihood(const std::vector<Shot>& shots, const Bar
 }
 
 void SpecimenLikelihood::find_first_return() {
-  const double speed_in = front_speed_m_per_s(bench_.input, *compliance_of(bench_.input,
-                                                                           bars_.material));
-  const double speed_out = front_speed_m_per_s(
-      *bench_.output, *compliance_of(*bench_.output, bars_.material));
+  const double speed_in =
+      front_speed_m_per_s(bench_.input, *compliance_of(bench_.input, bars_.material));
+  const double speed_out =
+      front_speed_m_per_s(*bench_.output, *compliance_of(*bench_.output, bars_.material));
   double back_s = 2.0 * bench_.input.length_m / speed_in;
   if (bench_.output->far_end == FarEnd::free) {
     back_s = std::min(back_s, 2.0 * bench_.output->length_m / speed_out);
@@ -158,8 +158,8 @@ void SpecimenLikelihood::choose_judged(double after_foot_s) {
     end = std::min(last, static_cast<std::size_t>(std::max(0.0, until_s / period_s_)));
   }
   begin_ = std::min(lead_, records_.front().quiet_samples / 2);
-  const auto most = static_cast<std::size_t>(static_cast<double>(kMostBins) /
-                                             (band_limit_Hz_ * period_s_));
+  const auto most =
+      static_cast<std::size_t>(static_cast<double>(kMostBins) / (band_limit_Hz_ * period_s_));
   end = std::min(end, begin_ + most);
   judged_ = fast_length(end > begin_ ? end - begin_ : 0);
   bins_ = static_cast<std::size_t>(band_limit_Hz_ * static_cast<double>(judged_) * period_s_);
@@ -280,13 +280,12 @@ Eigen::MatrixXd SpecimenLikelihood::noise_response(const Spectrum& transfer) {
   const std::size_t group = std::max<std::size_t>(
       1, static_cast<std::size_t>(0.5 / (kFilteredFrom * filter_limit_Hz_ * period_s_)));
   const std::size_t groups = (samples + group - 1) / group;
-  Eigen::MatrixXd response(static_cast<Eigen::Index>(2 * bins_),
-                           static_cast<Eigen::Index>(groups));
+  Eigen::MatrixXd response(static_cast<Eigen::Index>(2 * bins_), static_cast<Eigen::Index>(groups));
   // Noise sample n reaches judged samples m in [begin, begin + judged) through kernel[m - n].
   std::vector<Complex> sums(lead_ + samples + judged_ + 1);
   for (std::size_t k = 0; k < bins_; ++k) {
-    const double w = 2.0 * std::numbers::pi * static_cast<double>(k + 1) /
-                     static_cast<double>(plain_->length());
+    const double w =
+        2.0 * std::numbers::pi * static_cast<double>(k + 1) / static_cast<double>(plain_->length());
     const auto kernel_end = static_cast<std::ptrdiff_t>(lead_ + samples);
     const Complex turn = std::polar(1.0, -w);
     Complex phase = std::polar(1.0, w * static_cast<double>(lead_));
@@ -306,17 +305,15 @@ Eigen::MatrixXd SpecimenLikelihood::noise_response(const Spectrum& transfer) {
     for (std::size_t i = 0; i < groups; ++i) {
       const auto n = static_cast<std::ptrdiff_t>(i * group + group / 2);
       const auto from = static_cast<std::ptrdiff_t>(begin_) - n;
-      const Complex reached = sum_before(from + static_cast<std::ptrdiff_t>(judged_)) -
-                              sum_before(from);
-      const Complex value =
-          reached * std::polar(1.0, w * static_cast<double>(from)) / filter_[k];
+      const Complex reached =
+          sum_before(from + static_cast<std::ptrdiff_t>(judged_)) - sum_before(from);
+      const Complex value = reached * std::polar(1.0, w * static_cast<double>(from)) / filter_[k];
       all += value * static_cast<double>(group);
       response(row, static_cast<Eigen::Index>(i)) = value.real();
       response(row + 1, static_cast<Eigen::Index>(i)) = value.imag();
     }
     const Complex of_quiet_mean = all / static_cast<double>(records_.front().quiet_samples);
-    const std::size_t quiet_groups =
-        std::min(groups, records_.front().quiet_samples / group);
+    const std::size_t quiet_groups = std::min(groups, records_.front().quiet_samples / group);
     for (std::size_t i = 0; i < quiet_groups; ++i) {
       response(row, static_cast<Eigen::Index>(i)) -= of_quiet_mean.real();
       response(row + 1, static_cast<Eigen::Index>(i)) -= of_quiet_mean.imag();
@@ -337,8 +334,7 @@ Eigen::MatrixXd SpecimenLikelihood::covariance_root(const ShpbTheory& theory,
   const auto others = static_cast<Eigen::Index>(stations_.size() - 1);
   Eigen::MatrixXd response;
   for (Eigen::Index j = 0; j < others; ++j) {
-    const Eigen::MatrixXd of_station =
-        noise_response(transfers_[static_cast<std::size_t>(j)]);
+    const Eigen::MatrixXd of_station = noise_response(transfers_[static_cast<std::size_t>(j)]);
     if (j == 0) {
       response.resize(per_station * others, of_station.cols());
     }
@@ -348,8 +344,8 @@ Eigen::MatrixXd SpecimenLikelihood::covariance_root(const ShpbTheory& theory,
   covariance.selfadjointView<Eigen::Lower>().rankUpdate(response);
   for (Eigen::Index j = 0; j < others; ++j) {
     for (std::size_t k = 0; k < bins_; ++k) {
-      const double own = noise_[static_cast<std::size_t>(j + 1)][k] *
-                         static_cast<double>(judged_) / 2.0;
+      const double own =
+          noise_[static_cast<std::size_t>(j + 1)][k] * static_cast<double>(judged_) / 2.0;
       const auto at = j * per_station + static_cast<Eigen::Index>(2 * k);
       covariance(at, at) += own;
       covariance(at + 1, at + 1) += own;
@@ -404,8 +400,8 @@ std::vector<std::vector<SpecimenLikelihood::ComplianceStep>> SpecimenLikelihood:
       for (std::size_t k = 0; k < bins_; ++k) {
         // Both spectra have been through the same filter.
         const double filtered = filter_[k] * filter_[k];
-        const double noise = filtered * effective *
-                             (noise_[j][k] + noise_[0][k] * std::norm(on_line[j - 1][k]));
+        const double noise =
+            filtered * effective * (noise_[j][k] + noise_[0][k] * std::norm(on_line[j - 1][k]));
         numerator[k] += std::conj(by_J[k + 1]) * left[k + 1] / noise;
         weight[k] += std::norm(by_J[k + 1]) / noise;
       }

@@ -1,5 +1,6 @@
-// How often the stated 95 % intervals of a specimen's parameters hold the truth, over many repeats of
-// one experiment: specimen_coverage [REPEATS [core|cover|elastic [SHOTS [NOISE_MICROSTRAIN [exact_bench]]]]]
+// How often the stated 95 % intervals of a specimen's parameters hold the truth, over many repeats
+// of one experiment: specimen_coverage [REPEATS [core|cover|elastic [SHOTS [NOISE_MICROSTRAIN
+// [exact_bench]]]]]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -61,9 +62,9 @@ int main(int argc, char** argv) {
               name.c_str(), shots, 1e6 * noise, repeats, chi2);
   const char* names[] = {"E1", "E2", "eta2"};
   for (std::size_t i = 0; i < 3; ++i) {
-    std::printf("%-5s stated sd %.3f %%  mean %+.3f sd  rms %.3f sd  in the 95 %% interval %.2f %%\n",
-                names[i], 100 * stated[i], sum[i], std::sqrt(squares[i]),
-                100.0 * inside[i] / repeats);
+    std::printf(
+        "%-5s stated sd %.3f %%  mean %+.3f sd  rms %.3f sd  in the 95 %% interval %.2f %%\n",
+        names[i], 100 * stated[i], sum[i], std::sqrt(squares[i]), 100.0 * inside[i] / repeats);
   }
   return 0;
 }

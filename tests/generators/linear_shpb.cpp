@@ -97,9 +97,8 @@ std::vector<std::vector<double>> LinearShpb::solve() const {
   Rod out({output_length_m, circle_m2(output_diameter_m), output}, step_s);
   MasslessSpecimen spring(specimen, specimen_length_m, specimen_area_m2, step_s);
   Rod rod({specimen_length_m, specimen_area_m2, specimen}, step_s);
-  const ImpactPulse pulse{.peak_force_N = input.E1_Pa * area_m2 * peak_strain,
-                          .duration_s = pulse_s,
-                          .ramp_s = ramp_s};
+  const ImpactPulse pulse{
+      .peak_force_N = input.E1_Pa * area_m2 * peak_strain, .duration_s = pulse_s, .ramp_s = ramp_s};
   const auto quiet = static_cast<std::size_t>(std::llround(pre_s * sampling_frequency_Hz));
   const auto samples = static_cast<std::size_t>(std::llround(record_s * sampling_frequency_Hz));
   std::vector<std::vector<double>> records(2, std::vector<double>(samples, 0.0));

@@ -15,11 +15,7 @@ constexpr double kRange = 0.005;
 
 SpecimenRepeats::SpecimenRepeats(const LinearShpb& model, const Filed& filed, std::size_t shots,
                                  double noise_rms)
-    : model_(model),
-      filed_(filed),
-      shots_(shots),
-      noise_rms_(noise_rms),
-      records_(model.solve()) {}
+    : model_(model), filed_(filed), shots_(shots), noise_rms_(noise_rms), records_(model.solve()) {}
 
 SpecimenFit SpecimenRepeats::fit(unsigned repeat, const SpecimenFitOptions& options) const {
   std::mt19937 random(repeat * 7919U + 1U);

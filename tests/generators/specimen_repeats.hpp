@@ -12,14 +12,13 @@ namespace kolsky::testing {
 class SpecimenRepeats {
  public:
   struct Filed {
-    double gain_sd = 0.01;            ///< relative
+    double gain_sd = 0.01;  ///< relative
     double position_m_sd = 0.2e-3;
-    double specimen_length_sd = 2e-3; ///< relative
+    double specimen_length_sd = 2e-3;                    ///< relative
     std::array<double, 3> bars_sd = {5e-5, 1e-3, 1e-3};  ///< E1, E2, eta2, relative
   };
 
-  SpecimenRepeats(const LinearShpb& model, const Filed& filed, std::size_t shots,
-                  double noise_rms);
+  SpecimenRepeats(const LinearShpb& model, const Filed& filed, std::size_t shots, double noise_rms);
 
   /// Fits the repeat of this number.
   [[nodiscard]] SpecimenFit fit(unsigned repeat, const SpecimenFitOptions& options) const;

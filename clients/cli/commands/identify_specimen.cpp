@@ -95,9 +95,9 @@ Outcome identify(const Settings& settings) {
   }
   const SpecimenFitOptions options = fit_options(settings, outcome.bars);
   outcome.shots = read_shots(settings, outcome.bars);
-  const BarPrior prior =
-      outcome.bars ? outcome.bars->prior
-                   : BarPrior(outcome.shots.front().bar_model.value_or(paper_pmma()));
+  const BarPrior prior = outcome.bars
+                             ? outcome.bars->prior
+                             : BarPrior(outcome.shots.front().bar_model.value_or(paper_pmma()));
   outcome.fit = fit_specimen(outcome.shots, prior, options);
   SpectralOptions spectral;
   spectral.bars = outcome.fit.theory.bars;
@@ -178,8 +178,8 @@ JsonValue describe(const Outcome& outcome) {
     entry.push_back({"chi2", theory.chi2});
     tried.push_back(std::move(entry));
   }
-  const bool assumed =
-      !elastic_bars(outcome.shots.front().bench) && !outcome.bars && !outcome.shots.front().bar_model;
+  const bool assumed = !elastic_bars(outcome.shots.front().bench) && !outcome.bars &&
+                       !outcome.shots.front().bar_model;
   return JsonObject{{"solid", name_of(fit.solid)},
                     {"parameters", numbers(fit.parameters)},
                     {"covariance", std::move(covariance)},
@@ -202,8 +202,8 @@ JsonValue describe(const Outcome& outcome) {
 std::string table_of(const std::vector<FittedNumber>& list) {
   std::string text;
   for (const FittedNumber& p : list) {
-    text += fmt::format("    {:<12}{:>12.5g} ± {:.2g} %\n", p.name, p.value,
-                        100.0 * p.sd / p.value);
+    text +=
+        fmt::format("    {:<12}{:>12.5g} ± {:.2g} %\n", p.name, p.value, 100.0 * p.sd / p.value);
   }
   return text;
 }
@@ -220,9 +220,9 @@ std::string report(const Outcome& outcome) {
                       fit.chi2_reduced, fit.degrees_of_freedom, name_of_theory(fit.theory.bars),
                       name_of(fit.theory.specimen));
   for (const TriedTheory& tried : fit.tried) {
-    text += fmt::format("      tried: bars {:<10} specimen {:<9} chi2 {:.1f}\n",
-                        name_of_theory(tried.theory.bars), name_of(tried.theory.specimen),
-                        tried.chi2);
+    text +=
+        fmt::format("      tried: bars {:<10} specimen {:<9} chi2 {:.1f}\n",
+                    name_of_theory(tried.theory.bars), name_of(tried.theory.specimen), tried.chi2);
   }
   if (outcome.spectral) {
     text += fmt::format("  strain over stress, frequency by frequency (eq. 25, up to {})\n",
@@ -251,8 +251,9 @@ void write_material(const Outcome& outcome, const std::string& path) {
   material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
   material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
   material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
-  material.source = fmt::format("kolsky identify specimen, {} shots, chi2 per degree of freedom {:.3f}",
-                                outcome.shots.size(), fit.chi2_reduced);
+  material.source =
+      fmt::format("kolsky identify specimen, {} shots, chi2 per degree of freedom {:.3f}",
+                  outcome.shots.size(), fit.chi2_reduced);
   std::string text = format_material(material) + "covariance = [";
   for (const auto& row : fit.covariance) {
     for (const double value : row) {
