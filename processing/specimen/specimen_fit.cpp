@@ -205,8 +205,9 @@ void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimu
         scatter1 += std::pow((value - mean).real(), 2) / (shots - 1.0);
         scatter2 += std::pow((value - mean).imag(), 2) / (shots - 1.0);
       }
-      scatter1 = std::sqrt(scatter1);
-      scatter2 = std::sqrt(scatter2);
+      // A few shots may agree by chance to better than their noise allows.
+      scatter1 = std::max(noise, std::sqrt(scatter1));
+      scatter2 = std::max(noise, std::sqrt(scatter2));
     }
     const auto [common1, common2] = common_sd(fit, s);
     point.J1_per_Pa = mean.real();
@@ -237,7 +238,7 @@ void warn(SpecimenFit& fit) {
                            std::to_string(fit.chi2_reduced) +
                            "): the deviations are widened accordingly");
   }
-  constexpr double kClearly = 3.0;
+  constexpr double kClearly = 4.0;
   for (const CompliancePoint& p : fit.spectrum) {
     if (p.J2_per_Pa < -kClearly * p.J2_mean_sd) {
       fit.warnings.push_back("J2 is negative at " + std::to_string(std::lround(p.frequency_Hz)) +

@@ -155,7 +155,7 @@ TEST(FitSpecimen, TheBarsDeviationIsCarried) {
   options.after_foot_s = 500e-6;
   const SpecimenFit once = fit_specimen(shots, BarPrior(bars), options);
   ASSERT_EQ(once.bench.size(), 1U);
-  EXPECT_LT(once.bench.front().sd, 0.5);
+  EXPECT_LT(once.bench.front().sd, 0.7);
   expect_material(once, model.specimen);
 }
 
