@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/files/bench_file.hpp"
 #include "drivers/files/capture.hpp"
 #include "processing/base/error.hpp"
 
@@ -48,10 +49,45 @@ bool assumes_bar_model(const Shot& shot, const ReductionOptions& options) {
   return !all_elastic && !options.bar_model.has_value() && !shot.bar_model.has_value();
 }
 
-ReducedShot reduce_capture(const std::filesystem::path& capture, const ReductionOptions& options) {
-  ReducedShot reduced{read_capture(capture), {}, absolute_name(capture), false};
-  reduced.default_bar_model = assumes_bar_model(reduced.shot, options);
+void rebench(Shot& shot, const std::filesystem::path& path) {
+  const BenchFile file = read_bench(path);
+  const auto& gauges = file.bench.gauges;
+  if (gauges.size() != shot.channels.size()) {
+    throw InputError(path.string() + ": gauges",
+                     std::to_string(gauges.size()) + " are filed but the capture has " +
+                         std::to_string(shot.channels.size()) + " channels",
+                     "file one gauge per channel, in their order");
+  }
+  for (std::size_t i = 0; i < gauges.size(); ++i) {
+    if (gauges[i].name != shot.channels[i].gauge || gauges[i].unit != shot.channels[i].unit) {
+      throw InputError(path.string() + ": gauges[" + std::to_string(i) + "]",
+                       gauges[i].name + " in " + gauges[i].unit + " stands where the capture has " +
+                           shot.channels[i].gauge + " in " + shot.channels[i].unit,
+                       "keep the gauges' names, units and order: they name the capture's channels");
+    }
+  }
+  const double off = file.bench.sampling_frequency_Hz / shot.rate.Hz() - 1.0;
+  if (std::abs(off) > 1e-9) {
+    throw InputError(path.string() + ": sampling_frequency_Hz",
+                     "is not the rate that the capture was taken at",
+                     "give the capture's own rate; import the table again for another");
+  }
+  shot.bench = file.bench;
+  shot.bench_toml = file.text;
+}
+
+ReducedShot reduce_capture(const std::filesystem::path& capture, const ReductionOptions& options,
+                           const std::optional<std::string>& bench) {
+  ReducedShot reduced;
+  reduced.shot = read_capture(capture);
+  reduced.capture = absolute_name(capture);
   try {
+    if (bench.has_value()) {
+      reduced.bench = absolute_name(*bench);
+      reduced.as_filed = Reducer(options).reduce(reduced.shot);
+      rebench(reduced.shot, *bench);
+    }
+    reduced.default_bar_model = assumes_bar_model(reduced.shot, options);
     reduced.reduction = Reducer(options).reduce(reduced.shot);
   } catch (const InputError& error) {
     throw error.inside(capture.string());

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "clients/cli/json_value.hpp"
 #include "clients/terminal/terminal.hpp"
@@ -17,7 +19,15 @@ struct ReducedShot {
   std::string capture;  ///< the file, absolute
   bool default_bar_model =
       false;  ///< the bars were taken for the paper's PMMA because nobody said what they are
+  std::string stress = "three-wave";       ///< how the stress was taken from the forces
+  std::vector<std::string> corrections{};  ///< that were asked for
+  std::optional<std::string> bench{};      ///< a corrected bench file, in place of the shot's own
+  std::optional<Reduction> as_filed{};     ///< then: the result with the shot's own bench
 };
+
+/// Puts a corrected bench in the place of a shot's own; the samples stay as they are.
+/// @throws InputError where the bench's gauges or rate are not the shot's
+void rebench(Shot& shot, const std::filesystem::path& bench);
 
 /// The path by which a file is named in output: the same from wherever it was given.
 [[nodiscard]] std::string absolute_name(const std::filesystem::path& path);
@@ -26,8 +36,10 @@ struct ReducedShot {
 [[nodiscard]] bool assumes_bar_model(const Shot& shot, const ReductionOptions& options);
 
 /// Reads a capture and reduces it. @throws InputError
+/// @param bench  a corrected bench file: the result then holds the one with the shot's own too
 [[nodiscard]] ReducedShot reduce_capture(const std::filesystem::path& capture,
-                                         const ReductionOptions& options);
+                                         const ReductionOptions& options,
+                                         const std::optional<std::string>& bench = std::nullopt);
 
 /// The numbers of a loop that go into one line.
 struct LoopSummary {

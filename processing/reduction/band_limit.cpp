@@ -61,6 +61,21 @@ double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
   return highest_Hz * std::exp2(-std::max(0.0, steps) / kStepsPerOctave);
 }
 
+double BandLimit::loss(std::span<const double> pulse, double noise_rms, double limit_Hz) {
+  pulse_transform_.forward(pulse, pulse_spectrum_);
+  const double noise = noise_rms * noise_rms * static_cast<double>(pulse.size());
+  const double wc = corner_per_s(limit_Hz);
+  double all = 0.0;
+  double taken = 0.0;
+  for (std::size_t k = 0; k < pulse_spectrum_.size(); ++k) {
+    const double energy = std::norm(pulse_spectrum_[k]) - noise;
+    const double kept = std::exp(-std::pow(pulse_transform_.s(k).imag() / wc, 4));
+    all += energy;
+    taken += energy * (1.0 - kept * kept);
+  }
+  return all > 0.0 ? std::clamp(taken / all, 0.0, 1.0) : 0.0;
+}
+
 const std::vector<Complex>& BandLimit::filter(double limit_Hz) {
   const auto known = filters_.find(limit_Hz);
   if (known != filters_.end()) {

@@ -27,6 +27,9 @@ class BandLimit {
   /// @param noise_rms  of its samples
   [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms);
 
+  /// Share of a pulse's energy, less that of its noise, that the filter with this limit takes off.
+  [[nodiscard]] double loss(std::span<const double> pulse, double noise_rms, double limit_Hz);
+
   /// Multiplies a spectrum by the square root of the filter with this limit: a wave that is cut in
   /// time between two steps is filtered before and after, others twice.
   void apply_half(double limit_Hz, std::span<Complex> spectrum);
