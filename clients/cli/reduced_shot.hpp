@@ -8,7 +8,9 @@
 #include "clients/cli/json_value.hpp"
 #include "clients/terminal/terminal.hpp"
 #include "processing/base/shot.hpp"
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/uncertainty/monte_carlo.hpp"
 
 namespace kolsky::cli {
 
@@ -22,7 +24,8 @@ struct ReducedShot {
   std::string stress = "three-wave";       ///< how the stress was taken from the forces
   std::vector<std::string> corrections{};  ///< that were asked for
   std::optional<std::string> bench{};      ///< a corrected bench file, in place of the shot's own
-  std::optional<Reduction> as_filed{};     ///< then: the result with the shot's own bench
+  std::optional<Uncertainty> uncertainty{};
+  std::optional<Reduction> as_filed{};  ///< then: the result with the shot's own bench
 };
 
 /// Puts a corrected bench in the place of a shot's own; the samples stay as they are.
@@ -41,18 +44,6 @@ void rebench(Shot& shot, const std::filesystem::path& bench);
                                          const ReductionOptions& options,
                                          const std::optional<std::string>& bench = std::nullopt);
 
-/// The numbers of a loop that go into one line.
-struct LoopSummary {
-  double peak_stress_Pa = 0.0;
-  double strain_at_peak = 0.0;  ///< at the peak stress
-  double peak_strain = 0.0;
-  double loading_s = 0.0;  ///< from 5 % of the peak stress to 98 % of the largest strain
-  double mean_strain_rate_per_s = 0.0;  ///< over the loading
-};
-
-/// All zero for an empty reduction.
-[[nodiscard]] LoopSummary summarise(const Reduction& reduction);
-
 /// True strain -ln(1 - e) and true stress s (1 - e) from engineering ones, compression positive,
 /// for a specimen that keeps its volume. NaN where e >= 1.
 [[nodiscard]] std::vector<double> true_strain(const Reduction& reduction);
@@ -63,6 +54,10 @@ inline constexpr const char* kTrueHelp =
     "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), for "
     "a "
     "specimen that keeps its volume";
+
+/// The uncertainty's part of both.
+void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object);
+[[nodiscard]] std::string uncertainty_report(const Uncertainty& uncertainty);
 
 /// What `reduce --json` and `get --json` print.
 [[nodiscard]] JsonValue describe(const ReducedShot& shot, bool with_true);

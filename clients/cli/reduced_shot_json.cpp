@@ -82,6 +82,9 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                        {"incident", reduction.incident},
                        {"reflected", reduction.reflected},
                        {"transmitted", reduction.transmitted}};
+  if (reduced.uncertainty) {
+    describe_uncertainty(*reduced.uncertainty, object);
+  }
   if (reduced.as_filed) {
     const Reduction& before = *reduced.as_filed;
     object.push_back({"bench", *reduced.bench});

@@ -94,7 +94,7 @@ std::string validity(const ReducedShot& reduced, const Terminal& terminal) {
 std::string as_filed(const Reduction& before) {
   const LoopSummary loop = summarise(before);
   return row(
-      "with its own bench",
+      "as filed",
       fmt::format("{} at a strain of {}, largest strain {}", with_unit(loop.peak_stress_Pa, "Pa"),
                   with_unit(loop.strain_at_peak, "strain"), with_unit(loop.peak_strain, "strain")));
 }
@@ -121,6 +121,9 @@ std::string report(const ReducedShot& reduced, const Terminal& terminal) {
                                         fmt::join(reduced.corrections, ", ")));
     }
     text += validity(reduced, terminal);
+  }
+  if (reduced.uncertainty) {
+    text += uncertainty_report(*reduced.uncertainty);
   }
   if (reduced.as_filed) {
     text += row("bench", *reduced.bench) + as_filed(*reduced.as_filed);

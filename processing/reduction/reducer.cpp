@@ -540,6 +540,10 @@ Reducer::~Reducer() = default;
 Reducer::Reducer(Reducer&&) noexcept = default;
 Reducer& Reducer::operator=(Reducer&&) noexcept = default;
 
+void Reducer::set_bar_model(const Material& material) {
+  state_->options.bar_model = material;
+}
+
 Reduction Reducer::reduce(const Shot& shot) {
   require_reducible_bench(shot);
   const std::string unusable = unusable_because(shot);

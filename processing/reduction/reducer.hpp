@@ -43,6 +43,9 @@ class Reducer {
   /// @throws InputError where the bench itself does not suit (no gauge on a bar, no modulus)
   [[nodiscard]] Reduction reduce(const Shot& shot);
 
+  /// Takes viscoelastic bars to be of another material from now on.
+  void set_bar_model(const Material& material);
+
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -108,7 +108,11 @@ const std::vector<BarMode>& ShpbModel::modes(WaveTheory theory, const MovedShpb&
 
 void ShpbModel::evaluate(const ShpbTheory& theory, const MovedShpb& moved,
                          const Compliance& specimen, const std::vector<Complex>& path,
-                         std::size_t slot, std::vector<std::vector<Complex>>& transfers) {
+                         std::size_t slot, std::vector<std::vector<Complex>>& transfers,
+                         std::vector<Complex>* first_per_N) {
+  if (first_per_N != nullptr) {
+    first_per_N->resize(path.size());
+  }
   const auto& input = modes(theory.bars, moved, 0, path, slot);
   const auto& output = modes(theory.bars, moved, 1, path, slot);
   const SpecimenLine line(theory.specimen, moved.specimen);
@@ -133,6 +137,11 @@ void ShpbModel::evaluate(const ShpbTheory& theory, const MovedShpb& moved,
     // the factor exp(gamma d0).
     const Complex reading = gamma / (s * input[k].mean_over_surface);
     const Complex first = moved.gain[0] * reading * (1.0 + r * std::exp(-2.0 * gamma * d0));
+    if (first_per_N != nullptr) {
+      const double length_m = moved.bars[0].length_m;
+      const Complex round_trips = 1.0 + r * std::exp(-2.0 * gamma * length_m);
+      (*first_per_N)[k] = first * std::exp(-gamma * (length_m - d0)) / (Z_in * round_trips);
+    }
     // Velocity wave into the output bar: what a second bar's strain follows from.
     const Complex launched = loaded.transmitted * Z_in * (1.0 + r) /
                              (Z_out * (1.0 - there_and_back)) * std::exp(-gamma * d0) / first;

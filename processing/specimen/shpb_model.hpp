@@ -43,9 +43,12 @@ class ShpbModel {
 
   /// H_j / H_0 along a path of s, for stations 1 on. `transfers()[j - 1][k]`.
   /// Modes of the bars are kept from call to call for a path of the same `slot`.
+  /// @param first_per_N  if given: what the first station reads per force on the impacted end,
+  ///   which is free but for that force
   void evaluate(const ShpbTheory& theory, const MovedShpb& moved, const Compliance& specimen,
                 const std::vector<Complex>& path, std::size_t slot,
-                std::vector<std::vector<Complex>>& transfers);
+                std::vector<std::vector<Complex>>& transfers,
+                std::vector<Complex>* first_per_N = nullptr);
 
   [[nodiscard]] const std::vector<ShpbStation>& stations() const { return stations_; }
 

@@ -4,6 +4,7 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/thread_executor.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/capture.hpp"
@@ -27,6 +28,9 @@ struct Settings {
   std::optional<std::string> stress;
   std::optional<std::string> inertia;
   std::optional<double> friction;
+  bool uncertainty = false;
+  std::optional<std::uint64_t> draws;
+  std::optional<double> softening_per_K;
   std::optional<std::string> bench;
   std::optional<std::string> save;
   std::optional<std::string> svg;
@@ -99,6 +103,23 @@ ReductionOptions reduction_options(const Settings& settings,
   return options;
 }
 
+UncertaintyOptions uncertainty_options(const Settings& settings,
+                                       const std::optional<BarModelFile>& bars, const Shot& shot) {
+  constexpr std::uint64_t kFewest = 20;
+  constexpr std::uint64_t kMost = 1'000'000;
+  UncertaintyOptions options;
+  options.draws = settings.draws.value_or(options.draws);
+  if (options.draws < kFewest || options.draws > kMost) {
+    throw InputError("kolsky reduce: --draws", "is outside 20 to 1000000",
+                     "1000 give the deviations to 2 %");
+  }
+  const BarPrior prior =
+      bars.has_value() ? bars->prior : BarPrior(shot.bar_model.value_or(paper_pmma()));
+  options.bars.covariance = prior.covariance;
+  options.bars.softening_per_K = settings.softening_per_K.value_or(options.bars.softening_per_K);
+  return options;
+}
+
 void write_files(const Settings& settings, const ReducedShot& reduced) {
   if (settings.save.has_value()) {
     Shot corrected = reduced.shot;
@@ -127,6 +148,11 @@ int run(const Settings& settings, Context& context) {
   }
   reduced.stress = settings.stress.value_or(reduced.stress);
   reduced.corrections = names_of(options.corrections);
+  if (settings.uncertainty || settings.draws.has_value()) {
+    reduced.uncertainty =
+        propagate(reduced.shot, options, reduced.reduction,
+                  uncertainty_options(settings, bars, reduced.shot), thread_executor());
+  }
   write_files(settings, reduced);
   context.out << (context.json ? to_text(describe(reduced, settings.with_true)) + "\n"
                                : report(reduced, context.terminal));
@@ -147,7 +173,9 @@ Command reduce_command() {
   command.examples =
       "  kolsky reduce shot.h5\n"
       "  kolsky reduce shot.h5 --json --true > shot.json\n"
-      "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n";
+      "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n"
+      "  kolsky reduce shot.h5 --bar-model pmma.toml --uncertainty\n"
+      "  kolsky reduce shot.h5 --bench corrected.toml --save corrected.h5\n";
   command.arguments = {
       needed("CAPTURE", "", "the capture to reduce", &s.capture),
       option("--bar-model", "M.toml",
@@ -172,6 +200,15 @@ Command reduce_command() {
       option("--inertia", "KIND", "take the specimen's inertia off: axial, radial or both",
              &s.inertia),
       option("--friction", "MU", "take friction at the faces off: its coefficient", &s.friction),
+      flag("--uncertainty",
+           "propagate noise and every <key>_sd of bench and bar model: bands, intervals, budget",
+           &s.uncertainty),
+      option("--draws", "N", "how many draws the uncertainty is from; 1000 by default", &s.draws),
+      option(
+          "--softening", "PER_KELVIN",
+          "relative loss of viscoelastic bars' moduli per kelvin, for temperature_K_sd; 0.003 by "
+          "default",
+          &s.softening_per_K),
       option("--bench", "BENCH.toml",
              "a corrected bench file: a new result beside the one with the capture's own",
              &s.bench),
