@@ -13,7 +13,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::size_t kChunks = 16;         // of draws, whatever the executor's threads
+constexpr std::size_t kChunk = 64;          // draws by one worker, whatever the executor's threads
 constexpr std::size_t kNoiseOnlyShare = 5;  // one draw in so many more, for the budget
 constexpr std::size_t kHistories = 5;
 
@@ -329,9 +329,10 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   result.sources = uncertainty_sources(shot.bench, *told.bar_model, wanted.bars);
   const Campaign campaign(wanted.draws, result.sources.size());
   std::vector<Draw> draws(campaign.count());
-  executor(kChunks, [&](std::size_t chunk) {
+  executor((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     Worker worker(shot, told, reduction, result.sources);
-    for (std::size_t i = chunk; i < draws.size(); i += kChunks) {
+    const std::size_t end = std::min(draws.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
       campaign.run(i, wanted.seed, worker, draws[i]);
     }
   });
