@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
 
@@ -44,6 +47,20 @@ std::string unit_of(const std::string& figure) {
   return figure.ends_with("_per_s") ? "1/s" : "strain";
 }
 
+// As a column's head: "peak_stress_Pa" is "peak stress".
+std::string short_name(std::string figure) {
+  for (const char* unit : {"_per_s", "_Pa"}) {
+    if (figure.ends_with(unit)) {
+      figure.erase(figure.size() - std::string_view(unit).size());
+    }
+  }
+  if (figure.starts_with("mean_strain_")) {
+    figure.erase(5, 7);
+  }
+  std::replace(figure.begin(), figure.end(), '_', ' ');
+  return figure;
+}
+
 }  // namespace
 
 void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object) {
@@ -73,26 +90,26 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
                              : "");
   for (const UncertainFigure& figure : uncertainty.figures) {
     const std::string unit = unit_of(figure.name);
-    text += fmt::format("    {:<24}{} ± {}, {} to {}\n", figure.name, with_unit(figure.value, unit),
-                        with_unit(figure.sd, unit), with_unit(figure.low, unit),
-                        with_unit(figure.high, unit));
+    text += fmt::format("    {:<16}{} ± {}, {} to {}\n", short_name(figure.name),
+                        with_unit(figure.value, unit), with_unit(figure.sd, unit),
+                        with_unit(figure.low, unit), with_unit(figure.high, unit));
   }
-  text += fmt::format("  budget            {:<20}", "share of variance:");
+  text += fmt::format("  {:<22}", "share of variance");
   for (const UncertainFigure& figure : uncertainty.figures) {
-    text += fmt::format("{:>24}", figure.name);
+    text += fmt::format("{:>14}", short_name(figure.name));
   }
   text += "\n";
   for (const BudgetLine& line : uncertainty.budget) {
-    text += fmt::format("    {:<34}", line.source);
-    for (std::size_t f = 0; f < line.share.size(); ++f) {
-      text += fmt::format("{:>22.1f} %", 100.0 * line.share[f]);
+    text += fmt::format("    {:<20}", line.source);
+    for (const double share : line.share) {
+      text += fmt::format("{:>12.1f} %", 100.0 * share);
     }
     text += "\n";
   }
   if (uncertainty.sources.empty()) {
     text +=
-        "    only noise counts: neither the bench file nor the bar model files a deviation "
-        "(<key>_sd)\n";
+        "    only noise counts: neither bench file nor bar model files a deviation\n"
+        "    (<key>_sd)\n";
   }
   return text;
 }

@@ -40,13 +40,14 @@ double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
   }
   pulse_transform_.forward(pulse, pulse_spectrum_);
   const double bin_Hz = pulse_transform_.bin_width_Hz();
-  const double threshold = kPowerOverNoise * noise_rms * noise_rms *
-                           static_cast<double>(pulse.size()) * static_cast<double>(kBins);
   const auto top =
       std::min(static_cast<std::size_t>(highest_Hz / bin_Hz), pulse_spectrum_.size() - 1);
   if (top <= kBins) {
     return highest_Hz;
   }
+  const double quiet = noise_rms * noise_rms * static_cast<double>(pulse.size());
+  const double threshold =
+      kPowerOverNoise * std::max(quiet, floor_below(top)) * static_cast<double>(kBins);
   std::size_t low = top - kBins;
   double power = 0.0;
   for (std::size_t k = low; k < top; ++k) {
@@ -59,6 +60,18 @@ double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
   const double limit_Hz = (static_cast<double>(low) + kBins / 2.0) * bin_Hz;
   const double steps = std::ceil(kStepsPerOctave * std::log2(highest_Hz / limit_Hz));
   return highest_Hz * std::exp2(-std::max(0.0, steps) / kStepsPerOctave);
+}
+
+/// Power per bin in the highest octave, of what is noise there: the median, which a few lines do
+/// not move.
+double BandLimit::floor_below(std::size_t top) {
+  floor_.clear();
+  for (std::size_t k = top / 2; k < top; ++k) {
+    floor_.push_back(std::norm(pulse_spectrum_[k]));
+  }
+  const auto middle = floor_.begin() + static_cast<std::ptrdiff_t>(floor_.size() / 2);
+  std::nth_element(floor_.begin(), middle, floor_.end());
+  return *middle / std::numbers::ln2;  // noise's power is exponentially distributed
 }
 
 double BandLimit::loss(std::span<const double> pulse, double noise_rms, double limit_Hz) {

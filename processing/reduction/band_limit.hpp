@@ -22,7 +22,9 @@ class BandLimit {
 
   /// The highest frequency [Hz] at which the pulse's power, averaged over neighbouring bins, is
   /// twice that of white noise, so that pulse and noise are alike; at most a fifth of the
-  /// sampling rate. Of a noiseless pulse: that fifth.
+  /// sampling rate. Of a noiseless pulse: that fifth. The noise is that before the pulse, or what
+  /// the octave below that fifth holds, if that is more: a converter of few bits makes none while
+  /// nothing moves.
   /// @param pulse      the samples that hold it, and little else; no more than `pulse_samples`
   /// @param noise_rms  of its samples
   [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms);
@@ -41,12 +43,14 @@ class BandLimit {
   [[nodiscard]] static double smear_s(double limit_Hz);
 
  private:
+  [[nodiscard]] double floor_below(std::size_t top);
   const std::vector<Complex>& filter(double limit_Hz);
 
   std::vector<Complex> s_;
   double sampling_frequency_Hz_;
   DampedTransform pulse_transform_;
   std::vector<Complex> pulse_spectrum_;
+  std::vector<double> floor_;
   std::map<double, std::vector<Complex>> filters_;
 };
 

@@ -136,6 +136,9 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         break;
       case Of::bar_diameter:
         scale(bars[u.index].diameter_m, move);
+        if (bars[u.index].side_m) {
+          scale(*bars[u.index].side_m, move);
+        }
         break;
       case Of::bar_poisson:
         scale(bars[u.index].poisson_ratio, move);

@@ -48,8 +48,19 @@ void add_bar(Sources& sources, const Bench& bench, bool input) {
   const std::string name = input ? "bars.input." : "bars.output.";
   add(sources, bench, name + "length_m", "bar lengths",
       [bar](Bench& b) -> Measured& { return bar(b).length_m; });
-  add(sources, bench, name + "diameter_m", "bar diameters",
-      [bar](Bench& b) -> Measured& { return bar(b).diameter_m; });
+  const Measured diameter = (input ? bench.input : *bench.output).diameter_m;
+  if (diameter.sd > 0.0) {
+    sources.push_back({name + "diameter_m", "bar diameters", diameter.value, diameter.sd,
+                       [bar](Bench& b, Material&, double deviations) {
+                         Bar& moved = bar(b);
+                         const double factor =
+                             1.0 + deviations * moved.diameter_m.sd / moved.diameter_m.value;
+                         moved.diameter_m.value *= factor;
+                         if (moved.side_m) {
+                           moved.side_m->value *= factor;
+                         }
+                       }});
+  }
   add(sources, bench, name + "density_kg_m3", "bar densities",
       [bar](Bench& b) -> Measured& { return bar(b).density_kg_m3; });
   add(sources, bench, name + "poisson_ratio", "Poisson's ratios",
