@@ -48,14 +48,15 @@ double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
   const double quiet = noise_rms * noise_rms * static_cast<double>(pulse.size());
   const double threshold =
       kPowerOverNoise * std::max(quiet, floor_below(top)) * static_cast<double>(kBins);
-  std::size_t low = top - kBins;
+  // Upwards from the pulse: what hums far above it is no part of it.
+  std::size_t low = 0;
   double power = 0.0;
-  for (std::size_t k = low; k < top; ++k) {
+  for (std::size_t k = 0; k < kBins; ++k) {
     power += std::norm(pulse_spectrum_[k]);
   }
-  while (power < threshold && low > 0) {
-    --low;
-    power += std::norm(pulse_spectrum_[low]) - std::norm(pulse_spectrum_[low + kBins]);
+  while (power >= threshold && low + kBins < top) {
+    power += std::norm(pulse_spectrum_[low + kBins]) - std::norm(pulse_spectrum_[low]);
+    ++low;
   }
   const double limit_Hz = (static_cast<double>(low) + kBins / 2.0) * bin_Hz;
   const double steps = std::ceil(kStepsPerOctave * std::log2(highest_Hz / limit_Hz));

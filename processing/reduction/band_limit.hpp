@@ -20,7 +20,7 @@ class BandLimit {
   /// @param pulse_samples  longest pulse that is judged
   BandLimit(const DampedTransform& transform, std::size_t pulse_samples);
 
-  /// The highest frequency [Hz] at which the pulse's power, averaged over neighbouring bins, is
+  /// The frequency [Hz] up to which the pulse's power, averaged over neighbouring bins, is above
   /// twice that of white noise, so that pulse and noise are alike; at most a fifth of the
   /// sampling rate. Of a noiseless pulse: that fifth. The noise is that before the pulse, or what
   /// the octave below that fifth holds, if that is more: a converter of few bits makes none while
