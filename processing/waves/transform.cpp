@@ -71,6 +71,9 @@ struct DampedTransform::State {
     }
     const std::scoped_lock lock(planner_lock());
     const int n = static_cast<int>(length);
+    // FFTW remembers parts of earlier plans, even estimated ones, and would build on them: the same
+    // transform would round differently in a program that has planned other lengths before.
+    fftw_forget_wisdom();
     to_frequency = fftw_plan_dft_r2c_1d(n, time.get(), frequency.get(), FFTW_ESTIMATE);
     to_time = fftw_plan_dft_c2r_1d(n, frequency.get(), time.get(), FFTW_ESTIMATE);
   }
