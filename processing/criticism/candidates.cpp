@@ -206,7 +206,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, Study
         own.push_back(i);
       }
     }
-    Executor serial;
+    Workers serial;
     serial.run = [worker](std::size_t count,
                           const std::function<void(std::size_t, std::size_t)>& work) {
       for (std::size_t i = 0; i < count; ++i) {

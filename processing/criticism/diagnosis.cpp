@@ -37,8 +37,8 @@ struct Refit {
   double log_p = 0.0;
 };
 
-Executor on_worker(std::size_t worker) {
-  Executor serial;
+Workers on_worker(std::size_t worker) {
+  Workers serial;
   serial.first = worker;
   serial.run = [worker](std::size_t count,
                         const std::function<void(std::size_t, std::size_t)>& work) {

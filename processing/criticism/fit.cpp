@@ -60,7 +60,7 @@ double ModelFit::degrees_of_freedom(const Composition& composition) const {
 
 Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& residuals,
                             const std::vector<double>& theta, const Eigen::VectorXd& at_theta,
-                            const std::vector<std::size_t>& numbers, const Executor& executor) {
+                            const std::vector<std::size_t>& numbers, const Workers& executor) {
   Eigen::MatrixXd columns(at_theta.size(), static_cast<Eigen::Index>(numbers.size()));
   executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
     std::vector<double> moved = theta;
@@ -87,7 +87,7 @@ Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& resi
 }
 
 ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
-                   const Executor& executor, std::vector<double> start,
+                   const Workers& executor, std::vector<double> start,
                    const Eigen::MatrixXd* chord) {
   ModelFit fit;
   fit.theta = start.empty() ? composition.start() : std::move(start);
