@@ -49,7 +49,8 @@ class FractionalSolid final : public Compliance {
   double E1_, E2_, eta2_, beta_;
 };
 
-constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"},
+constexpr std::array kNames{std::pair{SolidKind::elastic, "elastic"},
+                            std::pair{SolidKind::three_element, "three-element"},
                             std::pair{SolidKind::four_element_fluid, "four-element-fluid"},
                             std::pair{SolidKind::two_kelvin, "two-kelvin"},
                             std::pair{SolidKind::fractional, "fractional"}};
@@ -57,15 +58,17 @@ constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"}
 }  // namespace
 
 const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
-  static const std::vector<SolidParameter> three = {
-      {"E1_Pa", 5e9}, {"E2_Pa", 30e9}, {"eta2_Pa_s", 1.5e6}};
+  static const std::vector<SolidParameter> elastic = {{"E1_Pa"}};
+  static const std::vector<SolidParameter> three = {{"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}};
   static const std::vector<SolidParameter> four = {
-      {"E1_Pa", 5e9}, {"eta2_Pa_s", 100e6}, {"E3_Pa", 30e9}, {"eta3_Pa_s", 1.5e6}};
+      {"E1_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
   static const std::vector<SolidParameter> kelvin = {
-      {"E1_Pa", 5e9}, {"E2_Pa", 40e9}, {"eta2_Pa_s", 1.0e6}, {"E3_Pa", 100e9}, {"eta3_Pa_s", 20e6}};
+      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
   static const std::vector<SolidParameter> fractional = {
-      {"E1_Pa", 5e9}, {"E2_Pa", 30e9}, {"eta2_Pa_s", 1.5e6}, {"beta", 0.9}};
+      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"beta"}};
   switch (kind) {
+    case SolidKind::elastic:
+      return elastic;
     case SolidKind::three_element:
       return three;
     case SolidKind::four_element_fluid:
@@ -80,6 +83,8 @@ const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
 
 std::unique_ptr<const Compliance> make_solid(SolidKind kind, std::span<const double> parameters) {
   switch (kind) {
+    case SolidKind::elastic:
+      return std::make_unique<ElasticSolid>(parameters[0]);
     case SolidKind::three_element:
       return std::make_unique<ThreeElementSolid>(parameters[0], parameters[1], parameters[2]);
     case SolidKind::four_element_fluid:
@@ -99,7 +104,7 @@ SolidKind solid_kind(const std::string& name) {
     }
   }
   throw InputError("solid", "\"" + name + "\" is not a family of solids",
-                   "give three-element, four-element-fluid, two-kelvin or fractional");
+                   "give elastic, three-element, four-element-fluid, two-kelvin or fractional");
 }
 
 std::string name_of(SolidKind kind) {

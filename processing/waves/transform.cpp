@@ -27,6 +27,12 @@ bool has_small_factors(std::size_t n) {
   return n == 1;
 }
 
+struct FftwFree {
+  void operator()(void* memory) const { fftw_free(memory); }
+};
+
+}  // namespace
+
 std::size_t transform_length(std::size_t samples) {
   std::size_t n = std::max<std::size_t>(samples, 16);
   n += n % 2;
@@ -35,12 +41,6 @@ std::size_t transform_length(std::size_t samples) {
   }
   return n;
 }
-
-struct FftwFree {
-  void operator()(void* memory) const { fftw_free(memory); }
-};
-
-}  // namespace
 
 struct DampedTransform::State {
   std::size_t length;
