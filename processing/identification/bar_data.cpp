@@ -89,13 +89,13 @@ void BarData::choose_band(double asked_Hz) {
     }
     const double speed = rough_speed_m_per_s(records_.front());
     if (speed > 0.0) {
-      band_limit_Hz_ = std::min(band_limit_Hz_,
-                                kFirstModeAlone * speed / bench_.input.dispersion_radius_m());
+      band_limit_Hz_ =
+          std::min(band_limit_Hz_, kFirstModeAlone * speed / bench_.input.dispersion_radius_m());
     }
   }
   filter_limit_Hz_ = kFilterOverBand * band_limit_Hz_;
-  const auto carried = static_cast<std::size_t>(kFilteredFrom * filter_limit_Hz_ /
-                                                transform_.bin_width_Hz()) + 1;
+  const auto carried =
+      static_cast<std::size_t>(kFilteredFrom * filter_limit_Hz_ / transform_.bin_width_Hz()) + 1;
   for (std::size_t k = 0; k < std::min(carried, transform_.bins()); ++k) {
     path_.push_back(transform_.s(k));
   }
@@ -105,8 +105,7 @@ void BarData::choose_band(double asked_Hz) {
 void BarData::choose_judged_part() {
   const double period_s = records_.front().period_s;
   const double duration_s = static_cast<double>(transform_.length()) * period_s;
-  const std::size_t slow_length =
-      std::min(transform_length(2 * path_.size()), transform_.length());
+  const std::size_t slow_length = std::min(transform_length(2 * path_.size()), transform_.length());
   slow_.emplace(slow_length, duration_s / static_cast<double>(slow_length));
   slow_spectrum_.resize(slow_->bins());
   slow_record_.resize(slow_->length());
@@ -166,8 +165,8 @@ double BarData::judged_s() const {
 /// Each gauge's noise from the quiet part of all shots together; never less than that of its codes.
 void BarData::prepare_noise() {
   const double period_s = records_.front().period_s;
-  const double rate_share = static_cast<double>(slow_->length()) /
-                            static_cast<double>(transform_.length());
+  const double rate_share =
+      static_cast<double>(slow_->length()) / static_cast<double>(transform_.length());
   for (std::size_t j = 0; j < gauges(); ++j) {
     std::vector<std::span<const double>> quiet;
     double floor = 0.0;
@@ -179,8 +178,8 @@ void BarData::prepare_noise() {
     std::vector<double> power;
     for (const Complex s : judged_path_) {
       const double cycles = s.imag() / (2.0 * std::numbers::pi) * period_s;
-      power.push_back(std::max(noise.power(cycles), floor) *
-                      static_cast<double>(plain_->length()) * rate_share);
+      power.push_back(std::max(noise.power(cycles), floor) * static_cast<double>(plain_->length()) *
+                      rate_share);
     }
     noise_power_.push_back(std::move(power));
     noise_at_zero_.push_back(std::max(noise.power(0.0), floor));

@@ -58,8 +58,8 @@ struct Place {
 Place look(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& at,
            std::size_t shots) {
   const std::span<const double> parameters(at.data(), static_cast<std::size_t>(at.size()));
-  Place place{at, likelihood.evaluate(parameters, shots), prior.chi2(at), prior.weight.cwiseProduct(at - prior.centre),
-              prior.weight.asDiagonal()};
+  Place place{at, likelihood.evaluate(parameters, shots), prior.chi2(at),
+              prior.weight.cwiseProduct(at - prior.centre), prior.weight.asDiagonal()};
   for (const ShotTerms& shot : place.shots) {
     place.objective += shot.chi2;
     place.gradient += shot.gradient;
@@ -143,11 +143,11 @@ ShotEstimate estimate_of(const ShotTerms& shot, const Place& common, const Prior
   const Eigen::MatrixXd covariance =
       (shot.information.topLeftCorner(n, n) + prior_information).inverse();
   const Eigen::VectorXd own_step = -covariance * shot.gradient.head(n);
-  const auto judged = static_cast<double>(likelihood.residuals()) /
-                      static_cast<double>(likelihood.data().shots());
+  const auto judged =
+      static_cast<double>(likelihood.residuals()) / static_cast<double>(likelihood.data().shots());
   ShotEstimate estimate;
-  estimate.parameters = numbers_of(likelihood.model().theory().solid,
-                                   common.at.head(n) + own_step, covariance);
+  estimate.parameters =
+      numbers_of(likelihood.model().theory().solid, common.at.head(n) + own_step, covariance);
   estimate.chi2_reduced = shot.chi2 / judged;
   return estimate;
 }
@@ -167,8 +167,9 @@ BarFit describe(const BarLikelihood& likelihood, const Prior& prior, const Place
     fit.shots.push_back(estimate_of(shot, place, prior, likelihood));
   }
   fit.chi2_reduced = chi2 / static_cast<double>(fit.degrees_of_freedom);
-  fit.log_evidence = -0.5 * (place.objective + static_cast<double>(model.first_unknown()) *
-                                 std::log(static_cast<double>(likelihood.residuals())));
+  fit.log_evidence =
+      -0.5 * (place.objective + static_cast<double>(model.first_unknown()) *
+                                    std::log(static_cast<double>(likelihood.residuals())));
   const Eigen::MatrixXd posterior = place.information.inverse() * std::max(1.0, fit.chi2_reduced);
   fit.at.assign(place.at.data(), place.at.data() + place.at.size());
   fit.posterior = rows_of(posterior);
@@ -210,15 +211,11 @@ std::vector<double> first_guess(const BarData& data, SolidKind solid) {
   const double E1 = data.bench().input.density_kg_m3 * speed * speed;
   const double decay_per_m = std::log(records.peak.front() / records.peak.back()) / span_m;
   const double wavenumber = 2.0 * std::numbers::pi * kTypicalFrequency_Hz / speed;
-  const double tangent =
-      std::clamp(2.0 * decay_per_m / wavenumber, kLeastTangent, kMostTangent);
+  const double tangent = std::clamp(2.0 * decay_per_m / wavenumber, kLeastTangent, kMostTangent);
   const double E2 = E1 / (2.0 * tangent);
   const double eta2 = E2 * kTypicalTime_s;
   std::vector<double> guess;
   switch (solid) {
-    case SolidKind::elastic:
-      guess = {E1};
-      break;
     case SolidKind::three_element:
       guess = {E1, E2, eta2};
       break;

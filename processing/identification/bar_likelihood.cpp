@@ -38,8 +38,8 @@ std::vector<BarLikelihood::Whitening> BarLikelihood::whitening(std::span<const d
   const auto passages = model_.first_passages(at, data_.judged_path(), false);
   const auto others = static_cast<Eigen::Index>(passages.size());
   const double R = model_.reflection(at);
-  const auto returns = R != 0.0 ? model_.returns(at, data_.judged_path())
-                                : std::vector<BarModel::Spectrum>{};
+  const auto returns =
+      R != 0.0 ? model_.returns(at, data_.judged_path()) : std::vector<BarModel::Spectrum>{};
   const double turn_s = travel_there_and_back_s(data_, model_.moved(at), *model_.solid(at));
   const double turns = data_.judged_s() / turn_s;
   std::vector<Whitening> list;
@@ -75,8 +75,7 @@ std::vector<BarLikelihood::Whitening> BarLikelihood::whitening(std::span<const d
     }
     const Eigen::LLT<Eigen::MatrixXcd> factor(covariance);
     Whitening whitening;
-    whitening.lower_inverse =
-        factor.matrixL().solve(Eigen::MatrixXcd::Identity(others, others));
+    whitening.lower_inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(others, others));
     whitening.noise_of_first = data_.noise_power(0)[k] * factor.solve(mean_g).adjoint();
     list.push_back(std::move(whitening));
   }
@@ -105,9 +104,8 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     const std::span<const double> response = data_.in_time(product_);
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
       const auto b = static_cast<std::size_t>(bin);
-      const Complex turn =
-          std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(b + 1) /
-                              static_cast<double>(judged));
+      const Complex turn = std::polar(
+          1.0, -2.0 * std::numbers::pi * static_cast<double>(b + 1) / static_cast<double>(judged));
       Complex phase = 1.0;
       for (std::size_t n = 0; n < response.size(); ++n) {
         sums[n + 1] = sums[n] + response[n] * phase;
@@ -116,8 +114,8 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
       const double noise = std::sqrt(data_.noise_power(0)[b] / static_cast<double>(judged) *
                                      places.samples_per_place * places.samples_per_place *
                                      static_cast<double>(stride));
-      Complex shift = noise * data_.undo_filter(b) *
-                      std::pow(turn, -static_cast<double>(places.judged_begin));
+      Complex shift =
+          noise * data_.undo_filter(b) * std::pow(turn, -static_cast<double>(places.judged_begin));
       const Complex shift_per_entry = std::pow(turn, static_cast<double>(stride));
       const Eigen::Index row = 2 * others * bin + j;
       for (std::size_t e = 0; e < entries; ++e) {
@@ -183,7 +181,7 @@ std::vector<BarLikelihood::Spectrum> BarLikelihood::residuals_of(
 struct BarLikelihood::Columns {
   std::vector<BarModel::Transfer> transfers;  ///< on the damped path
   std::vector<BarModel::Transfer> passages;   ///< on the imaginary axis
-  std::vector<Spectrum> offset;  ///< of a unit baseline of gauge 0, by gauge, judged
+  std::vector<Spectrum> offset;               ///< of a unit baseline of gauge 0, by gauge, judged
 };
 
 /// By bin, gauges by columns: one per parameter, the baseline of gauge 0, the residual itself.
@@ -221,12 +219,11 @@ std::vector<Eigen::MatrixXcd> BarLikelihood::bins_of(std::size_t shot, const Col
       for (std::size_t k = 0; k < bins; ++k) {
         Complex noise_of_first = 0.0;
         for (Eigen::Index l = 0; l < others; ++l) {
-          noise_of_first += whitening_[k].noise_of_first[l] *
-                            residual[static_cast<std::size_t>(l)][k];
+          noise_of_first +=
+              whitening_[k].noise_of_first[l] * residual[static_cast<std::size_t>(l)][k];
         }
-        const Complex slope = passage.proportion
-                                  ? *passage.proportion * columns.passages[i].g[k]
-                                  : passage.of_g[k];
+        const Complex slope =
+            passage.proportion ? *passage.proportion * columns.passages[i].g[k] : passage.of_g[k];
         bin[k](j, m) = -moved[k] - slope * noise_of_first;
       }
     }
@@ -246,8 +243,7 @@ Eigen::MatrixXd BarLikelihood::white(const std::vector<Eigen::MatrixXcd>& bins) 
       rows.middleRows(at + others, others) = bins[k].imag();
       continue;
     }
-    const Eigen::MatrixXcd whitened =
-        std::numbers::sqrt2 * (whitening_[k].lower_inverse * bins[k]);
+    const Eigen::MatrixXcd whitened = std::numbers::sqrt2 * (whitening_[k].lower_inverse * bins[k]);
     rows.middleRows(at, others) = whitened.real();
     rows.middleRows(at + others, others) = whitened.imag();
   }

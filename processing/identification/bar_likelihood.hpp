@@ -62,8 +62,8 @@ class BarLikelihood {
   [[nodiscard]] std::vector<Whitening> whitening(std::span<const double> at);
   void couple_lowest_bins(std::span<const double> at);
   [[nodiscard]] Spectrum judged_product(const Spectrum& filter, const Spectrum& spectrum);
-  [[nodiscard]] std::vector<Spectrum> residuals_of(std::size_t shot,
-                                                   const std::vector<BarModel::Transfer>& transfers);
+  [[nodiscard]] std::vector<Spectrum> residuals_of(
+      std::size_t shot, const std::vector<BarModel::Transfer>& transfers);
   [[nodiscard]] std::vector<Eigen::MatrixXcd> bins_of(std::size_t shot, const Columns& columns);
   [[nodiscard]] Eigen::MatrixXd white(const std::vector<Eigen::MatrixXcd>& bins) const;
   [[nodiscard]] ShotTerms terms_of(std::size_t shot, const Columns& columns);

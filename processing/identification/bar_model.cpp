@@ -200,8 +200,8 @@ void BarModel::differentiate(const Place& place, Transfer& transfer) const {
         break;
       }
       case Of::poisson_ratio: {
-        const double change = u.sd * bar_.poisson_ratio /
-                              (kPoissonStep * place.moved.bar.poisson_ratio);
+        const double change =
+            u.sd * bar_.poisson_ratio / (kPoissonStep * place.moved.bar.poisson_ratio);
         add(at, [&](std::size_t k) {
           return change * slopes[k].by_gamma *
                  ((*place.other_poisson)[k].gamma - place.modes[k].gamma);

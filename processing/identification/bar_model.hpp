@@ -48,6 +48,8 @@ class BarModel {
   [[nodiscard]] std::unique_ptr<const Compliance> solid(std::span<const double> at) const;
   [[nodiscard]] MovedBench moved(std::span<const double> at) const;
   [[nodiscard]] double reflection(std::span<const double> at) const;
+  /// A bar of another density: to waves the same as another J by that factor at every frequency.
+  void scale_density(double factor) { bar_.density_kg_m3.value *= factor; }
 
   /// How g_j follows one parameter. Gains change g_j in proportion.
   struct Derivative {

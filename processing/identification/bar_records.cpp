@@ -87,8 +87,9 @@ std::vector<std::size_t> along_the_bar(const Bench& bench) {
       bench.gauges[order.back()].position_m - bench.gauges[order.front()].position_m;
   if (span < bench.input.diameter_m) {
     throw InputError("gauges",
-                     "lie within " + in_words(span, "m") + " of each other, too near to show what "
-                     "the bar does to a wave",
+                     "lie within " + in_words(span, "m") +
+                         " of each other, too near to show what "
+                         "the bar does to a wave",
                      "put gauges at least a diameter of the bar apart, better ten");
   }
   return order;
@@ -114,8 +115,8 @@ void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readi
   records.rise_s.push_back(pulse.half * records.period_s);
   records.position_m.push_back(gauge.position_m);
   const auto rise = static_cast<std::size_t>(pulse.half);
-  const auto end = std::min(strain.size(), rise + static_cast<std::size_t>(
-                                                      kReach_s / records.period_s));
+  const auto end =
+      std::min(strain.size(), rise + static_cast<std::size_t>(kReach_s / records.period_s));
   const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
   records.peak.push_back(
       std::abs(*std::max_element(strain.begin() + static_cast<std::ptrdiff_t>(rise),

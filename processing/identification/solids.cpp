@@ -49,8 +49,7 @@ class FractionalSolid final : public Compliance {
   double E1_, E2_, eta2_, beta_;
 };
 
-constexpr std::array kNames{std::pair{SolidKind::elastic, "elastic"},
-                            std::pair{SolidKind::three_element, "three-element"},
+constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"},
                             std::pair{SolidKind::four_element_fluid, "four-element-fluid"},
                             std::pair{SolidKind::two_kelvin, "two-kelvin"},
                             std::pair{SolidKind::fractional, "fractional"}};
@@ -58,7 +57,6 @@ constexpr std::array kNames{std::pair{SolidKind::elastic, "elastic"},
 }  // namespace
 
 const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
-  static const std::vector<SolidParameter> elastic = {{"E1_Pa"}};
   static const std::vector<SolidParameter> three = {{"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}};
   static const std::vector<SolidParameter> four = {
       {"E1_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
@@ -67,8 +65,6 @@ const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
   static const std::vector<SolidParameter> fractional = {
       {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"beta"}};
   switch (kind) {
-    case SolidKind::elastic:
-      return elastic;
     case SolidKind::three_element:
       return three;
     case SolidKind::four_element_fluid:
@@ -83,8 +79,6 @@ const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
 
 std::unique_ptr<const Compliance> make_solid(SolidKind kind, std::span<const double> parameters) {
   switch (kind) {
-    case SolidKind::elastic:
-      return std::make_unique<ElasticSolid>(parameters[0]);
     case SolidKind::three_element:
       return std::make_unique<ThreeElementSolid>(parameters[0], parameters[1], parameters[2]);
     case SolidKind::four_element_fluid:
@@ -104,7 +98,7 @@ SolidKind solid_kind(const std::string& name) {
     }
   }
   throw InputError("solid", "\"" + name + "\" is not a family of solids",
-                   "give elastic, three-element, four-element-fluid, two-kelvin or fractional");
+                   "give three-element, four-element-fluid, two-kelvin or fractional");
 }
 
 std::string name_of(SolidKind kind) {

@@ -12,7 +12,6 @@ namespace kolsky {
 /// Families of linear solids and fluids that a spectrum of J can be fitted with. All parameters are
 /// positive.
 enum class SolidKind {
-  elastic,             ///< J = 1/E1                                              E1
   three_element,       ///< J = 1/E1 + 1/(E2 + s eta2)                            E1, E2, eta2
   four_element_fluid,  ///< J = 1/E1 + 1/(s eta2) + 1/(E3 + s eta3)               E1, eta2, E3, eta3
   two_kelvin,  ///< J = 1/E1 + 1/(E2 + s eta2) + 1/(E3 + s eta3)          E1, E2, eta2, E3, eta3
@@ -30,7 +29,7 @@ struct SolidParameter {
 [[nodiscard]] std::unique_ptr<const Compliance> make_solid(SolidKind kind,
                                                            std::span<const double> parameters);
 
-/// @throws InputError for any other name: elastic, three-element, four-element-fluid, two-kelvin, fractional
+/// @throws InputError for any other name: three-element, four-element-fluid, two-kelvin, fractional
 [[nodiscard]] SolidKind solid_kind(const std::string& name);
 [[nodiscard]] std::string name_of(SolidKind kind);
 

@@ -36,8 +36,7 @@ BarShots::BarShots(const Setup& setup) : setup_(setup) {
       model.gauges.push_back({RodId::input, x + offset});
     }
   }
-  const BenchHistory history =
-      run_bench(model, kStep_s, setup.post_samples * kStepsPerSample + 1);
+  const BenchHistory history = run_bench(model, kStep_s, setup.post_samples * kStepsPerSample + 1);
   for (std::size_t j = 0; j < setup.position_m.size(); ++j) {
     const auto before = sampled(history.gauge_strain[3 * j], setup);
     const auto here = sampled(history.gauge_strain[3 * j + 1], setup);
@@ -104,8 +103,7 @@ std::vector<Shot> BarShots::draw(std::size_t count, const Recording& recording,
       double noise = normal(random);
       for (std::size_t n = 0; n < strain_[j].size(); ++n) {
         const double strain =
-            gain[j] * peak *
-            (strain_[j][n] + d * (gradient_[j][n] + 0.5 * d * curvature_[j][n]));
+            gain[j] * peak * (strain_[j][n] + d * (gradient_[j][n] + 0.5 * d * curvature_[j][n]));
         noise = recording.noise_correlation * noise + fresh * normal(random);
         const double volts = (strain + recording.noise_rms * noise) / 1e-3;
         channel.codes.push_back(static_cast<std::int32_t>(

@@ -3,6 +3,7 @@
 namespace kolsky::cli {
 
 Command import_csv_command();
+Command identify_bar_command();
 Command reduce_command();
 Command export_command();
 Command verify_command();
@@ -19,10 +20,10 @@ Command release_command();
 Command stop_command();
 
 std::vector<Command> all_commands() {
-  return {import_csv_command(),    reduce_command(),  export_command(), verify_command(),
-          status_command(),        arm_command(),     disarm_command(), fire_command(),
-          force_trigger_command(), shots_command(),   get_command(),    watch_command(),
-          reload_command(),        release_command(), stop_command()};
+  return {import_csv_command(), identify_bar_command(),  reduce_command(),  export_command(),
+          verify_command(),     status_command(),        arm_command(),     disarm_command(),
+          fire_command(),       force_trigger_command(), shots_command(),   get_command(),
+          watch_command(),      reload_command(),        release_command(), stop_command()};
 }
 
 }  // namespace kolsky::cli
