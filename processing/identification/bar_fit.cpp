@@ -89,6 +89,9 @@ InputError not_converged() {
 Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& start,
                std::size_t shots) {
   const std::size_t logs = likelihood.model().solid_parameters();
+  const double judged = static_cast<double>(likelihood.residuals()) *
+                        static_cast<double>(shots) /
+                        static_cast<double>(likelihood.data().shots());
   Place place = look(likelihood, prior, start, shots);
   double damping = 0.0;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -97,14 +100,16 @@ Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::Vecto
       throw not_converged();
     }
     const double gain = -place.gradient.dot(step);
-    if (gain < kNegligibleGain * std::max(1.0, 1e-6 * place.objective)) {
+    // Where the model leaves more than noise, deviations are that much wider.
+    const double widened = std::max(1.0, place.objective / judged);
+    if (gain < kNegligibleGain * widened) {
       return place;
     }
     Place next = look(likelihood, prior, place.at + step, shots);
     if (next.objective < place.objective + 1e-9 * std::abs(place.objective)) {
       place = std::move(next);
       damping = damping > 1e-6 ? damping / 10.0 : 0.0;
-    } else if (gain < kDoubtfulGain) {
+    } else if (gain < kDoubtfulGain * widened) {
       return place;
     } else {
       damping = std::max(1e-3, damping * 10.0);
@@ -243,8 +248,9 @@ BarFit fit_bar(BarData& data, const BarTheory& theory, const std::vector<double>
   const auto weigh = [&](bool exact) {
     likelihood.weigh({at.data(), static_cast<std::size_t>(at.size())}, exact);
   };
-  if (start.empty()) {
-    // Weights first as at a place near enough, then most of the way at the price of one shot.
+  // Most of the way at the price of one shot; weights turn with the waves' phases, so that those of
+  // where it began do not do for where it ends.
+  for (int round = 0; round < 2; ++round) {
     weigh(false);
     at = minimise(likelihood, prior, at, 1).at;
   }

@@ -154,6 +154,7 @@ void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warn
     warnings.push_back(
         "next to no loss stands out of the noise: E2 and eta2 are not determined; the bar is as "
         "good as elastic with E1");
+    return;
   }
   for (std::size_t i = 0; i < three.parameters.size(); ++i) {
     double scatter = 0.0;
