@@ -57,7 +57,7 @@ JsonList describe(const std::vector<Alternative>& alternatives) {
   JsonList list;
   for (const Alternative& a : alternatives) {
     JsonObject entry = {{"dispersion", name_of(a.theory.waves)},
-                        {"solid", name_of(a.theory.solid)},
+                        {"solid", a.theory.lossless ? "elastic" : name_of(a.theory.solid)},
                         {"far_end", name_of(a.theory.far_end)}};
     if (a.failed.empty()) {
       entry.push_back({"log_evidence", a.log_evidence});

@@ -42,7 +42,8 @@ std::string alternatives_text(const BarIdentification& result) {
   std::string text = "  tried, best first (log evidence under the best's, reduced chi2)\n";
   for (const Alternative& a : result.alternatives) {
     text += fmt::format("    {:<11}{:<20}far end {:<8}", name_of(a.theory.waves),
-                        name_of(a.theory.solid), name_of(a.theory.far_end));
+                        a.theory.lossless ? "elastic" : name_of(a.theory.solid),
+                        name_of(a.theory.far_end));
     text += a.failed.empty()
                 ? fmt::format("{:>12.1f}{:>11.4f}\n", a.log_evidence - best, a.chi2_reduced)
                 : " " + a.failed + "\n";

@@ -6,7 +6,6 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
-#include "processing/identification/noise_spectrum.hpp"
 #include "processing/reduction/band_limit.hpp"
 
 namespace kolsky {
@@ -119,6 +118,7 @@ void BarData::choose_judged_part() {
   const auto lead = static_cast<double>(lead_);
   places_.samples_per_place = 1.0 / per_sample;
   places_.records_begin = lead * per_sample;
+  places_.quiet_end = (lead + static_cast<double>(records_.front().quiet_samples)) * per_sample;
   places_.records_end = (lead + static_cast<double>(shortest)) * per_sample;
   const double begin = lead + std::max(edge, quiet_to_skip(edge));
   places_.judged_begin = static_cast<std::size_t>(std::ceil(begin * per_sample));
@@ -182,12 +182,18 @@ void BarData::prepare_noise() {
                       rate_share);
     }
     noise_power_.push_back(std::move(power));
-    noise_at_zero_.push_back(std::max(noise.power(0.0), floor));
+    slow_noise_.push_back(noise.slow_parts());
+    auto& of_mean = variance_of_baseline_.emplace_back();
+    for (const BarRecords& records : records_) {
+      const auto quiet_samples = static_cast<double>(records.quiet_samples);
+      of_mean.push_back(
+          std::max(noise.variance_of_mean(records.quiet_samples), floor / quiet_samples));
+    }
   }
 }
 
 double BarData::baseline_sd(std::size_t shot, std::size_t gauge) const {
-  return std::sqrt(noise_at_zero_[gauge] / static_cast<double>(records_[shot].quiet_samples));
+  return std::sqrt(variance_of_baseline_[gauge][shot]);
 }
 
 void BarData::prepare_spectra() {
@@ -220,8 +226,8 @@ void BarData::prepare_spectra() {
       judge(of_shot.back(), judged_of_shot.emplace_back(judged_path_.size()));
     }
   }
-  unit_impulse_ = filtered(std::vector<double>{1.0});
   unit_offset_ = filtered(std::vector<double>(records_.front().strain.front().size(), 1.0));
+  unit_impulse_ = filtered(std::vector<double>{1.0});
 }
 
 std::span<const double> BarData::in_time(std::span<const Complex> damped) {

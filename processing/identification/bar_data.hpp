@@ -6,6 +6,7 @@
 
 #include "processing/base/shot.hpp"
 #include "processing/identification/bar_records.hpp"
+#include "processing/identification/noise_spectrum.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -44,15 +45,17 @@ class BarData {
   [[nodiscard]] const Spectrum& spectrum(std::size_t shot, std::size_t gauge) const {
     return spectra_[shot][gauge];
   }
-  /// The same of a record that is 1 throughout: what an error of a baseline adds to it.
+  /// The same of a record that is 1 throughout.
   [[nodiscard]] const Spectrum& unit_offset() const { return unit_offset_; }
-  /// The same of a record that is 1 in its first sample alone.
+  /// The same of a record that is 1 in its first sample and 0 after it.
   [[nodiscard]] const Spectrum& unit_impulse() const { return unit_impulse_; }
   /// A damped spectrum in time, at the lower rate, from the first sample before which it is zero.
   [[nodiscard]] std::span<const double> in_time(std::span<const Complex> damped);
-  /// Places at the lower rate: where records begin and end, and what is judged of them.
+  /// Places at the lower rate: where records begin, are no longer quiet and end, and
+  /// what is judged of them.
   struct Places {
     double records_begin = 0.0;
+    double quiet_end = 0.0;
     double records_end = 0.0;
     std::size_t judged_begin = 0;
     std::size_t judged_end = 0;
@@ -69,6 +72,10 @@ class BarData {
   }
   /// What `judge` multiplies a bin of the transform by.
   [[nodiscard]] double undo_filter(std::size_t bin) const { return undo_filter_[bin]; }
+  /// The parts of a gauge's noise that are slower than a sample, in its samples.
+  [[nodiscard]] const std::vector<NoiseSpectrum::SlowPart>& slow_noise(std::size_t gauge) const {
+    return slow_noise_[gauge];
+  }
   /// Power of a gauge's noise in each judged bin.
   [[nodiscard]] const std::vector<double>& noise_power(std::size_t gauge) const {
     return noise_power_[gauge];
@@ -98,7 +105,8 @@ class BarData {
   Spectrum unit_offset_;
   Spectrum unit_impulse_;
   std::vector<std::vector<double>> noise_power_;
-  std::vector<double> noise_at_zero_;
+  std::vector<std::vector<double>> variance_of_baseline_;  ///< by gauge and shot
+  std::vector<std::vector<NoiseSpectrum::SlowPart>> slow_noise_;
   Spectrum slow_spectrum_;
   Spectrum plain_spectrum_;
   std::vector<double> slow_record_;

@@ -13,6 +13,10 @@ namespace kolsky {
 namespace {
 
 constexpr double kPriorOfLogs = 5.0;
+constexpr double kTypicalTime_s = 50e-6;  // of a glassy polymer's retardation
+/// E2 over E1 of a bar that counts as elastic, and how tightly that is held.
+constexpr double kUnseen = 1e6;
+constexpr double kHeld = 1e-3;
 constexpr double kPriorOfReflection = 2.0;
 constexpr int kMostSteps = 60;
 /// A step is not worth taking when it gains less in chi2: a hundredth of a standard deviation.
@@ -38,6 +42,11 @@ Prior prior_of(const BarData& data, const BarModel& model) {
   for (std::size_t m = 0; m < guess.size(); ++m) {
     prior.centre[static_cast<Eigen::Index>(m)] = guess[m];
     prior.weight[static_cast<Eigen::Index>(m)] = 1.0 / (kPriorOfLogs * kPriorOfLogs);
+  }
+  if (model.theory().lossless) {
+    prior.centre[1] = prior.centre[0] + std::log(kUnseen);
+    prior.centre[2] = prior.centre[1] + std::log(kTypicalTime_s);
+    prior.weight[1] = prior.weight[2] = 1.0 / (kHeld * kHeld);
   }
   if (const auto at = model.reflection_at()) {
     prior.centre[static_cast<Eigen::Index>(*at)] = -1.0;
@@ -89,8 +98,7 @@ InputError not_converged() {
 Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& start,
                std::size_t shots) {
   const std::size_t logs = likelihood.model().solid_parameters();
-  const double judged = static_cast<double>(likelihood.residuals()) *
-                        static_cast<double>(shots) /
+  const double judged = static_cast<double>(likelihood.residuals()) * static_cast<double>(shots) /
                         static_cast<double>(likelihood.data().shots());
   Place place = look(likelihood, prior, start, shots);
   double damping = 0.0;
@@ -164,6 +172,7 @@ BarFit describe(const BarLikelihood& likelihood, const Prior& prior, const Place
   fit.solid = model.theory().solid;
   fit.theory = model.theory().waves;
   fit.far_end = model.theory().far_end;
+  fit.lossless = model.theory().lossless;
   fit.band_limit_Hz = likelihood.data().band_limit_Hz();
   fit.degrees_of_freedom = likelihood.residuals() - model.first_unknown();
   double chi2 = 0.0;
@@ -201,7 +210,6 @@ BarFit describe(const BarLikelihood& likelihood, const Prior& prior, const Place
 }  // namespace
 
 std::vector<double> first_guess(const BarData& data, SolidKind solid) {
-  constexpr double kTypicalTime_s = 50e-6;  // of a glassy polymer's retardation
   constexpr double kLeastTangent = 1e-4;
   constexpr double kMostTangent = 0.3;
   constexpr double kTypicalFrequency_Hz = 5e3;

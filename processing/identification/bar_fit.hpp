@@ -35,6 +35,7 @@ struct BarFit {
   SolidKind solid = SolidKind::three_element;
   WaveTheory theory = WaveTheory::exact;
   FarEndReturn far_end = FarEndReturn::free;
+  bool lossless = false;                        ///< E2 and eta2 stand for none
   std::vector<FittedNumber> parameters;         ///< of the solid, in its order
   std::vector<std::vector<double>> covariance;  ///< of the solid's parameters
   std::optional<FittedNumber> reflection;  ///< stress returned by the far end, where it is fitted

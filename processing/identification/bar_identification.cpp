@@ -33,7 +33,7 @@ class Explanations {
       const bool same_parameters = near != nullptr && near->solid == theory.solid &&
                                    theory.far_end != FarEndReturn::partial &&
                                    near->far_end != FarEndReturn::partial;
-      entry.fit = fit_bar(data_, theory, same_parameters ? near->at : std::vector<double>{});
+      entry.fit = fitted(theory, same_parameters ? near->at : std::vector<double>{});
       entry.alternative.log_evidence = entry.fit->log_evidence;
       entry.alternative.chi2_reduced = entry.fit->chi2_reduced;
     } catch (const InputError& error) {
@@ -41,6 +41,21 @@ class Explanations {
     }
     fits_.push_back(std::make_unique<Entry>(std::move(entry)));
     return fits_.back()->fit ? &*fits_.back()->fit : nullptr;
+  }
+
+  /// Where a bar shows no loss, its retardation can be anything and a search may not end; it does
+  /// from the elastic fit.
+  BarFit fitted(const BarTheory& theory, const std::vector<double>& start) {
+    try {
+      return fit_bar(data_, theory, start);
+    } catch (const InputError&) {
+      if (theory.solid != SolidKind::three_element || theory.lossless) {
+        throw;
+      }
+    }
+    BarTheory elastic = theory;
+    elastic.lossless = true;
+    return fit_bar(data_, theory, fit_bar(data_, elastic).at);
   }
 
   [[nodiscard]] std::vector<Alternative> alternatives() const {
@@ -150,7 +165,7 @@ void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warn
                        "lacks");
   }
   const FittedNumber& E2 = three.parameters[1];
-  if (E2.sd > 0.3 * E2.value) {
+  if (three.lossless || E2.sd > 0.3 * E2.value) {
     warnings.push_back(
         "next to no loss stands out of the noise: E2 and eta2 are not determined; the bar is as "
         "good as elastic with E1");
@@ -291,8 +306,19 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     }
   }
 
+  BarTheory elastic{three_element->theory, three, three_element->far_end, true};
+  if (const BarFit* lossless = explanations.at(elastic);
+      lossless != nullptr && lossless->log_evidence > three_element->log_evidence) {
+    three_element = lossless;
+  }
+
   BarIdentification result;
   result.three_element = *three_element;
+  if (three_element->lossless) {
+    for (std::size_t i = 1; i < result.three_element.parameters.size(); ++i) {
+      result.three_element.parameters[i].sd = result.three_element.parameters[i].value;
+    }
+  }
   result.wave_theory = theory.choice;
   result.wave_theory.asked = options.theory.has_value();
   result.far_end = end.choice;
@@ -308,7 +334,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     }
     result.solid.asked = true;
   }
-  if (options.compare_solids || !options.solid) {
+  if ((options.compare_solids || !options.solid) && !three_element->lossless) {
     std::vector<const BarFit*> over_solids = {three_element};
     for (const SolidKind solid :
          {SolidKind::four_element_fluid, SolidKind::two_kelvin, SolidKind::fractional}) {

@@ -10,12 +10,12 @@
 namespace kolsky {
 
 struct BarIdentificationOptions {
-  std::optional<WaveTheory> theory;  ///< none: the one the records are evidence for
+  std::optional<WaveTheory> theory{};  ///< none: the one the records are evidence for
   std::optional<SolidKind> solid =
-      SolidKind::three_element;         ///< none: the one the records are evidence for
-  std::optional<FarEndReturn> far_end;  ///< none: the one the records are evidence for
-  bool compare_solids = true;           ///< fit the other families too, for the table
-  double band_limit_Hz = 0.0;           ///< 0: where the pulses fall below the noise
+      SolidKind::three_element;           ///< none: the one the records are evidence for
+  std::optional<FarEndReturn> far_end{};  ///< none: the one the records are evidence for
+  bool compare_solids = true;             ///< fit the other families too, for the table
+  double band_limit_Hz = 0.0;             ///< 0: where the pulses fall below the noise
 };
 
 /// One way to explain the records.

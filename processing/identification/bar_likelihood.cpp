@@ -16,6 +16,45 @@ constexpr std::size_t kLowestBins = 20;
 /// Places at which noise enters, per bin: what moves faster is not in them.
 constexpr std::size_t kPlacesPerBin = 12;
 
+/// What first-order noise does, by independent causes: `shown` is by strides of so many samples,
+/// over which the noise is taken by its mean.
+Eigen::MatrixXd driven(const Eigen::MatrixXd& shown, const NoiseSpectrum::SlowPart& part,
+                       double samples) {
+  const double keep = std::pow(part.keep, samples);
+  const double sd = std::sqrt(part.variance_of_mean(samples));
+  Eigen::MatrixXd by_cause = shown;
+  for (Eigen::Index e = by_cause.cols() - 2; e >= 0; --e) {
+    by_cause.col(e) += keep * by_cause.col(e + 1);
+  }
+  by_cause.rightCols(by_cause.cols() - 1) *= sd * std::sqrt(1.0 - keep * keep);
+  by_cause.col(0) *= sd;
+  return by_cause;
+}
+
+/// Slow noise jumps from the end of what is judged to its beginning, which every bin sees alike: a
+/// ramp's spectrum. That of gauge 0 shows at the others.
+std::vector<BarData::Spectrum> jumps(const BarData& data) {
+  constexpr double kSlow = 0.8;  // correlation of neighbouring samples
+  const auto variance_of = [&](std::size_t gauge) {
+    double variance = 0.0;
+    for (const auto& part : data.slow_noise(gauge)) {
+      variance += part.keep > kSlow ? 2.0 * part.variance : 0.0;
+    }
+    return variance;
+  };
+  const auto judged = static_cast<double>(data.places().judged_end - data.places().judged_begin);
+  std::vector<BarData::Spectrum> list;
+  for (std::size_t j = 1; j < data.gauges(); ++j) {
+    const double sd = std::sqrt(variance_of(0) + variance_of(j));
+    BarData::Spectrum& jump = list.emplace_back();
+    for (std::size_t k = 0; k < data.judged_path().size(); ++k) {
+      const double angle = -2.0 * std::numbers::pi * static_cast<double>(k + 1) / judged;
+      jump.push_back(sd / (std::polar(1.0, angle) - 1.0));
+    }
+  }
+  return list;
+}
+
 double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
                                const Compliance& compliance) {
   const double distance_m = 2.0 * (moved.bar.length_m - moved.position_m[0]);
@@ -82,44 +121,42 @@ std::vector<BarLikelihood::Whitening> BarLikelihood::whitening(std::span<const d
   return list;
 }
 
-/// Noise of gauge 0 that enters at a place of its record shows at the others as the response from
-/// there to the end of what is judged: sums over the response, one per bin, give the covariance.
-void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
+/// What a unit of gauge 0's reading over one stride shows at the others in the lowest bins. Rows as
+/// in `white`, columns by the stride. The response from its place to the end of what is judged:
+/// differences of sums over one response. The mean of the quiet strides is taken off, as it is from
+/// the records.
+Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
+                                              std::size_t stride) const {
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
-  const auto bins = static_cast<Eigen::Index>(lowest_bins_);
-  const auto stride = std::max<std::size_t>(
-      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins_));
   const auto begin = static_cast<std::size_t>(places.records_begin);
   const std::size_t entries = (places.judged_end - begin) / stride;
   const std::size_t judged = places.judged_end - places.judged_begin;
   const auto transfers = model_.transfers(at, data_.path(), false);
-  // Rows as in `white`, columns by the place at which the noise enters.
-  Eigen::MatrixXd shown(2 * others * bins, static_cast<Eigen::Index>(entries));
+  Eigen::MatrixXd shown(2 * others * static_cast<Eigen::Index>(lowest_bins_),
+                        static_cast<Eigen::Index>(entries));
   std::vector<Complex> sums(places.judged_end + 1);
+  Spectrum product(data_.path().size());
   for (Eigen::Index j = 0; j < others; ++j) {
-    for (std::size_t k = 0; k < product_.size(); ++k) {
-      product_[k] = transfers[static_cast<std::size_t>(j)].g[k] * data_.unit_impulse()[k];
+    for (std::size_t k = 0; k < product.size(); ++k) {
+      product[k] = transfers[static_cast<std::size_t>(j)].g[k] * data_.unit_impulse()[k];
     }
-    const std::span<const double> response = data_.in_time(product_);
-    for (Eigen::Index bin = 0; bin < bins; ++bin) {
-      const auto b = static_cast<std::size_t>(bin);
-      const Complex turn = std::polar(
-          1.0, -2.0 * std::numbers::pi * static_cast<double>(b + 1) / static_cast<double>(judged));
+    const std::span<const double> response = data_.in_time(product);
+    for (std::size_t bin = 0; bin < lowest_bins_; ++bin) {
+      const double angle =
+          -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
+      const Complex turn = std::polar(1.0, angle);
       Complex phase = 1.0;
       for (std::size_t n = 0; n < response.size(); ++n) {
         sums[n + 1] = sums[n] + response[n] * phase;
         phase *= turn;
       }
-      const double noise = std::sqrt(data_.noise_power(0)[b] / static_cast<double>(judged) *
-                                     places.samples_per_place * places.samples_per_place *
-                                     static_cast<double>(stride));
-      Complex shift =
-          noise * data_.undo_filter(b) * std::pow(turn, -static_cast<double>(places.judged_begin));
-      const Complex shift_per_entry = std::pow(turn, static_cast<double>(stride));
-      const Eigen::Index row = 2 * others * bin + j;
+      const double samples = static_cast<double>(stride) * places.samples_per_place;
+      Complex shift = samples * data_.undo_filter(bin) *
+                      std::polar(1.0, -angle * static_cast<double>(places.judged_begin));
+      const Complex shift_per_entry = std::polar(1.0, angle * static_cast<double>(stride));
+      const Eigen::Index row = 2 * others * static_cast<Eigen::Index>(bin) + j;
       for (std::size_t e = 0; e < entries; ++e) {
-        // Entering e strides later, the same response is that much later.
         const std::size_t late = e * stride;
         const std::size_t first = places.judged_begin > late ? places.judged_begin - late : 0;
         const Complex seen = shift * (sums[places.judged_end - late] - sums[first]);
@@ -129,20 +166,87 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
       }
     }
   }
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(shown.rows(), shown.rows());
-  covariance.selfadjointView<Eigen::Lower>().rankUpdate(shown);
+  const auto quiet = std::max<Eigen::Index>(
+      1, static_cast<Eigen::Index>((places.quiet_end - places.records_begin) /
+                                   static_cast<double>(stride)));
+  const Eigen::VectorXd of_constant = shown.rowwise().sum() / static_cast<double>(quiet);
+  shown.leftCols(quiet).colwise() -= of_constant;
+  return shown;
+}
+
+/// The same of a gauge's own reading in its own rows, from where the judging begins.
+Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t stride) const {
+  const BarData::Places& places = data_.places();
+  const std::size_t judged = places.judged_end - places.judged_begin;
+  Eigen::MatrixXd shown(static_cast<Eigen::Index>(2 * lowest_bins_),
+                        static_cast<Eigen::Index>(judged / stride));
+  for (Eigen::Index bin = 0; bin < static_cast<Eigen::Index>(lowest_bins_); ++bin) {
+    const double angle =
+        -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
+    for (Eigen::Index e = 0; e < shown.cols(); ++e) {
+      const Complex seen = std::polar(static_cast<double>(stride),
+                                      angle * static_cast<double>(stride) * static_cast<double>(e));
+      shown(2 * bin, e) = seen.real();
+      shown(2 * bin + 1, e) = seen.imag();
+    }
+  }
+  return shown;
+}
+
+void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
+  const BarData::Places& places = data_.places();
+  const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
+  const auto bins = static_cast<Eigen::Index>(lowest_bins_);
+  const auto judged = static_cast<double>(places.judged_end - places.judged_begin);
+  const auto stride = std::max<std::size_t>(
+      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins_));
+  const double samples = static_cast<double>(stride) * places.samples_per_place;
+  // Power per sample of what is not in the slow parts, which are treated each by itself.
+  const auto steady = [&](std::size_t gauge, std::size_t bin) {
+    double power = data_.noise_power(gauge)[bin] * places.samples_per_place / judged;
+    const double cycles = data_.judged_path()[bin].imag() / (2.0 * std::numbers::pi) *
+                          data_.records().front().period_s;
+    for (const auto& part : data_.slow_noise(gauge)) {
+      power -= part.power(cycles);
+    }
+    return std::max(power, 0.0);
+  };
+  const Eigen::MatrixXd by_first = shown_by_first(at, stride);
+  Eigen::MatrixXd scaled = by_first;
   for (Eigen::Index bin = 0; bin < bins; ++bin) {
-    for (Eigen::Index j = 0; j < others; ++j) {
+    scaled.middleRows(2 * others * bin, 2 * others) *=
+        std::sqrt(steady(0, static_cast<std::size_t>(bin)) / samples);
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(by_first.rows(), by_first.rows());
+  covariance.selfadjointView<Eigen::Lower>().rankUpdate(scaled);
+  for (const auto& part : data_.slow_noise(0)) {
+    covariance.selfadjointView<Eigen::Lower>().rankUpdate(driven(by_first, part, samples));
+  }
+  for (Eigen::Index j = 0; j < others; ++j) {
+    const auto gauge = static_cast<std::size_t>(j) + 1;
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(2 * bins, 2 * bins);
+    if (!data_.slow_noise(gauge).empty()) {
+      const Eigen::MatrixXd by_own = shown_by_own(stride);
+      for (const auto& part : data_.slow_noise(gauge)) {
+        own.selfadjointView<Eigen::Lower>().rankUpdate(driven(by_own, part, samples));
+      }
+    }
+    for (Eigen::Index bin = 0; bin < bins; ++bin) {
       const double half =
-          0.5 * data_.noise_power(static_cast<std::size_t>(j) + 1)[static_cast<std::size_t>(bin)];
-      const Eigen::Index row = 2 * others * bin + j;
-      covariance(row, row) += half;
-      covariance(row + others, row + others) += half;
+          0.5 * steady(gauge, static_cast<std::size_t>(bin)) * judged / places.samples_per_place;
+      own(2 * bin, 2 * bin) += half;
+      own(2 * bin + 1, 2 * bin + 1) += half;
+    }
+    const auto place = [&](Eigen::Index i) { return 2 * others * (i / 2) + j + others * (i % 2); };
+    for (Eigen::Index a = 0; a < 2 * bins; ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        covariance(place(a), place(b)) += own(a, b);
+      }
     }
   }
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(covariance);
   lowest_lower_inverse_ =
-      factor.matrixL().solve(Eigen::MatrixXd::Identity(shown.rows(), shown.rows()));
+      factor.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.rows()));
 }
 
 void BarLikelihood::weigh(std::span<const double> at, bool exact) {
@@ -181,23 +285,26 @@ std::vector<BarLikelihood::Spectrum> BarLikelihood::residuals_of(
 struct BarLikelihood::Columns {
   std::vector<BarModel::Transfer> transfers;  ///< on the damped path
   std::vector<BarModel::Transfer> passages;   ///< on the imaginary axis
-  std::vector<Spectrum> offset;               ///< of a unit baseline of gauge 0, by gauge, judged
+  std::vector<Spectrum> offset;               ///< what the baseline's error makes of each r_j
+  std::vector<Spectrum> jump;                 ///< and noise that ends elsewhere than it began
 };
 
-/// By bin, gauges by columns: one per parameter, the baseline of gauge 0, the residual itself.
+/// By bin, gauges by columns: one per parameter, the residual, the baseline, the gauges' jumps.
 std::vector<Eigen::MatrixXcd> BarLikelihood::bins_of(std::size_t shot, const Columns& columns) {
   const std::size_t bins = data_.judged_path().size();
   const auto others = static_cast<Eigen::Index>(columns.transfers.size());
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
   const std::vector<Spectrum> residual = residuals_of(shot, columns.transfers);
-  const Eigen::Index wide = parameters + 2;
+  const Eigen::Index wide = parameters + 2 + others;
   std::vector<Eigen::MatrixXcd> bin(bins, Eigen::MatrixXcd::Zero(others, wide));
-  const double baseline_sd = data_.baseline_sd(shot, 0);
   for (Eigen::Index j = 0; j < others; ++j) {
     const auto i = static_cast<std::size_t>(j);
     for (std::size_t k = 0; k < bins; ++k) {
-      bin[k](j, parameters) = baseline_sd * columns.offset[i][k];
-      bin[k](j, parameters + 1) = residual[i][k];
+      bin[k](j, parameters) = residual[i][k];
+      if (k >= lowest_bins_) {
+        bin[k](j, parameters + 1) = columns.offset[i][k];
+        bin[k](j, parameters + 2 + j) = columns.jump[i][k];
+      }
     }
   }
   for (Eigen::Index j = 0; j < others; ++j) {
@@ -258,17 +365,20 @@ Eigen::MatrixXd BarLikelihood::white(const std::vector<Eigen::MatrixXcd>& bins) 
 ShotTerms BarLikelihood::terms_of(std::size_t shot, const Columns& columns) {
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
   const Eigen::MatrixXd rows = white(bins_of(shot, columns));
-  const auto residuals = rows.col(parameters + 1);
-  const auto offset = rows.col(parameters);
-  const double offset_information = 1.0 + offset.squaredNorm();
-  const double offset_gradient = offset.dot(residuals);
+  const auto residuals = rows.col(parameters);
+  const auto slopes = rows.leftCols(parameters);
+  const auto nuisances = rows.rightCols(rows.cols() - parameters - 1);
+  const Eigen::LLT<Eigen::MatrixXd> known(
+      Eigen::MatrixXd::Identity(nuisances.cols(), nuisances.cols()) +
+      nuisances.transpose() * nuisances);
+  const Eigen::VectorXd in_residuals = nuisances.transpose() * residuals;
+  const Eigen::MatrixXd in_slopes = nuisances.transpose() * slopes;
+  const Eigen::VectorXd explained = known.solve(in_residuals);
   ShotTerms terms;
-  terms.chi2 = residuals.squaredNorm() - offset_gradient * offset_gradient / offset_information;
-  const auto J = rows.leftCols(parameters);
-  const Eigen::VectorXd coupling = J.transpose() * offset;
-  terms.gradient = J.transpose() * residuals - coupling * (offset_gradient / offset_information);
-  terms.information = J.transpose() * J;
-  terms.information -= coupling * coupling.transpose() / offset_information;
+  terms.chi2 = residuals.squaredNorm() - in_residuals.dot(explained);
+  terms.gradient = slopes.transpose() * residuals - in_slopes.transpose() * explained;
+  terms.information = slopes.transpose() * slopes;
+  terms.information -= in_slopes.transpose() * known.solve(in_slopes);
   return terms;
 }
 
@@ -276,8 +386,12 @@ std::vector<ShotTerms> BarLikelihood::evaluate(std::span<const double> at, std::
   Columns columns;
   columns.transfers = model_.transfers(at, data_.path(), true);
   columns.passages = model_.first_passages(at, data_.judged_path(), true);
+  columns.jump = jumps(data_);
   for (const auto& transfer : columns.transfers) {
     columns.offset.push_back(judged_product(transfer.g, data_.unit_offset()));
+    for (Complex& value : columns.offset.back()) {
+      value *= data_.baseline_sd(0, 0);
+    }
   }
   std::vector<ShotTerms> terms;
   for (std::size_t shot = 0; shot < std::min(shots, data_.shots()); ++shot) {

@@ -30,7 +30,9 @@ struct ShotTerms {
 /// far as the record is long, so that it is not steady: g g^H is averaged over how many returns
 /// there has been time for, and in the lowest bins, which that ties to each other and where a
 /// bar's retardation shows, the covariance is that of the record's own length.
-/// The baseline of y_0 is known as well as the quiet samples tell it; its error is eliminated too.
+/// That covariance also holds what slow noise does within a record, and the error that noise of the
+/// quiet samples makes of y_0's baseline; in the other bins these are a baseline of y_0 and a jump
+/// between the ends of each r_j, unknown as the noise leaves them, which are eliminated.
 class BarLikelihood {
  public:
   /// @param data outlives this
@@ -61,6 +63,9 @@ class BarLikelihood {
 
   [[nodiscard]] std::vector<Whitening> whitening(std::span<const double> at);
   void couple_lowest_bins(std::span<const double> at);
+  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at,
+                                               std::size_t stride) const;
+  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t stride) const;
   [[nodiscard]] Spectrum judged_product(const Spectrum& filter, const Spectrum& spectrum);
   [[nodiscard]] std::vector<Spectrum> residuals_of(
       std::size_t shot, const std::vector<BarModel::Transfer>& transfers);

@@ -22,6 +22,7 @@ struct BarTheory {
   WaveTheory waves = WaveTheory::exact;
   SolidKind solid = SolidKind::three_element;
   FarEndReturn far_end = FarEndReturn::free;
+  bool lossless = false;  ///< three elements of which E2 is too stiff to be seen: elastic
   friend bool operator==(const BarTheory&, const BarTheory&) = default;
 };
 

@@ -12,7 +12,7 @@ namespace kolsky {
 namespace {
 
 /// What is left of a wave at the end of a damped record.
-constexpr double kLeftAtEnd = 1e-3;
+constexpr double kLeftAtEnd = 3e-5;
 
 /// Records of all shots from shortly before the pulse on, damped, at the frequencies of a band.
 struct DampedBand {
@@ -230,17 +230,21 @@ std::vector<std::vector<Complex>> slopes_by_log_J(const BarModel& model, const B
   return slopes;
 }
 
-std::vector<double> powers_at(const BarData& data, double frequency_Hz, double samples) {
+/// Power by gauge of noise in damped sums, the error of the baseline with it, over all shots.
+std::vector<double> powers_at(const BarData& data, const DampedBand& band, std::size_t k) {
   const auto& path = data.judged_path();
   const double width = path.front().imag() / (2.0 * std::numbers::pi);
-  const auto bin = std::min(static_cast<std::size_t>(std::max(0.0, frequency_Hz / width - 0.5)),
-                            path.size() - 1);
+  const auto bin = std::min(
+      static_cast<std::size_t>(std::max(0.0, band.frequency_Hz[k] / width - 0.5)), path.size() - 1);
   const auto& places = data.places();
   const double judged_samples =
       static_cast<double>(places.judged_end - places.judged_begin) / places.samples_per_place;
+  const double of_constant = 1.0 / std::norm(band.path[k] * band.period_s);
   std::vector<double> powers;
   for (std::size_t j = 0; j < data.gauges(); ++j) {
-    powers.push_back(data.noise_power(j)[bin] / judged_samples * samples);
+    const double baseline = data.baseline_sd(0, j);
+    powers.push_back(data.noise_power(j)[bin] / judged_samples * band.samples_seen() +
+                     baseline * baseline * of_constant);
   }
   return powers;
 }
@@ -264,7 +268,7 @@ BarSpectrum likely_spectrum(const BarData& data, const BarFit& fit) {
   Eigen::VectorXcd slope(others);
   Eigen::VectorXcd r(others);
   for (std::size_t k = 0; k < band.path.size(); ++k) {
-    const auto power = powers_at(data, band.frequency_Hz[k], band.samples_seen());
+    const auto power = powers_at(data, band, k);
     for (Eigen::Index j = 0; j < others; ++j) {
       g[j] = transfers[static_cast<std::size_t>(j)].g[k];
       slope[j] = slopes[static_cast<std::size_t>(j)][k];
@@ -348,7 +352,7 @@ BarSpectrum straight_line_spectrum(const BarData& data, const BarFit& fit) {
     std::vector<double> phase_before(data.gauges(), 0.0);
     for (std::size_t k = 0; k < band.path.size(); ++k) {
       const Complex s = band.path[k];
-      const auto power = powers_at(data, band.frequency_Hz[k], band.samples_seen());
+      const auto power = powers_at(data, band, k);
       Complex sum = 0.0;
       Complex sum_with_x = 0.0;
       double variance = 0.0;

@@ -1,38 +1,82 @@
-#include <chrono>
+// How often the truth lies inside the stated 95 % interval of a ten-shot identification, and how
+// wide the intervals are: identify_coverage [--repeats 2000] [--row 1..4] [--noise correlation]
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "processing/identification/bar_fit.hpp"
 #include "tests/generators/bar_shots.hpp"
+#include "tests/generators/table4.hpp"
+
+namespace {
+
 using namespace kolsky;
-int main(int argc, char** argv) {
-  const int repeats = argc > 1 ? std::atoi(argv[1]) : 3;
-  const double gain_sd = argc > 2 ? std::atof(argv[2]) : 0.0;
-  const double pos_sd = argc > 3 ? std::atof(argv[3]) : 0.0;
-  const double corr = argc > 4 ? std::atof(argv[4]) : 0.0;
-  const std::size_t count = argc > 5 ? std::atoi(argv[5]) : 10;
-  testing::BarShots::Setup setup;
-  setup.material = {1180, 5.66e9, 37e9, 1.81e6};
-  const testing::BarShots gen(setup);
-  std::mt19937_64 random(7);
-  const double truth[3] = {5.66e9, 37e9, 1.81e6};
-  double inside[3] = {}, z2[3] = {}, zm[3] = {}, sd[3] = {}, chi = 0, ms = 0;
-  for (int r = 0; r < repeats; ++r) {
-    const auto shots = gen.draw(count, {.noise_correlation = corr, .gain_sd = gain_sd, .position_sd_m = pos_sd}, random);
-    const auto t0 = std::chrono::steady_clock::now();
-    const BarFit fit = fit_bar(shots, {.theory = WaveTheory::elementary});
-    ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t0).count();
-    chi += fit.chi2_reduced;
-    for (int i = 0; i < 3; ++i) {
-      const double z = (fit.parameters[i].value - truth[i]) / fit.parameters[i].sd;
-      inside[i] += std::abs(z) < 1.96;
-      z2[i] += z * z; zm[i] += z;
-      sd[i] += fit.parameters[i].sd / truth[i];
+
+double argument(const std::vector<std::string>& words, const std::string& name, double otherwise) {
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i] == name) {
+      double value = 0.0;
+      const char* end = words[i + 1].data() + words[i + 1].size();
+      if (std::from_chars(words[i + 1].data(), end, value).ptr != end) {
+        throw std::invalid_argument(name + " needs a number");
+      }
+      return value;
     }
-    if (r == 0) std::printf("band %g dof %zu\n", fit.band_limit_Hz, fit.degrees_of_freedom);
   }
-  std::printf("ms %.2f chi2 %.4f\n", ms / repeats, chi / repeats);
-  for (int i = 0; i < 3; ++i)
-    std::printf("cover %.4f mean z %.3f rms z %.3f sd %.5f %%\n", inside[i] / repeats, zm[i]/repeats, std::sqrt(z2[i] / repeats), 100 * sd[i] / repeats);
+  return otherwise;
+}
+
+void cover(std::size_t row, int repeats, const testing::BarShots::Recording& recording) {
+  testing::BarShots::Setup setup;
+  setup.material = testing::kTable4[row].material;
+  setup.poisson_ratio = testing::kTable4[row].poisson_ratio;
+  const testing::BarShots shots(setup);
+  const double truth[3] = {setup.material.E1_Pa, setup.material.E2_Pa, setup.material.eta2_Pa_s};
+  int inside[3] = {};
+  double squares[3] = {};
+  double stated[3] = {};
+  std::mt19937_64 random(row + 1);
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    const BarFit fit =
+        fit_bar(shots.draw(10, recording, random), {.theory = WaveTheory::elementary});
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double error = fit.parameters[i].value - truth[i];
+      inside[i] += std::abs(error) < 1.96 * fit.parameters[i].sd ? 1 : 0;
+      squares[i] += error * error;
+      stated[i] += fit.parameters[i].sd / repeats;
+    }
+  }
+  std::printf("%s, %d repeats\n", testing::kTable4[row].source, repeats);
+  const char* const names[3] = {"E1", "E2", "eta2"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::printf("  %-5s inside 95 %%: %5.2f %%   error rms %.4f %%   stated sd %.4f %%\n", names[i],
+                100.0 * inside[i] / repeats, 100.0 * std::sqrt(squares[i] / repeats) / truth[i],
+                100.0 * stated[i] / truth[i]);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    const auto repeats = static_cast<int>(argument(words, "--repeats", 2000));
+    const auto only = static_cast<std::size_t>(argument(words, "--row", 0));
+    testing::BarShots::Recording recording;
+    recording.gain_sd = 0.01;
+    recording.position_sd_m = 0.2e-3;
+    recording.noise_correlation = argument(words, "--noise", 0.0);
+    for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
+      if (only == 0 || only == row + 1) {
+        cover(row, repeats, recording);
+      }
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "identify_coverage: %s\n", error.what());
+    return 2;
+  }
 }
