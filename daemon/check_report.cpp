@@ -35,7 +35,9 @@ std::string gauges_line(const DaemonConfig& config, const Apparatus& apparatus) 
 std::string check_report(const DaemonConfig& config, const Apparatus& apparatus) {
   const double rate_Hz = apparatus.bench.sampling_frequency_Hz;
   const TriggerConfig& trigger = config.trigger;
-  const auto block = static_cast<std::size_t>(config.digitiser.block_samples);
+  const std::size_t block = config.digitiser.block_samples != 0
+                                ? static_cast<std::size_t>(config.digitiser.block_samples)
+                                : default_block(rate_Hz);
   const std::size_t ring = ring_samples(config, rate_Hz, block);
   const TriggerOptions options = trigger_options(trigger, rate_Hz);
   const auto milliseconds = [&](auto samples) {

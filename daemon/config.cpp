@@ -60,7 +60,9 @@ DigitiserConfig read_digitiser(const TomlTable& table, const std::filesystem::pa
   }
   digitiser.device = table.optional_text("device").value_or("");
   digitiser.channels = table.optional_texts("channels").value_or(std::vector<std::string>{});
-  digitiser.block_samples = integer_within(table, "block_samples", 1024, 16, 1 << 22);
+  if (table.has("block_samples")) {
+    digitiser.block_samples = integer_within(table, "block_samples", 16, 16, 1 << 22);
+  }
   digitiser.speed = number_within(table, "speed", 0.0, 0.0, 1e6);
   return digitiser;
 }
@@ -270,15 +272,15 @@ DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& benc
   return options;
 }
 
-std::size_t ring_samples(const DaemonConfig& config, double sample_rate_Hz,
+std::size_t ring_samples(const DaemonConfig& config, double arrival_rate_Hz,
                          std::size_t max_block_samples) {
   constexpr double kDefault_s = 2.0;
   constexpr double kDefaultMost = 1 << 22;
   const auto window =
       static_cast<std::size_t>(config.trigger.pre_samples + config.trigger.post_samples);
   const std::size_t least = 4 * (window + max_block_samples);
-  const double wanted = config.ring_s ? *config.ring_s * sample_rate_Hz
-                                      : std::min(kDefault_s * sample_rate_Hz, kDefaultMost);
+  const double wanted = config.ring_s ? *config.ring_s * arrival_rate_Hz
+                                      : std::min(kDefault_s * arrival_rate_Hz, kDefaultMost);
   return std::max(least, static_cast<std::size_t>(wanted));
 }
 

@@ -33,8 +33,8 @@ struct DigitiserConfig {
   std::string uri;
   std::string device;
   std::vector<std::string> channels;
-  std::int64_t block_samples = 1024;
-  double speed = 0.0;  ///< of a replay: factor on the real rate; 0: as fast as possible
+  std::int64_t block_samples = 0;  ///< 0: what arrives in about a millisecond
+  double speed = 0.0;              ///< of a replay: factor on the real rate; 0: as fast as possible
 
   friend bool operator==(const DigitiserConfig&, const DigitiserConfig&) = default;
 };
@@ -87,7 +87,8 @@ struct Apparatus {
 
 /// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded
 /// so that a fast scope does not take the memory; always several windows and blocks.
-[[nodiscard]] std::size_t ring_samples(const DaemonConfig& config, double sample_rate_Hz,
+/// @param arrival_rate_Hz  samples per second of the wall clock
+[[nodiscard]] std::size_t ring_samples(const DaemonConfig& config, double arrival_rate_Hz,
                                        std::size_t max_block_samples);
 
 }  // namespace kolsky

@@ -41,7 +41,8 @@ std::shared_ptr<const ShotSettings> make_settings(const DaemonConfig& config,
 }
 
 SampleRing make_ring(const DaemonConfig& config, const StreamInfo& stream) {
-  const std::size_t samples = ring_samples(config, stream.rate.Hz(), stream.max_block_samples);
+  const std::size_t samples =
+      ring_samples(config, arrival_rate_Hz(stream), stream.max_block_samples);
   try {
     return SampleRing(stream.format, stream.channels.size(), samples);
   } catch (const std::bad_alloc&) {
@@ -54,9 +55,13 @@ SampleRing make_ring(const DaemonConfig& config, const StreamInfo& stream) {
 
 /// Recovers before a journal of this run is opened.
 std::uint64_t recovered(const StoreLayout& store, std::uint64_t boot_id) {
-  const StoreReport report = recover_store(store);
+  const StoreReport report = recover_store(store, DoneJournals::prune);
   for (const std::string& id : report.recovered) {
     log::info(fmt::format("shot {} was in a journal only; its capture is written now", id));
+  }
+  if (!report.pruned.empty()) {
+    log::info(fmt::format("{} journals removed, whose {} shots are in captures that were read back",
+                          report.pruned.size(), report.journaled_shots));
   }
   for (const StoreReport::Problem& problem : report.problems) {
     log::warning(problem.file + ": " + problem.text);

@@ -32,7 +32,7 @@ Acquirer::Acquirer(Digitiser& digitiser, SampleRing& ring, AcquisitionQueue& eve
       events_(events),
       stream_(digitiser.info()),
       watch_(plan),
-      baselines_(stream_.channels.size(), IncidentTrigger(plan.trigger)),
+      quiet_(stream_.channels.size(), ChannelLevel(plan.trigger)),
       statistics_(stream_.channels.size()),
       levels_(stream_.channels.size()) {}
 
@@ -156,6 +156,7 @@ void Acquirer::take(const Block& block) {
   end_monotonic_ns_ = block.monotonic_ns;
   samples_read_.fetch_add(block.samples, std::memory_order_relaxed);
   watch(block);
+  follow_quiet_channels();
   close_full_windows();
   show_levels();
 }
@@ -179,9 +180,6 @@ void Acquirer::note_missing(const Block& block) {
                              std::memory_order_relaxed);
   unknown_gaps_.fetch_add(known ? 0 : 1, std::memory_order_relaxed);
   watch_.trigger.reset_run();
-  for (IncidentTrigger& baseline : baselines_) {
-    baseline.reset_run();
-  }
   tell_gap(event);
 }
 
@@ -195,8 +193,8 @@ void Acquirer::begin_capture(const Block& block) {
     level.learned.store(false, std::memory_order_relaxed);
   }
   watch_.trigger.reset();
-  for (IncidentTrigger& baseline : baselines_) {
-    baseline.reset();
+  for (ChannelLevel& channel : quiet_) {
+    channel.forget();
   }
 }
 
@@ -204,8 +202,7 @@ void Acquirer::watch(const Block& block) {
   if (block.mark) {
     take_mark(block, *block.mark);
   }
-  const std::optional<TriggerEvent> event =
-      stream_.format == SampleFormat::int16 ? feed<std::int16_t>(block) : feed<std::int32_t>(block);
+  const std::optional<TriggerEvent> event = feed_trigger(block);
   if (event && armed() && !capture_marked_) {
     trigger_at(*event);
   }
@@ -214,19 +211,22 @@ void Acquirer::watch(const Block& block) {
   }
 }
 
-template <typename Code>
-std::optional<TriggerEvent> Acquirer::feed(const Block& block) {
-  const std::size_t trigger_channel = watch_.plan.trigger_channel;
-  std::optional<TriggerEvent> event;
-  for (std::size_t i = 0; i < block.channels.size(); ++i) {
-    const std::span<const Code> codes = codes_of<Code>(block.channels[i]);
-    if (i == trigger_channel) {
-      event = watch_.trigger.feed(block.first_tick, codes, statistics_[i]);
-    } else {
-      baselines_[i].feed(block.first_tick, codes, statistics_[i]);
+std::optional<TriggerEvent> Acquirer::feed_trigger(const Block& block) {
+  const std::size_t channel = watch_.plan.trigger_channel;
+  const std::span<const std::byte> bytes = block.channels[channel];
+  const RunStatistics& statistics = statistics_[channel];
+  return stream_.format == SampleFormat::int16
+             ? watch_.trigger.feed(block.first_tick, codes_of<std::int16_t>(bytes), statistics)
+             : watch_.trigger.feed(block.first_tick, codes_of<std::int32_t>(bytes), statistics);
+}
+
+/// Their statistics were taken on the way into the ring; the samples are not looked at again.
+void Acquirer::follow_quiet_channels() {
+  for (std::size_t i = 0; i < quiet_.size(); ++i) {
+    if (i != watch_.plan.trigger_channel) {
+      quiet_[i].take(statistics_[i]);
     }
   }
-  return event;
 }
 
 void Acquirer::take_mark(const Block& block, const TriggerEvent& mark) {
@@ -465,17 +465,27 @@ void Acquirer::pause(std::int64_t milliseconds) const {
 }
 
 void Acquirer::show_levels() {
-  const std::size_t trigger_channel = watch_.plan.trigger_channel;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    const bool triggers = i == trigger_channel;
-    const IncidentTrigger& source = triggers ? watch_.trigger : baselines_[i];
-    levels_[i].baseline.store(source.baseline_codes(), std::memory_order_relaxed);
-    levels_[i].noise.store(source.noise_codes(), std::memory_order_relaxed);
-    levels_[i].level.store(triggers ? source.level_codes() : 0.0, std::memory_order_relaxed);
-    if (source.ready()) {  // stays so: in the hold-off after a trigger they are still known
-      levels_[i].learned.store(true, std::memory_order_relaxed);
+    AtomicLevel& level = levels_[i];
+    if (i == watch_.plan.trigger_channel) {
+      show_trigger_level(level);
+    } else {
+      level.baseline.store(quiet_[i].baseline_codes(), std::memory_order_relaxed);
+      level.noise.store(quiet_[i].noise_codes(), std::memory_order_relaxed);
+      level.level.store(0.0, std::memory_order_relaxed);
+      level.learned.store(quiet_[i].learned(), std::memory_order_relaxed);
     }
-    follow_constant(levels_[i], statistics_[i]);
+    follow_constant(level, statistics_[i]);
+  }
+}
+
+void Acquirer::show_trigger_level(AtomicLevel& level) {
+  const IncidentTrigger& trigger = watch_.trigger;
+  level.baseline.store(trigger.baseline_codes(), std::memory_order_relaxed);
+  level.noise.store(trigger.noise_codes(), std::memory_order_relaxed);
+  level.level.store(trigger.level_codes(), std::memory_order_relaxed);
+  if (trigger.ready()) {  // stays so: in the hold-off after a trigger they are still known
+    level.learned.store(true, std::memory_order_relaxed);
   }
 }
 
@@ -487,7 +497,7 @@ void Acquirer::follow_constant(AtomicLevel& level, const RunStatistics& run) {
 }
 
 std::int64_t Acquirer::monotonic_at(Tick tick) const noexcept {
-  const double before_s = static_cast<double>(end_tick_ - 1 - tick) * stream_.rate.period_s();
+  const double before_s = static_cast<double>(end_tick_ - 1 - tick) / arrival_rate_Hz(stream_);
   return end_monotonic_ns_ - std::llround(before_s * 1e9);
 }
 

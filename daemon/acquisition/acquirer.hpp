@@ -12,6 +12,7 @@
 #include "daemon/acquisition/sample_ring.hpp"
 #include "daemon/thread_priority.hpp"
 #include "drivers/digitiser/digitiser.hpp"
+#include "processing/trigger/channel_level.hpp"
 #include "processing/trigger/incident_trigger.hpp"
 
 namespace kolsky {
@@ -109,8 +110,7 @@ class Acquirer {
   void note_missing(const Block& block);
   void begin_capture(const Block& block);
   void watch(const Block& block);
-  template <typename Code>
-  std::optional<TriggerEvent> feed(const Block& block);
+  std::optional<TriggerEvent> feed_trigger(const Block& block);
   void take_mark(const Block& block, const TriggerEvent& mark);
   void settle_long_mark(const Block& block);
   void trigger_at(const TriggerEvent& event);
@@ -128,7 +128,9 @@ class Acquirer {
   void handle_disconnect();
   [[nodiscard]] bool same_stream() const;
   void pause(std::int64_t milliseconds) const;
+  void follow_quiet_channels();
   void show_levels();
+  void show_trigger_level(AtomicLevel& level);
   static void follow_constant(AtomicLevel& level, const RunStatistics& run);
   [[nodiscard]] std::int64_t monotonic_at(Tick tick) const noexcept;
 
@@ -137,8 +139,7 @@ class Acquirer {
   AcquisitionQueue& events_;
   const StreamInfo stream_;
   Watch watch_;
-  std::vector<IncidentTrigger>
-      baselines_;  ///< of the other channels: they only tell baseline and noise
+  std::vector<ChannelLevel> quiet_;  ///< of the channels that do not trigger
   std::vector<RunStatistics> statistics_;
   std::vector<AtomicLevel> levels_;
 

@@ -39,8 +39,16 @@ struct StreamInfo {
   std::vector<ChannelInfo> channels;
   std::size_t max_block_samples = 0;  ///< no block is longer
   bool simulated = false;             ///< `fire` works
-  bool ends = false;                  ///< a replay: it comes to an end by itself
+  double speed = 1.0;  ///< seconds of the stream per second of the wall clock: not 1 where a
+                       ///< simulated one is accelerated, 0 where it waits for its reader
+  bool ends = false;   ///< a replay: it comes to an end by itself
 };
+
+/// Samples that arrive per second of the wall clock, which is what queues and blocks are sized by;
+/// the rate itself where the stream waits for its reader.
+[[nodiscard]] inline double arrival_rate_Hz(const StreamInfo& info) {
+  return info.rate.Hz() * (info.speed > 0.0 ? info.speed : 1.0);
+}
 
 /// What a read came to. Only `samples` fills the block.
 enum class ReadStatus {

@@ -37,6 +37,15 @@ Bar read_bar(const TomlTable& table) {
   return bar;
 }
 
+// The struck end is the input bar's far end: what is beyond it is the striker's business.
+void refuse_far_end(const TomlTable& input) {
+  if (input.has("far_end")) {
+    throw input.error("far_end",
+                      "is what the output bar ends in; the input bar ends where it is struck",
+                      "remove it, or move it to [bars.output]");
+  }
+}
+
 // Numbers that are used without their deviation may still have one: it travels with the text.
 std::optional<double> read_plain(const TomlTable& table, const std::string& key) {
   const std::optional<Measured> number = table.optional_measured(key);
@@ -78,7 +87,30 @@ Bridge read_bridge(const TomlTable& table) {
   return bridge;
 }
 
-void refuse_bridge_keys_alone(const TomlTable& table) {
+/// What is filed beside samples that are strain already takes no part in converting them; its
+/// deviations say how well they are known. A deviation alone is relative: of a factor 1.
+double read_gain_sd(const TomlTable& table) {
+  double variance = 0.0;
+  for (const std::string key : {"gauge_factor", "excitation_V", "gain"}) {
+    Measured factor{1.0, 0.0};
+    if (table.has(key)) {
+      factor = table.measured(key);
+    } else if (table.has(key + "_sd")) {
+      factor.sd = table.number(key + "_sd");
+    }
+    if (factor.value == 0.0 || factor.sd < 0.0) {
+      throw table.error(key, "cannot be a factor with that deviation",
+                        "give a number above 0 and its standard deviation");
+    }
+    variance += factor.sd * factor.sd / (factor.value * factor.value);
+  }
+  return std::sqrt(variance);
+}
+
+void refuse_bridge_keys_alone(const TomlTable& table, bool strain) {
+  if (strain) {
+    return;
+  }
   for (const char* const key :
        {"gauge_factor", "excitation_V", "gain", "gauge_resistance_ohm", "lead_resistance_ohm",
         "lead_wires", "gauges_in_series", "shunt_resistance_ohm", "shunt_reading_V"}) {
@@ -104,7 +136,10 @@ Gauge read_gauge(const TomlTable& table) {
   if (table.has("bridge")) {
     gauge.bridge = read_bridge(table);
   } else {
-    refuse_bridge_keys_alone(table);
+    refuse_bridge_keys_alone(table, gauge.unit == "strain");
+    if (gauge.unit == "strain") {
+      gauge.gain_sd = read_gain_sd(table);
+    }
   }
   return gauge;
 }
@@ -159,6 +194,7 @@ Bench read_all(const TomlTable& table) {
   }
   const TomlTable bars = table.table("bars");
   bars.expect({"input", "output"});
+  refuse_far_end(bars.table("input"));
   bench.input = read_bar(bars.table("input"));
   bench.output = read_part(bars, "output", read_bar);
   for (const TomlTable& gauge : table.tables("gauges")) {

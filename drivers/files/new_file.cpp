@@ -109,6 +109,36 @@ void NewFile::publish(mode_t mode) {
   sync_folder(folder_of(path_));
 }
 
+void replace_file(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path folder = folder_of(path);
+  std::string name = (folder / ".kolsky-replacing-XXXXXX").string();
+  const int file = ::mkostemp(name.data(), O_CLOEXEC);
+  if (file < 0) {
+    throw unwritable(path, errno);
+  }
+  std::size_t written = 0;
+  int error = 0;
+  while (written < text.size() && error == 0) {
+    const ssize_t count = ::write(file, text.data() + written, text.size() - written);
+    if (count >= 0) {
+      written += static_cast<std::size_t>(count);
+    } else if (errno != EINTR) {
+      error = errno;
+    }
+  }
+  constexpr mode_t kReadableByAll = 0644;
+  if (error == 0 && (::fchmod(file, kReadableByAll) != 0 || ::fsync(file) != 0 ||
+                     ::rename(name.c_str(), path.c_str()) != 0)) {
+    error = errno;
+  }
+  ::close(file);
+  if (error != 0) {
+    ::unlink(name.c_str());
+    throw unwritable(path, error);
+  }
+  sync_folder(folder);
+}
+
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;

@@ -37,6 +37,11 @@ class NewFile {
   int file_ = -1;
 };
 
+/// Puts a text under a name, in the place of what was there: whole or not at all.
+/// For what people revise (models, reports); stored shots are never replaced.
+/// @throws InputError if the folder cannot be written
+void replace_file(const std::filesystem::path& path, const std::string& text);
+
 /// Makes a folder's entries durable. @throws InputError
 void sync_folder(const std::filesystem::path& folder);
 

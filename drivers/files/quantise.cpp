@@ -20,8 +20,8 @@ double scale_for(double largest) {
 
 }  // namespace
 
-QuantisedValues quantise(std::span<const double> values) {
-  double largest = 0.0;
+QuantisedValues quantise(std::span<const double> values, double full_scale) {
+  double largest = full_scale;
   for (const double value : values) {
     largest = std::max(largest, std::abs(value));
   }

@@ -30,6 +30,7 @@ Fingerprint fingerprint_of(const Shot& shot) {
 struct JournaledShot {
   Fingerprint fingerprint;
   std::string journal;
+  bool captured = false;  ///< a capture was read that says the same
 };
 
 using JournaledShots = std::map<std::string, JournaledShot>;
@@ -55,12 +56,20 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
   return files;
 }
 
-/// Hands on every whole shot of every journal; a shot journaled twice the same counts once.
-template <typename Visit>
-JournaledShots visit_journals(const StoreLayout& store, StoreReport& report, const Visit& visit) {
+struct Journaled {
   JournaledShots shots;
+  std::vector<std::filesystem::path> done;  ///< journals without damage, all of it captured
+};
+
+/// Hands on every whole shot of every journal; a shot journaled twice the same counts once.
+/// @param visit  returns whether a capture was read that says the same
+template <typename Visit>
+Journaled visit_journals(const StoreLayout& store, StoreReport& report, const Visit& visit) {
+  Journaled found;
+  JournaledShots& shots = found.shots;
   for (const auto& path : files_in(store.journals(), ".kj")) {
     ++report.journals;
+    bool captured = true;
     try {
       const auto scan = scan_journal(path, [&](const JournalRecord& record) {
         if (record.kind != journal_record::Kind::shot) {
@@ -72,8 +81,10 @@ JournaledShots visit_journals(const StoreLayout& store, StoreReport& report, con
             shots.try_emplace(shot.id, JournaledShot{fingerprint, path.string()});
         if (first) {
           ++report.journaled_shots;
-          visit(shot, known->second);
-        } else if (known->second.fingerprint != fingerprint) {
+          known->second.captured = visit(shot, known->second);
+        }
+        captured = captured && known->second.captured && known->second.fingerprint == fingerprint;
+        if (known->second.fingerprint != fingerprint) {
           report.problems.push_back(
               {path.string(), "holds a second, different shot " + shot.id + " (the first is in " +
                                   known->second.journal + "); it stays in the journal only"});
@@ -84,23 +95,28 @@ JournaledShots visit_journals(const StoreLayout& store, StoreReport& report, con
         report.problems.push_back(
             {path.string(), "byte " + std::to_string(problem.offset) + ": " + problem.text});
       }
+      if (captured && scan.problems.empty()) {
+        found.done.push_back(path);
+      }
     } catch (const InputError& error) {
       add_problem(report, error);
     }
   }
-  return shots;
+  return found;
 }
 
-void compare(const std::filesystem::path& capture, const Fingerprint& stored,
+/// @return whether they are the same
+bool compare(const std::filesystem::path& capture, const Fingerprint& stored,
              const JournaledShot& journaled, StoreReport& report) {
   if (stored == journaled.fingerprint) {
-    return;
+    return true;
   }
   const bool codes = stored.metadata == journaled.fingerprint.metadata;
   report.problems.push_back(
       {capture.string(), std::string(codes ? "the codes differ" : "the shot differs") +
                              " from what " + journaled.journal +
                              " holds; neither is overwritten, compare them"});
+  return false;
 }
 
 void check_capture(const std::filesystem::path& path, const JournaledShots& journaled,
@@ -119,18 +135,38 @@ void check_capture(const std::filesystem::path& path, const JournaledShots& jour
   }
 }
 
-void recover_shot(const Shot& shot, const JournaledShot& journaled,
+/// @return whether a capture was read that says the same
+bool recover_shot(const Shot& shot, const JournaledShot& journaled,
                   const std::filesystem::path& capture, StoreReport& report) {
   try {
-    if (std::filesystem::exists(std::filesystem::symlink_status(capture))) {
-      compare(capture, fingerprint_of(read_capture(capture)), journaled, report);
-      return;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(capture))) {
+      write_capture(shot, capture);
+      report.recovered.push_back(shot.id);
     }
-    write_capture(shot, capture);
-    report.recovered.push_back(shot.id);
+    return compare(capture, fingerprint_of(read_capture(capture)), journaled, report);
   } catch (const InputError& error) {
     add_problem(report, error);
+    return false;
   }
+}
+
+/// A capture may have been renamed just before a crash: its name must reach the disk before the
+/// journal's leaves it.
+void prune(const StoreLayout& store, const std::vector<std::filesystem::path>& journals,
+           StoreReport& report) {
+  if (journals.empty()) {
+    return;
+  }
+  sync_folder(store.shots());
+  for (const auto& journal : journals) {
+    std::error_code error;
+    if (std::filesystem::remove(journal, error)) {
+      report.pruned.push_back(journal.string());
+    } else if (error) {
+      report.problems.push_back({journal.string(), "cannot be removed (" + error.message() + ")"});
+    }
+  }
+  sync_folder(store.journals());
 }
 
 }  // namespace
@@ -149,7 +185,8 @@ void StoreLayout::create() const {
 
 StoreReport verify_store(const StoreLayout& store) {
   StoreReport report;
-  const auto journaled = visit_journals(store, report, [](const Shot&, const JournaledShot&) {});
+  const auto nothing_read = [](const Shot&, const JournaledShot&) { return false; };
+  const JournaledShots journaled = visit_journals(store, report, nothing_read).shots;
   for (const auto& path : files_in(store.shots(), ".h5")) {
     ++report.captures;
     check_capture(path, journaled, report);
@@ -165,13 +202,17 @@ StoreReport verify_store(const StoreLayout& store) {
   return report;
 }
 
-StoreReport recover_store(const StoreLayout& store) {
+StoreReport recover_store(const StoreLayout& store, DoneJournals done) {
   store.create();
   StoreReport report;
   report.temporary_files = remove_abandoned_files(store.shots());
-  visit_journals(store, report, [&](const Shot& shot, const JournaledShot& journaled) {
-    recover_shot(shot, journaled, store.capture_of(shot.id), report);
-  });
+  const auto recover = [&](const Shot& shot, const JournaledShot& journaled) {
+    return recover_shot(shot, journaled, store.capture_of(shot.id), report);
+  };
+  const Journaled journaled = visit_journals(store, report, recover);
+  if (done == DoneJournals::prune) {
+    prune(store, journaled.done, report);
+  }
   report.captures = files_in(store.shots(), ".h5").size();
   return report;
 }

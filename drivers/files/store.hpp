@@ -32,6 +32,7 @@ struct StoreReport {
   std::size_t temporary_files =
       0;  ///< removed by recovery: what a crash left of captures being written
   std::vector<std::string> recovered;  ///< ids whose capture was written from the journal
+  std::vector<std::string> pruned;     ///< journals removed: all they held is in captures
   std::vector<Problem> problems;
 };
 
@@ -40,10 +41,19 @@ struct StoreReport {
 /// @throws InputError if the folder is not a store
 [[nodiscard]] StoreReport verify_store(const StoreLayout& store);
 
+/// What recovery does with journals that have done their work.
+enum class DoneJournals {
+  keep,
+  prune,  ///< removed, once every shot in them has been read back from a capture that says the
+          ///< same to the bit, and the captures' names are durable; damaged journals stay
+};
+
 /// Writes the capture of every whole journaled shot that has none, and removes temporary files a
 /// crash left. Nothing stored is overwritten: a capture that differs from the journal is a problem
-/// to report.
+/// to report. Killed at any moment, it is done again.
+/// @pre nobody appends to the store's journals
 /// @throws InputError if the folders cannot be made
-[[nodiscard]] StoreReport recover_store(const StoreLayout& store);
+[[nodiscard]] StoreReport recover_store(const StoreLayout& store,
+                                        DoneJournals done = DoneJournals::keep);
 
 }  // namespace kolsky

@@ -15,6 +15,7 @@
 #include "drivers/files/time_axis.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/bridge/bridge.hpp"
 
 namespace kolsky {
 
@@ -145,14 +146,27 @@ void require_plausible(const Channel& channel, const Gauge& gauge,
   }
 }
 
-ChannelRecord record_of(const Channel& channel, const Gauge& gauge) {
+// Full scale of an imported gauge, whatever the record: captures of one bench then have one scale
+// and replay as one stream. Few bars take more strain, and a step of it, 7e-6 microstrain, is below
+// every noise; a record that goes beyond has a coarser scale.
+double full_scale_of(const Gauge& gauge, const Bench& bench) {
+  constexpr double kStrain = 0.0155;
+  try {
+    const BridgeConversion conversion(gauge, bench.bar_of(gauge), bench.positive);
+    return kStrain / std::abs(conversion.sensitivity());
+  } catch (const InputError&) {
+    return 0.0;  // nothing converts it to strain, here or later: the record's own largest value
+  }
+}
+
+ChannelRecord record_of(const Channel& channel, const Gauge& gauge, double full_scale) {
   std::vector<double> values = channel.column->values;
   const double factor = unit_factor(channel, gauge);
   for (double& value : values) {
     value *= factor;
   }
   require_plausible(channel, gauge, values);
-  QuantisedValues quantised = quantise(values);
+  QuantisedValues quantised = quantise(values, full_scale);
   ChannelRecord record;
   record.gauge = gauge.name;
   record.unit = gauge.unit;
@@ -286,7 +300,8 @@ Shot import_tables(const TableImport& request) {
   file_source(tables, agreed_rate_Hz(tables, bench.bench.sampling_frequency_Hz), shot);
   file_ignored(channels, chosen, shot);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    shot.channels.push_back(record_of(chosen[i], bench.bench.gauges[i]));
+    const Gauge& gauge = bench.bench.gauges[i];
+    shot.channels.push_back(record_of(chosen[i], gauge, full_scale_of(gauge, bench.bench)));
   }
   shot.id = id_from(tables.front().stem);
   shot.rate = SampleRate::from_Hz(bench.bench.sampling_frequency_Hz);

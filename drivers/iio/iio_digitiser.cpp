@@ -67,7 +67,7 @@ IioDigitiser::Session IioDigitiser::open_session(bool started) const {
 
 void IioDigitiser::start() {
   Session session = prepared_ ? std::move(prepared_) : open_session(false);
-  clock_.emplace(monotonic_ns(), session->info().rate.Hz());
+  clock_.emplace(monotonic_ns(), arrival_rate_Hz(session->info()));
   const auto start_it = [session] {
     session->start();
     return true;
@@ -88,8 +88,9 @@ void IioDigitiser::adopt(Session session) {
     counter_.emplace(*session->counter());
   }
   loss_by_clock_.reset();
-  if (!session->counter() && session->overflow_register() == nullptr) {
-    loss_by_clock_.emplace(info_.rate.Hz(), info_.max_block_samples);
+  const bool has_pace = info_.speed > 0.0;
+  if (!session->counter() && session->overflow_register() == nullptr && has_pace) {
+    loss_by_clock_.emplace(arrival_rate_Hz(info_), info_.max_block_samples);
   }
   scans_ = {};
   run_begin_ = 0;

@@ -17,13 +17,22 @@ constexpr double kKernelBuffers_s = 0.2;
 constexpr double kFewestBuffers = 4;
 constexpr double kMostBuffers = 128;
 
-std::size_t block_samples(const DigitiserOptions& options, double rate_Hz) {
-  const auto longest = static_cast<std::size_t>(std::max(1.0, kLongestBlock_s * rate_Hz));
-  return std::clamp<std::size_t>(options.block_samples, 1, longest);
+/// Whatever is asked for, a block must come before a read times out.
+std::size_t block_samples(const DigitiserOptions& options, double arrival_Hz) {
+  const auto longest = static_cast<std::size_t>(std::max(1.0, kLongestBlock_s * arrival_Hz));
+  const std::size_t wanted =
+      options.block_samples != 0 ? options.block_samples : default_block(arrival_Hz);
+  return std::clamp<std::size_t>(wanted, 1, longest);
 }
 
-unsigned int kernel_buffers_for(double rate_Hz, std::size_t block) {
-  const double wanted = std::ceil(kKernelBuffers_s * rate_Hz / static_cast<double>(block));
+/// Only a simulated device says that its time runs faster or slower than ours.
+double speed_of(const AttributeOwner& device) {
+  const double speed = device.has("speed") ? read_number(device, "speed").value_or(1.0) : 1.0;
+  return speed >= 0.0 ? speed : 1.0;
+}
+
+unsigned int kernel_buffers_for(double arrival_Hz, std::size_t block) {
+  const double wanted = std::ceil(kKernelBuffers_s * arrival_Hz / static_cast<double>(block));
   return static_cast<unsigned int>(std::clamp(wanted, kFewestBuffers, kMostBuffers));
 }
 
@@ -97,8 +106,10 @@ StreamInfo IioSession::describe(const std::string& uri, double rate_Hz,
   for (const ScanChannel& channel : channels_) {
     info.channels.push_back(channel.info);
   }
-  info.max_block_samples = block_samples(options, rate_Hz);
-  info.simulated = AttributeOwner{device_, nullptr}.has("fire");
+  const AttributeOwner device{device_, nullptr};
+  info.simulated = device.has("fire");
+  info.speed = info.simulated ? speed_of(device) : 1.0;
+  info.max_block_samples = block_samples(options, arrival_rate_Hz(info));
   return info;
 }
 
@@ -124,7 +135,7 @@ void IioSession::enable_channels() {
 
 void IioSession::start() {
   const SigpipeBlocked guard;
-  const unsigned int wanted = kernel_buffers_for(info_.rate.Hz(), info_.max_block_samples);
+  const unsigned int wanted = kernel_buffers_for(arrival_rate_Hz(info_), info_.max_block_samples);
   if (iio_device_set_kernel_buffers_count(device_, wanted) == 0) {
     kernel_buffers_ = wanted;
   }

@@ -52,7 +52,9 @@ StreamInfo describe(const std::string& uri, const ReplaySource& source,
   };
   const bool narrow = std::all_of(info.channels.begin(), info.channels.end(), narrow_channel);
   info.format = narrow ? SampleFormat::int16 : SampleFormat::int32;
-  info.max_block_samples = std::max<std::size_t>(options.block_samples, 1);
+  info.speed = options.replay_speed;
+  const std::size_t least = default_block(info.rate.Hz());
+  info.max_block_samples = options.block_samples != 0 ? options.block_samples : least;
   info.ends = true;
   return info;
 }

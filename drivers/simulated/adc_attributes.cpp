@@ -115,6 +115,9 @@ AttributeReply SimulatedAdc::read_device_attribute(const std::string& name) {
   if (name == "seed") {
     return text(std::to_string(settings_.seed));
   }
+  if (name == "speed") {
+    return text(number_text(settings_.speed));
+  }
   if (name == "injected_lost_samples") {
     return text(std::to_string(injected_lost_samples_));
   }

@@ -28,11 +28,11 @@ AdcStream::~AdcStream() {
   }
 }
 
-std::chrono::steady_clock::time_point AdcStream::due() {
+std::chrono::steady_clock::time_point AdcStream::due(std::chrono::steady_clock::time_point now) {
   const std::lock_guard lock(adc_.mutex_);
   if (!planned_) {
     const auto complete = adc_.clock_.time_of(buffers_.block_start() + block_samples_);
-    if (complete > ConverterClock::Clock::now()) {
+    if (complete > now) {
       return complete;
     }
     plan_block();

@@ -28,13 +28,15 @@ class AdcStream {
   /// What the scans of the present reply look like.
   [[nodiscard]] const ScanLayout& layout() const noexcept { return extra_ ? *extra_ : asked_; }
 
-  /// When the block in progress is complete; past once it is.
-  [[nodiscard]] std::chrono::steady_clock::time_point due();
+  /// When the block in progress is complete, as known at `now`: not later than that once it can be
+  /// read. The caller's `now`, not a later one, says whether it can.
+  [[nodiscard]] std::chrono::steady_clock::time_point due(
+      std::chrono::steady_clock::time_point now);
 
-  /// How many samples of the complete block are still to be read. @pre due() is past
+  /// How many samples of the complete block are still to be read. @pre it was due
   [[nodiscard]] std::size_t available() const noexcept { return left_; }
 
-  /// The next fault that the script wants acted out before this block is sent. @pre due() is past
+  /// The next fault that the script wants acted out before this block is sent. @pre it was due
   [[nodiscard]] std::optional<Fault> take_fault();
   [[nodiscard]] bool fault_pending() const noexcept { return !faults_.empty(); }
 

@@ -87,7 +87,7 @@ std::string SimulatedAdc::context_xml() const {
   }
   for (const char* name :
        {"fire", "injected_lost_samples", "overrun_lost_samples", "sampling_frequency",
-        "sampling_frequency_available", "scenario", "seed", "shots_fired"}) {
+        "sampling_frequency_available", "scenario", "seed", "shots_fired", "speed"}) {
     xml += std::string(R"(<attribute name=")") + name + R"("/>)";
   }
   return xml + R"(<debug-attribute name="direct_reg_access"/></device></context>)";

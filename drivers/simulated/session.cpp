@@ -186,8 +186,8 @@ bool Session::send_blocks(Reply& answered) {
 Session::Next Session::await_block() {
   const auto deadline = adc_.read_deadline();
   for (;;) {
-    const auto due = stream_->due();
     const auto now = SimulatedAdc::Clock::now();
+    const auto due = stream_->due(now);
     if (due <= now) {
       return Next::go_on;
     }

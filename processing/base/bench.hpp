@@ -64,6 +64,9 @@ struct Gauge {
   std::optional<Measured> length_m{};
   std::optional<Bridge> bridge{};          ///< unit "V": either this ...
   std::optional<Measured> strain_per_V{};  ///< ... or a plain factor
+  /// Of samples that are strain already: relative standard deviation of what made them so, from the
+  /// gauge factor, excitation and gain filed beside them.
+  double gain_sd = 0.0;
 };
 
 /// Round specimen; a square one is filed by its diameter of equal area.

@@ -19,7 +19,7 @@ double gain_sd(const Gauge& gauge) {
     return std::hypot(relative_sd(gauge.bridge->gauge_factor),
                       relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
   }
-  return 0.0;
+  return gauge.gain_sd;
 }
 
 }  // namespace

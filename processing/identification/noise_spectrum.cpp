@@ -213,7 +213,8 @@ NoiseSpectrum::Autoregression NoiseSpectrum::autoregression(
     a = std::move(next);
     error *= 1.0 - reflection * reflection;
     const double criterion = static_cast<double>(samples) * std::log(std::max(error, 1e-300)) +
-                             2.0 * static_cast<double>(order);
+                             std::log(static_cast<double>(std::max<std::size_t>(samples, 3))) *
+                                 static_cast<double>(order);
     if (criterion < best) {
       best = criterion;
       chosen = {error, a};

@@ -1,4 +1,5 @@
-// A shot of 2 x 4096 samples through the reducer, beside the bare transforms it needs (three there, six back).
+// A shot of 2 x 4096 samples through the reducer, beside the bare transforms it needs (three there,
+// six back).
 #include <benchmark/benchmark.h>
 #include <fftw3.h>
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "daemon/acquisition/sample_ring.hpp"
+#include "processing/trigger/channel_level.hpp"
 #include "processing/trigger/incident_trigger.hpp"
 
 namespace {
@@ -95,11 +96,19 @@ void plain_copy(benchmark::State& state) {
   count_samples(state, channels * block);
 }
 
-void write_ring(benchmark::State& state, std::size_t watched) {
+enum class Watch {
+  nothing,
+  first,  ///< the trigger on one channel
+  all,    ///< the trigger on one, level and noise of the others, as the daemon does
+};
+
+void write_ring(benchmark::State& state, Watch watch) {
   const auto channels = static_cast<std::size_t>(state.range(0));
   const auto samples = static_cast<std::size_t>(state.range(1));
   SampleRing ring(SampleFormat::int16, channels, kCapacity);
-  std::vector<IncidentTrigger> triggers(watched, IncidentTrigger(TriggerOptions::for_rate(1e6)));
+  const TriggerOptions options = TriggerOptions::for_rate(1e6);
+  IncidentTrigger trigger(options);
+  std::vector<ChannelLevel> levels(channels, ChannelLevel(options));
   std::vector<RunStatistics> statistics(channels);
   Block block;
   block.samples = samples;
@@ -110,9 +119,10 @@ void write_ring(benchmark::State& state, std::size_t watched) {
     const std::span<const std::int16_t> codes(noise().data() + at, samples);
     for (auto& channel : block.channels) channel = std::as_bytes(codes);
     ring.write(block, statistics);
-    for (std::size_t i = 0; i < watched; ++i) {
-      if (triggers[i].feed(block.first_tick, codes, statistics[i])) state.SkipWithError("fired");
+    if (watch != Watch::nothing && trigger.feed(block.first_tick, codes, statistics[0])) {
+      state.SkipWithError("fired");
     }
+    for (std::size_t i = 1; watch == Watch::all && i < channels; ++i) levels[i].take(statistics[i]);
     block.first_tick += static_cast<Tick>(samples);
     at = (at + samples) % kCapacity;
   }
@@ -122,27 +132,26 @@ void write_ring(benchmark::State& state, std::size_t watched) {
 }
 
 void ring_alone(benchmark::State& state) {
-  write_ring(state, 0);
+  write_ring(state, Watch::nothing);
 }
 void ring_and_trigger(benchmark::State& state) {
-  write_ring(state, 1);
+  write_ring(state, Watch::first);
 }
-/// As the daemon does, which follows the baseline of every channel.
-void ring_and_trigger_on_all(benchmark::State& state) {
-  write_ring(state, static_cast<std::size_t>(state.range(0)));
+void ring_trigger_and_levels(benchmark::State& state) {
+  write_ring(state, Watch::all);
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"channels", "block"});
   for (const std::int64_t channels : {2, 4}) {
-    for (const std::int64_t block : {256, 4096, 65536}) bench->Args({channels, block});
+    for (const std::int64_t block : {256, 512, 1024, 4096, 65536}) bench->Args({channels, block});
   }
 }
 
 BENCHMARK(plain_copy)->Apply(sizes);
 BENCHMARK(ring_alone)->Apply(sizes);
 BENCHMARK(ring_and_trigger)->Apply(sizes);
-BENCHMARK(ring_and_trigger_on_all)->Apply(sizes);
+BENCHMARK(ring_trigger_and_levels)->Apply(sizes);
 
 }  // namespace
 

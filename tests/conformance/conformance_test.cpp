@@ -166,7 +166,7 @@ TEST_P(DigitiserContract, ReadAllocatesNothing) {
 }
 
 TEST_P(DigitiserContract, TimesOutWithinASecondOrSoAndCanBeReadAgain) {
-  const auto digitiser = rig_->open(1e-4);
+  const auto digitiser = rig_->open(1e-7);
   digitiser->start();
   Block block;
   for (int i = 0; i < 2; ++i) {
@@ -178,7 +178,7 @@ TEST_P(DigitiserContract, TimesOutWithinASecondOrSoAndCanBeReadAgain) {
 }
 
 TEST_P(DigitiserContract, CancelEndsAWaitingReadSoonAndForGood) {
-  const auto digitiser = rig_->open(1e-4);
+  const auto digitiser = rig_->open(1e-7);
   digitiser->start();
   Clock::time_point cancelled;
   std::thread canceller([&] {

@@ -153,6 +153,37 @@ TEST(IioRate, OfASlowDeviceKeepsBlocksShort) {
   EXPECT_EQ(open_at(server, options)->info().max_block_samples, 200U);
 }
 
+TEST(IioRate, OfAnAcceleratedDeviceSetsBlocksAndQueueByTheWallClock) {
+  ScriptedDevice device;
+  device.device_attributes = {"sampling_frequency", "fire", "speed"};
+  device.texts["fire"] = "0";
+  device.texts["speed"] = "10";
+  ScriptedIiod server(device, no_data);
+  DigitiserOptions options = pattern_options();
+  options.block_samples = 0;
+  const auto digitiser = open_at(server, options);
+  EXPECT_EQ(digitiser->info().speed, 10.0);
+  // 10 MS/s: a millisecond is 10 000 samples, 0.2 s are 123 blocks of the next power of two.
+  EXPECT_EQ(digitiser->info().max_block_samples, 16384U);
+  digitiser->start();
+  const std::vector<std::string> lines = server.lines();
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.find("BUFFERS_COUNT 123") != std::string::npos;
+  }));
+}
+
+TEST(IioRate, OfHardwareIsNotAcceleratedByAnAttributeOfItsOwn) {
+  ScriptedDevice device;
+  device.device_attributes = {"sampling_frequency", "speed"};
+  device.texts["speed"] = "10";
+  ScriptedIiod server(device, no_data);
+  DigitiserOptions options = pattern_options();
+  options.block_samples = 0;
+  const auto digitiser = open_at(server, options);
+  EXPECT_EQ(digitiser->info().speed, 1.0);
+  EXPECT_EQ(digitiser->info().max_block_samples, 1024U);
+}
+
 TEST(IioChannels, AreChosenByIdOrLabelInTheOrderAsked) {
   SimulatedDevice device;
   DigitiserOptions options = pattern_options();

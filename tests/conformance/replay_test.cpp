@@ -25,7 +25,7 @@ class Replay : public testing::Test {
   }
 
   [[nodiscard]] std::unique_ptr<Digitiser> play(DigitiserOptions options = {}) const {
-    options.block_samples = std::min<std::size_t>(options.block_samples, 100);
+    options.block_samples = 100;
     auto digitiser = open_digitiser("replay:" + folder_.path().string(), options);
     digitiser->start();
     return digitiser;

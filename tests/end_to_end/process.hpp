@@ -24,6 +24,8 @@ class Process {
   /// Waits for its end. @return the exit code, 128 + signal, or nothing if it still runs
   std::optional<int> wait(std::chrono::milliseconds patience);
   [[nodiscard]] bool running() { return !wait(std::chrono::milliseconds(0)); }
+  /// Processor time that it has used so far, of all its threads. @pre it runs
+  [[nodiscard]] double cpu_s() const;
   /// What it has written so far.
   [[nodiscard]] std::string output() const;
 

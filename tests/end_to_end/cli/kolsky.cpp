@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 #include "tests/end_to_end/process.hpp"
@@ -103,6 +104,18 @@ std::vector<std::string> lines_of(const std::string& text) {
 Bench::Bench() : records_(model_.solve()) {
   write("bench.toml", bench_toml_of(model_));
   write("shot.csv", table_of(model_, records_));
+}
+
+std::string Bench::table(double share, double noise_strain, unsigned seed) const {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_strain);
+  testing::ElasticShpb::Records scaled = records_;
+  for (std::vector<double>* strain : {&scaled.input_strain, &scaled.output_strain}) {
+    for (double& value : *strain) {
+      value = share * value + noise(random);
+    }
+  }
+  return table_of(model_, scaled);
 }
 
 std::string Bench::capture(const std::string& name) const {

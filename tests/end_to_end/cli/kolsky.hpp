@@ -39,6 +39,8 @@ class Bench {
 
   [[nodiscard]] std::string file(const std::string& name) const { return folder_ / name; }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  /// The records as a table, `share` of their size, with Gaussian noise of that rms strain.
+  [[nodiscard]] std::string table(double share, double noise_strain, unsigned seed) const;
   /// Imports the table. @return the capture
   [[nodiscard]] std::string capture(const std::string& name = "shot.h5") const;
   [[nodiscard]] const testing::ElasticShpb& model() const { return model_; }

@@ -54,6 +54,13 @@ TEST(Quantise, TakesSilenceAndTinyValues) {
   EXPECT_TRUE(quantise(std::vector<double>{}).codes.empty());
 }
 
+TEST(Quantise, GivesRecordsBelowOneFullScaleOneScale) {
+  const double scale = quantise(std::vector<double>{0.9}, 1.0).scale;
+  EXPECT_EQ(quantise(std::vector<double>{1e-6, 0.0}, 1.0).scale, scale);
+  EXPECT_EQ(quantise(std::vector<double>{}, 1.0).scale, scale);
+  EXPECT_GT(quantise(std::vector<double>{-5.0}, 1.0).scale, scale) << "or its codes would overflow";
+}
+
 // Codes of a 16-bit converter with a power of two per step come back exactly.
 TEST(Quantise, IsExactForConverterSteps) {
   std::vector<double> values;

@@ -80,7 +80,9 @@ inline void expect_values(const Shot& shot, std::size_t channel,
   const std::vector<double> values = values_of(shot, channel);
   ASSERT_EQ(values.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_NEAR(values[i], expected[i], 1e-9 * (1e-12 + std::abs(expected[i]))) << "sample " << i;
+    const double half_step = 0.5 * shot.channels[channel].scale;
+    EXPECT_NEAR(values[i], expected[i], half_step + 1e-12 * std::abs(expected[i]))
+        << "sample " << i;
   }
 }
 

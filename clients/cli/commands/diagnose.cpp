@@ -1,0 +1,180 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/criticism_text.hpp"
+#include "clients/cli/json_value.hpp"
+#include "clients/cli/model_text.hpp"
+#include "drivers/files/model_file.hpp"
+#include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
+#include "processing/criticism/diagnosis.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+struct Settings {
+  std::vector<std::string> captures;
+  std::string model;
+  std::optional<std::string> output;
+  std::optional<double> band_limit_Hz;
+};
+
+JsonValue describe(const CandidateResult& candidate) {
+  return JsonObject{{"effect", candidate.effect},
+                    {"parameter", candidate.parameter},
+                    {"unit", candidate.unit},
+                    {"strength", candidate.strength},
+                    {"sd", candidate.sd},
+                    {"p_value", std::exp(candidate.log_p)},
+                    {"log_p", candidate.log_p},
+                    {"gain", candidate.gain},
+                    {"held_out_gain", candidate.held_out_gain},
+                    {"smallest_detectable", candidate.detectable},
+                    {"smallest_identifiable", candidate.identifiable},
+                    {"nearest_rival", candidate.nearest_rival},
+                    {"verdict", candidate.verdict}};
+}
+
+JsonValue describe(const Diagnosis& diagnosis) {
+  JsonObject ties;
+  for (const auto& [id, others] : diagnosis.tied_with) {
+    ties.push_back({id, others});
+  }
+  JsonList candidates;
+  for (const CandidateResult& candidate : diagnosis.candidates) {
+    candidates.push_back(describe(candidate));
+  }
+  JsonList next;
+  for (const NextExperiment& experiment : diagnosis.next_experiment) {
+    next.push_back(JsonObject{{"change", experiment.change}, {"separates", experiment.separates}});
+  }
+  const HeldOut& held_out = diagnosis.held_out;
+  return JsonObject{{"verdict", kolsky::name_of(diagnosis.verdict)},
+                    {"effects", diagnosis.effects},
+                    {"tied_with", std::move(ties)},
+                    {"misfit", JsonObject{{"before", cli::describe(diagnosis.before)},
+                                          {"after", cli::describe(diagnosis.after)},
+                                          {"held_out", JsonObject{{"before", held_out.before},
+                                                                  {"after", held_out.after},
+                                                                  {"floor", held_out.floor}}}}},
+                    {"candidates", std::move(candidates)},
+                    {"next_experiment", std::move(next)},
+                    {"parameters", diagnosis.model ? describe_parameters(*diagnosis.model)
+                                                   : JsonValue(JsonObject{})},
+                    {"unexplained_log_p", diagnosis.unexplained_log_p},
+                    {"notes", diagnosis.notes}};
+}
+
+std::string report(const Diagnosis& diagnosis) {
+  std::string text = "verdict: " + kolsky::name_of(diagnosis.verdict) + "\n";
+  for (const std::string& id : diagnosis.effects) {
+    text += "  missing: " + id;
+    const auto& ties = diagnosis.tied_with.at(id);
+    for (std::size_t i = 0; i < ties.size(); ++i) {
+      text += (i == 0 ? "   (cannot be told from " : ", ") + ties[i];
+    }
+    text += ties.empty() ? "\n" : ")\n";
+  }
+  text +=
+      fmt::format("  held-out misfit {:.4f} -> {:.4f}, noise alone {:.4f}\n",
+                  diagnosis.held_out.before, diagnosis.held_out.after, diagnosis.held_out.floor);
+  std::vector<CandidateResult> ranked = diagnosis.candidates;
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  text += fmt::format("\n  {:<26} {:>24} {:>12} {:>11} {:>13}  {}\n", "effect", "strength",
+                      "chi2 gain", "detectable", "tells apart", "");
+  constexpr std::size_t kShown = 14;
+  for (std::size_t i = 0; i < std::min(kShown, ranked.size()); ++i) {
+    const CandidateResult& c = ranked[i];
+    text += fmt::format("  {:<26} {:>24} {:>12.1f} {:>11.2g} {:>13.2g}  {}\n", c.effect,
+                        fmt::format("{:.3g} ± {:.1g} {}", c.strength, c.sd, c.unit), c.gain,
+                        c.detectable, c.identifiable, c.verdict);
+  }
+  for (const NextExperiment& next : diagnosis.next_experiment) {
+    text += "\n  next: " + next.change + "\n";
+  }
+  for (const std::string& note : diagnosis.notes) {
+    text += "  note: " + note + "\n";
+  }
+  return text;
+}
+
+Diagnosis refused(const std::string& reason) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = DiagnosisVerdict::bad_data;
+  diagnosis.notes = {reason};
+  return diagnosis;
+}
+
+Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
+  const std::vector<Shot> shots = read_shots(settings.captures);
+  for (const Shot& shot : shots) {
+    if (const std::string reason = bad_data(shot); !reason.empty()) {
+      return refused(shot.id + ": " + reason);
+    }
+  }
+  if (shots.front().bench.gauges.size() < 2) {
+    Diagnosis diagnosis;
+    diagnosis.verdict = DiagnosisVerdict::untestable;
+    diagnosis.notes = {"one gauge, and each shot's source is free: record with two at least"};
+    return diagnosis;
+  }
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, settings.band_limit_Hz.value_or(0.0), all_cores());
+  DiagnosisOptions options;
+  if (progress) {
+    options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };
+  }
+  return diagnose(study, model, options);
+}
+
+int run(const Settings& settings, Context& context) {
+  ModelFile file = read_model(settings.model);
+  const Diagnosis diagnosis = examine(settings, file.model, !context.json);
+  if (settings.output && diagnosis.model) {
+    std::string added;
+    for (const std::string& id : diagnosis.effects) {
+      added += " " + id;
+    }
+    begin_step(file,
+               "diagnose:" + (added.empty() ? " " + kolsky::name_of(diagnosis.verdict) : added),
+               utc_now());
+    file.history.back().data_sha256 = digest_of(settings.captures);
+    file.model = *diagnosis.model;
+    replace_file(*settings.output, format_model(file));
+  }
+  context.out << (context.json ? to_text(describe(diagnosis)) + "\n" : report(diagnosis));
+  return kDone;
+}
+
+}  // namespace
+
+Command diagnose_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "diagnose";
+  command.purpose =
+      "finds which physical effect a model lacks\n"
+      "Tests every effect of the library beside the model, refits rivals, certifies on shots that\n"
+      "the fit did not see. Says what cannot be told apart, and what nothing explains.";
+  command.examples =
+      "  kolsky diagnose shots/*.h5 --model m.toml\n"
+      "  kolsky diagnose shots --model m.toml -o m2.toml --json\n";
+  command.arguments = {
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("--model", "M.toml", "the model to diagnose", &s.model),
+      option("-o,--output", "M2.toml", "where to write the model with what was found, fitted",
+             &s.output),
+      option("--band-limit", "HZ",
+             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/criticism_text.hpp"
+#include "clients/cli/json_value.hpp"
+#include "clients/cli/model_text.hpp"
+#include "drivers/files/model_file.hpp"
+#include "drivers/files/new_file.hpp"
+#include "processing/criticism/study.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+struct Settings {
+  std::vector<std::string> captures;
+  std::string model;
+  std::string output;
+  std::optional<double> band_limit_Hz;
+};
+
+int run(const Settings& settings, Context& context) {
+  ModelFile file = read_model(settings.model);
+  const Executor executor = all_cores();
+  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  Study study(campaign, settings.band_limit_Hz.value_or(0.0), executor);
+  const Studied studied = study.fit(file.model);
+  begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
+  file.history.back().data_sha256 = digest_of(settings.captures);
+  file.history.back().note =
+      fmt::format("chi2 {:.4f} over {:.0f} degrees of freedom", studied.misfit.chi2_reduced,
+                  studied.misfit.degrees_of_freedom);
+  file.model = studied.model;
+  replace_file(settings.output, format_model(file));
+  if (context.json) {
+    context.out << to_text(JsonObject{{"model", settings.output},
+                                      {"parameters", describe_parameters(file.model)},
+                                      {"misfit", describe(studied.misfit)},
+                                      {"effects", describe_effects(file.model)},
+                                      {"converged", studied.fit.converged},
+                                      {"parent", file.parent()}})
+                << "\n";
+    return kDone;
+  }
+  context.out << settings.output << "\n" << model_table(file.model) << misfit_text(studied.misfit);
+  return kDone;
+}
+
+}  // namespace
+
+Command fit_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "fit";
+  command.purpose =
+      "fits a model to captures\n"
+      "Every shot's source is free; the bench's filed deviations bound what may move besides.";
+  command.examples = "  kolsky fit shots/*.h5 --model m.toml -o m2.toml\n";
+  command.arguments = {
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("--model", "M.toml", "the model to fit", &s.model),
+      needed("-o,--output", "M2.toml", "where the fitted model goes", &s.output),
+      option("--band-limit", "HZ",
+             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

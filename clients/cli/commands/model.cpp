@@ -1,0 +1,300 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/json_value.hpp"
+#include "clients/cli/model_text.hpp"
+#include "drivers/files/bench_file.hpp"
+#include "drivers/files/material_file.hpp"
+#include "drivers/files/model_file.hpp"
+#include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+void print(const ModelFile& file, const std::string& name, Context& context) {
+  if (context.json) {
+    context.out << to_text(JsonObject{{"model", name},
+                                      {"kind", name_of(file.model.kind)},
+                                      {"effects", describe_effects(file.model)},
+                                      {"parameters", describe_parameters(file.model)},
+                                      {"parent", file.parent()}})
+                << "\n";
+    return;
+  }
+  context.out << name << ": " << name_of(file.model.kind) << ", " << file.model.effects.size()
+              << " effects\n"
+              << (file.bar_source.empty() ? "" : "  bars: " + file.bar_source + "\n")
+              << model_table(file.model);
+}
+
+struct NewSettings {
+  std::string kind;
+  std::optional<std::string> bench;
+  std::optional<std::string> bar_model;
+  std::string output;
+};
+
+/// Moduli of a split bar's bars as a material file gives them, within its deviations.
+void take_bar(const Material& material, Model& model) {
+  EffectUse* bar = model.find("three-element-bar");
+  if (bar == nullptr) {
+    return;
+  }
+  const std::vector<Measured> numbers{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    ModelValue& value = bar->values[p];
+    value.value = value.prior_mean = numbers[p].value;
+    if (model.kind == BenchKind::shpb) {
+      value.prior_sd = numbers[p].sd;
+      value.free = numbers[p].sd > 0.0;
+    }
+  }
+}
+
+int make_new(const NewSettings& settings, Context& context) {
+  ModelFile file;
+  const BenchKind kind = bench_kind(settings.kind);
+  bool elastic = kind == BenchKind::impact;
+  if (settings.bench) {
+    const Bench bench = read_bench(*settings.bench).bench;
+    if (bench.kind != kind) {
+      throw InputError(*settings.bench + ": kind",
+                       "is \"" + name_of(bench.kind) + "\" and --kind is " + settings.kind,
+                       "give --kind " + name_of(bench.kind));
+    }
+    elastic = bench.input.youngs_modulus_Pa.has_value() &&
+              (!bench.output || bench.output->youngs_modulus_Pa.has_value());
+  }
+  file.model = paper_model(kind, elastic);
+  if (settings.bar_model) {
+    take_bar(read_material(*settings.bar_model), file.model);
+    file.bar_source = *settings.bar_model;
+  } else if (!elastic) {
+    file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"
+                                             : "the paper's PMMA (Table 4, row 1), held";
+  }
+  replace_file(settings.output, format_model(file));
+  print(file, settings.output, context);
+  return kDone;
+}
+
+struct EditSettings {
+  std::string model;
+  std::string effect;
+  std::optional<std::string> output;
+  bool per_shot = false;
+  std::optional<std::string> note;
+};
+
+int add(const EditSettings& settings, Context& context) {
+  ModelFile file = read_model(settings.model);
+  EffectUse use = use_named(settings.effect);
+  const auto& kinds = use.effect->about().kinds;
+  if (std::find(kinds.begin(), kinds.end(), file.model.kind) == kinds.end()) {
+    throw InputError("effect " + use.id(),
+                     "does not belong to a bench of kind " + name_of(file.model.kind),
+                     "`kolsky effects` lists what does");
+  }
+  if (file.model.find(use.id()) != nullptr) {
+    throw InputError(settings.model + ": effect " + use.id(), "is in the model already",
+                     "fit it, or remove it first");
+  }
+  if (settings.per_shot && !use.effect->about().per_shot) {
+    throw InputError("effect " + use.id(), "is one for all shots", "leave --per-shot out");
+  }
+  use.per_shot = settings.per_shot;
+  begin_step(file, "add " + use.id(), utc_now());
+  file.history.back().note = settings.note.value_or("");
+  file.model.effects.push_back(std::move(use));
+  const std::string output = settings.output.value_or(settings.model);
+  replace_file(output, format_model(file));
+  print(file, output, context);
+  return kDone;
+}
+
+int remove(const EditSettings& settings, Context& context) {
+  ModelFile file = read_model(settings.model);
+  const EffectUse* use = file.model.find(settings.effect);
+  if (use == nullptr) {
+    throw InputError(settings.model + ": effect " + settings.effect, "is not in the model",
+                     "`kolsky model show` lists what is");
+  }
+  begin_step(file, "remove " + settings.effect, utc_now());
+  file.history.back().note = settings.note.value_or("");
+  std::erase_if(file.model.effects,
+                [&](const EffectUse& own) { return own.id() == settings.effect; });
+  const std::string output = settings.output.value_or(settings.model);
+  replace_file(output, format_model(file));
+  print(file, output, context);
+  return kDone;
+}
+
+int show(const EditSettings& settings, Context& context) {
+  print(read_model(settings.model), settings.model, context);
+  return kDone;
+}
+
+std::string changes(const Model& before, const Model& after) {
+  std::string text;
+  for (const EffectUse& use : after.effects) {
+    const EffectUse* old = before.find(use.id());
+    if (old == nullptr) {
+      text += "      + " + use.id() + "\n";
+      continue;
+    }
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      if (use.values[p].value != old->values[p].value) {
+        text += fmt::format("        {}.{}: {:.6g} -> {:.6g}\n", use.id(),
+                            use.effect->about().parameters[p].name, old->values[p].value,
+                            use.values[p].value);
+      }
+    }
+  }
+  for (const EffectUse& use : before.effects) {
+    if (after.find(use.id()) == nullptr) {
+      text += "      - " + use.id() + "\n";
+    }
+  }
+  return text;
+}
+
+int history(const EditSettings& settings, Context& context) {
+  const ModelFile file = read_model(settings.model);
+  if (context.json) {
+    JsonList steps;
+    for (const ModelStep& step : file.history) {
+      steps.push_back(JsonObject{
+          {"action", step.action},
+          {"when", step.when},
+          {"note", step.note},
+          {"data_sha256", step.data_sha256},
+          {"parent", step.parent},
+          {"effects_before", describe_effects(parse_model(step.before, "before").model)}});
+    }
+    context.out << to_text(JsonObject{{"history", std::move(steps)},
+                                      {"effects", describe_effects(file.model)},
+                                      {"parent", file.parent()}})
+                << "\n";
+    return kDone;
+  }
+  for (std::size_t i = 0; i < file.history.size(); ++i) {
+    const ModelStep& step = file.history[i];
+    const Model before = parse_model(step.before, "before").model;
+    const Model after = i + 1 < file.history.size()
+                            ? parse_model(file.history[i + 1].before, "before").model
+                            : file.model;
+    context.out << fmt::format("{:>3}  {}  {}\n", i + 1, step.when, step.action)
+                << (step.note.empty() ? "" : "      " + step.note + "\n") << changes(before, after);
+  }
+  if (file.history.empty()) {
+    context.out << "no steps yet\n";
+  }
+  return kDone;
+}
+
+int revert(const EditSettings& settings, Context& context) {
+  ModelFile file = read_model(settings.model);
+  if (file.history.empty()) {
+    throw InputError(settings.model, "has no step to go back to", "nothing needs to be done");
+  }
+  const ModelFile before = parse_model(file.history.back().before, settings.model + ": history");
+  begin_step(file, "revert " + file.history.back().action, utc_now());
+  file.model = before.model;
+  const std::string output = settings.output.value_or(settings.model);
+  replace_file(output, format_model(file));
+  print(file, output, context);
+  return kDone;
+}
+
+Command edit_command(const std::string& name, const std::string& purpose,
+                     const std::string& examples, int (*run)(const EditSettings&, Context&),
+                     bool needs_effect, bool writes) {
+  auto settings = std::make_shared<EditSettings>();
+  EditSettings& s = *settings;
+  Command command;
+  command.name = "model " + name;
+  command.purpose = purpose;
+  command.examples = examples;
+  command.arguments = {needed("MODEL", "", "the model file", &s.model)};
+  if (needs_effect) {
+    command.arguments.push_back(
+        needed("EFFECT", "", "its id, as `kolsky effects` lists it", &s.effect));
+  }
+  if (writes) {
+    command.arguments.push_back(
+        option("-o,--output", "M2.toml", "where to write; else the model file itself", &s.output));
+    command.arguments.push_back(option("--note", "TEXT", "kept in the model's history", &s.note));
+  }
+  if (name == "add") {
+    command.arguments.push_back(
+        flag("--per-shot", "with a strength of its own for every shot", &s.per_shot));
+  }
+  command.run = [settings, run](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace
+
+Command model_new_command() {
+  auto settings = std::make_shared<NewSettings>();
+  NewSettings& s = *settings;
+  Command command;
+  command.name = "model new";
+  command.purpose =
+      "the paper's model of a bench, where every comparison starts\n"
+      "A bar: three-element material, elementary waves, ideal ends and sensors; moduli free. A "
+      "split\n"
+      "bar: its bars as given, a massless three-element specimen, free outer ends.";
+  command.examples =
+      "  kolsky model new --kind bar --bench bench.toml -o m.toml\n"
+      "  kolsky model new --kind shpb --bench bench.toml --bar-model pmma.toml -o m.toml\n";
+  Argument kind = needed("--kind", "KIND", "of the bench: bar, shpb or impact", &s.kind);
+  kind.choices = {"bar", "shpb", "impact"};
+  command.arguments = {
+      kind, option("--bench", "B.toml", "bench file: tells whether the bars are elastic", &s.bench),
+      option("--bar-model", "M.toml", "material file of viscoelastic bars; else the paper's PMMA",
+             &s.bar_model),
+      needed("-o,--output", "M.toml", "the model file to write", &s.output)};
+  command.run = [settings](Context& context) { return make_new(*settings, context); };
+  return command;
+}
+
+Command model_add_command() {
+  return edit_command("add",
+                      "adds an effect to a model, at the value at which it is not there yet\n"
+                      "A fit then finds its strength.",
+                      "  kolsky model add m.toml geometric-dispersion -o m2.toml\n"
+                      "  kolsky model add m.toml gauge-position:g3\n",
+                      add, true, true);
+}
+
+Command model_remove_command() {
+  return edit_command("remove", "takes an effect out of a model\nIts history keeps it.",
+                      "  kolsky model remove m.toml crosstalk:g2\n", remove, true, true);
+}
+
+Command model_show_command() {
+  return edit_command("show", "what a model holds\nEffects by stage, with their numbers.",
+                      "  kolsky model show m.toml\n", show, false, false);
+}
+
+Command model_history_command() {
+  return edit_command("history",
+                      "a model's lineage: every step, what it changed and on which data\n"
+                      "Nothing that a model once was is lost: `kolsky model revert` goes back.",
+                      "  kolsky model history m.toml\n", history, false, false);
+}
+
+Command model_revert_command() {
+  return edit_command("revert",
+                      "undoes a model's last step\nThe step and its undoing stay in the history.",
+                      "  kolsky model revert m.toml\n", revert, false, true);
+}
+
+}  // namespace kolsky::cli

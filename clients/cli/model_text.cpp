@@ -1,0 +1,180 @@
+#include "clients/cli/model_text.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <ctime>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "drivers/files/capture.hpp"
+#include "drivers/files/file_bytes.hpp"
+#include "drivers/files/sha256.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 32U;
+
+std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : captures) {
+    for (const auto& file : captures_in(name)) {
+      files.push_back(file);
+    }
+  }
+  return files;
+}
+
+std::string name_of_parameter(const Model& model, const EffectUse& use,
+                              const EffectParameter& parameter) {
+  const std::string& id = use.effect->about().id;
+  if (id == "three-element-specimen") {
+    return parameter.name;
+  }
+  if (id == "three-element-bar") {
+    return model.kind == BenchKind::bar ? parameter.name : "bar." + parameter.name;
+  }
+  return use.id() + "." + parameter.name;
+}
+
+}  // namespace
+
+std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
+  std::vector<Shot> shots;
+  for (const auto& file : files_of(captures)) {
+    shots.push_back(read_capture(file));
+    shots.back().id = file.filename().string();
+  }
+  return shots;
+}
+
+std::string digest_of(const std::vector<std::string>& captures) {
+  Sha256 all;
+  for (const auto& file : files_of(captures)) {
+    const std::string bytes = read_file_bytes(file, kMostBytes);
+    const std::string own = sha256_hex(std::as_bytes(std::span(bytes)));
+    all.add(std::as_bytes(std::span(own)));
+  }
+  return all.hex();
+}
+
+Executor all_cores() {
+  Executor executor;
+  executor.workers = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t workers = executor.workers;
+  executor.run = [workers](std::size_t count,
+                           const std::function<void(std::size_t, std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr error;
+    std::mutex lock;
+    const auto loop = [&](std::size_t worker) {
+      for (std::size_t index = next++; index < count; index = next++) {
+        try {
+          work(index, worker);
+        } catch (...) {
+          const std::scoped_lock held(lock);
+          error = std::current_exception();
+        }
+      }
+    };
+    std::vector<std::jthread> threads;
+    for (std::size_t worker = 1; worker < std::min(workers, count); ++worker) {
+      threads.emplace_back(loop, worker);
+    }
+    loop(0);
+    threads.clear();
+    if (error) {
+      std::rethrow_exception(error);
+    }
+  };
+  return executor;
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+JsonValue describe_effects(const Model& model) {
+  JsonList list;
+  for (const EffectUse& use : model.effects) {
+    const EffectAbout& about = use.effect->about();
+    JsonObject parameters;
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      parameters.push_back(
+          {about.parameters[p].name, JsonObject{{"value", value.value},
+                                                {"sd", value.sd},
+                                                {"unit", about.parameters[p].unit},
+                                                {"free", value.free},
+                                                {"null", about.parameters[p].null_value}}});
+    }
+    list.push_back(
+        JsonObject{{"id", use.id()},
+                   {"stage", kolsky::name_of(about.stage)},
+                   {"per_shot", use.per_shot},
+                   {"known_unknown", !use.values.empty() && use.values[0].prior_sd > 0.0},
+                   {"parameters", std::move(parameters)}});
+  }
+  return list;
+}
+
+JsonValue describe_parameters(const Model& model) {
+  JsonObject object;
+  for (const EffectUse& use : model.effects) {
+    const EffectAbout& about = use.effect->about();
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      object.push_back({name_of_parameter(model, use, about.parameters[p]),
+                        JsonObject{{"value", value.value},
+                                   {"sd", value.sd},
+                                   {"unit", about.parameters[p].unit},
+                                   {"free", value.free}}});
+    }
+  }
+  return object;
+}
+
+std::string model_table(const Model& model) {
+  std::string text;
+  for (const EffectUse& use : model.effects) {
+    const EffectAbout& about = use.effect->about();
+    text += fmt::format("  {:<28} {:<12} {}\n", use.id(), kolsky::name_of(about.stage),
+                        about.definition);
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      const std::string deviation = value.sd > 0.0 ? fmt::format(" ± {:.2g}", value.sd) : "";
+      const std::string held = value.prior_sd > 0.0
+                                   ? fmt::format("  filed within {:.2g}", value.prior_sd)
+                                   : (value.free ? "" : "  held");
+      text += fmt::format("      {} = {:.6g}{} {}{}\n", about.parameters[p].name, value.value,
+                          deviation, about.parameters[p].unit, held);
+    }
+  }
+  return text;
+}
+
+BenchKind bench_kind(const std::string& name) {
+  if (name == "bar") {
+    return BenchKind::bar;
+  }
+  return name == "shpb" ? BenchKind::shpb : BenchKind::impact;
+}
+
+std::string name_of(BenchKind kind) {
+  switch (kind) {
+    case BenchKind::bar:
+      return "bar";
+    case BenchKind::shpb:
+      return "shpb";
+    case BenchKind::impact:
+      return "impact";
+  }
+  return {};
+}
+
+}  // namespace kolsky::cli

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clients/cli/json_value.hpp"
+#include "processing/base/shot.hpp"
+#include "processing/criticism/executor.hpp"
+#include "processing/models/model.hpp"
+
+namespace kolsky::cli {
+
+/// Captures named on the command line (files or folders), read. @throws InputError
+[[nodiscard]] std::vector<Shot> read_shots(const std::vector<std::string>& captures);
+
+/// SHA-256 over the captures' own digests, in the order given.
+[[nodiscard]] std::string digest_of(const std::vector<std::string>& captures);
+
+/// As many threads as the machine has cores.
+[[nodiscard]] Executor all_cores();
+
+/// "2026-11-21T14:00:00Z"
+[[nodiscard]] std::string utc_now();
+
+/// A model's effects as `--json` gives them: id, stage, parameters with value, sd, unit, free.
+[[nodiscard]] JsonValue describe_effects(const Model& model);
+
+/// The fitted numbers by name: moduli as in a material file (a bar's beside a specimen as
+/// "bar.E1_Pa"), effects' as "geometric-dispersion.s".
+[[nodiscard]] JsonValue describe_parameters(const Model& model);
+
+/// A table of a model's effects for people.
+[[nodiscard]] std::string model_table(const Model& model);
+
+[[nodiscard]] BenchKind bench_kind(const std::string& name);
+[[nodiscard]] std::string name_of(BenchKind kind);
+
+}  // namespace kolsky::cli

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "processing/models/model.hpp"
+
+namespace kolsky {
+
+/// A step in a model's life: what was done, and the model as it was before.
+struct ModelStep {
+  std::string action;       ///< "add geometric-dispersion", "fit 8 captures"
+  std::string when;         ///< UTC, ISO 8601
+  std::string note;         ///< figures and seeds that belong to the step, for people
+  std::string data_sha256;  ///< of the captures a fit saw; empty for other steps
+  std::string parent;       ///< SHA-256 of the text below
+  std::string before;       ///< the whole model file before the step, without its own history
+};
+
+/// A model with the lineage that its file carries along: nothing that it once was is lost.
+struct ModelFile {
+  Model model;
+  std::string bar_source;  ///< where the bars' moduli come from, for people; may be empty
+  std::vector<ModelStep> history;
+
+  [[nodiscard]] std::string parent() const {
+    return history.empty() ? std::string{} : history.back().parent;
+  }
+};
+
+/// @throws InputError: file, line, key and mend
+[[nodiscard]] ModelFile read_model(const std::filesystem::path& path);
+[[nodiscard]] ModelFile parse_model(const std::string& text, const std::string& name);
+
+/// TOML that reads back as the same bits; without the history where it is not asked for.
+[[nodiscard]] std::string format_model(const ModelFile& file, bool with_history = true);
+
+/// Appends a step: the file as it is now becomes the parent of what follows.
+void begin_step(ModelFile& file, const std::string& action, const std::string& when);
+
+}  // namespace kolsky

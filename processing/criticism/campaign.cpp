@@ -1,0 +1,208 @@
+#include "processing/criticism/campaign.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "processing/base/error.hpp"
+#include "processing/bridge/bridge.hpp"
+#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/quality.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kShortestPulse_s = 5e-6;
+constexpr double kPulseReach_s = 500e-6;
+constexpr double kFootClearance_s = 10e-6;
+constexpr std::size_t kFewestQuiet = 32;
+
+std::vector<double> readings_of(const ChannelRecord& channel) {
+  std::vector<double> readings(channel.codes.size());
+  std::transform(channel.codes.begin(), channel.codes.end(), readings.begin(),
+                 [&](std::int32_t code) { return channel.value(code); });
+  return readings;
+}
+
+std::size_t reference_of(const Bench& bench) {
+  std::size_t reference = bench.gauges.size();
+  for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
+    const bool input = bench.gauges[j].bar != "output";
+    if (input && (reference == bench.gauges.size() ||
+                  bench.gauges[j].position_m < bench.gauges[reference].position_m)) {
+      reference = j;
+    }
+  }
+  return reference;
+}
+
+/// Foot of the first pulse [samples]; none where nothing stands out.
+std::optional<double> foot_in(const std::vector<double>& readings, double rate_Hz) {
+  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
+  const auto reach = static_cast<std::size_t>(kPulseReach_s * rate_Hz);
+  const auto rise = find_first_pulse(readings, width, reach);
+  if (!rise) {
+    return std::nullopt;
+  }
+  const double baseline =
+      quiet_before(readings, std::min<std::size_t>(rise->index, kFewestQuiet)).baseline;
+  const std::size_t end = std::min(readings.size(), rise->index + reach);
+  std::vector<double> shifted(end);
+  for (std::size_t n = 0; n < end; ++n) {
+    shifted[n] = rise->sense * (readings[n] - baseline);
+  }
+  const double peak =
+      *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(rise->index), shifted.end());
+  return foot_of(shifted, rise->index, peak, 0.0).index;
+}
+
+std::size_t quiet_samples(double foot, double rate_Hz) {
+  return static_cast<std::size_t>(std::max(0.0, foot - kFootClearance_s * rate_Hz));
+}
+
+/// The step between neighbouring codes where the record takes few enough values to show it.
+double step_of(const std::vector<double>& strain) {
+  std::vector<double> values(strain);
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  constexpr std::size_t kSamplesPerValue = 4;
+  if (values.size() < 3 || values.size() * kSamplesPerValue > strain.size()) {
+    return 0.0;
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    steps.push_back(values[i] - values[i - 1]);
+  }
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4),
+                   steps.end());
+  return steps[steps.size() / 4];
+}
+
+std::optional<double> logged(const Shot& shot, const std::string& key) {
+  const auto found = shot.meta.find(key);
+  if (found == shot.meta.end()) {
+    return std::nullopt;
+  }
+  double value = 0.0;
+  const char* end = found->second.data() + found->second.size();
+  const auto [stopped, error] = std::from_chars(found->second.data(), end, value);
+  if (error != std::errc{} || stopped != end) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+/// Temperatures relative to the bench's, or to the campaign's mean where the bench gives none.
+void set_temperatures(const std::vector<Shot>& shots, Campaign& campaign) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Shot& shot : shots) {
+    if (const auto T = logged(shot, "temperature_K")) {
+      sum += *T;
+      ++count;
+    }
+  }
+  if (count == 0) {
+    return;
+  }
+  const double reference = campaign.bench.temperature_K ? campaign.bench.temperature_K->value
+                                                        : sum / static_cast<double>(count);
+  for (std::size_t n = 0; n < shots.size(); ++n) {
+    if (const auto T = logged(shots[n], "temperature_K")) {
+      campaign.shots[n].facts.warmer_by_K = *T - reference;
+    }
+  }
+}
+
+CampaignShot read_shot(const Shot& shot, std::size_t reference) {
+  const Bench& bench = shot.bench;
+  CampaignShot out;
+  out.id = shot.id;
+  const double rate_Hz = shot.rate.Hz();
+  const double foot = *foot_in(readings_of(shot.channels[reference]), rate_Hz);
+  out.quiet_samples = quiet_samples(foot, rate_Hz);
+  out.foot_s = foot * shot.rate.period_s();
+  for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
+    const BridgeConversion bridge(bench.gauges[j], bench.bar_of(bench.gauges[j]), bench.positive);
+    const std::vector<double> readings = readings_of(shot.channels[j]);
+    std::vector<double> strain(readings.size());
+    bridge.convert(readings, quiet_before(readings, out.quiet_samples).baseline, strain);
+    out.strain.push_back(std::move(strain));
+  }
+  for (const double value : out.strain[reference]) {
+    out.facts.peak_strain = std::max(out.facts.peak_strain, std::abs(value));
+  }
+  for (std::size_t n = 0; n < shot.samples(); ++n) {
+    out.facts.time_s.push_back(static_cast<double>(n) * shot.rate.period_s() - out.foot_s);
+  }
+  return out;
+}
+
+void require_gauges(const Bench& bench) {
+  if (bench.gauges.size() < 2) {
+    throw InputError("gauges", "are too few: a model is judged by what one gauge says of another",
+                     "record the wave with at least two gauges");
+  }
+  if (reference_of(bench) == bench.gauges.size()) {
+    throw InputError("gauges", "are none on the input bar", "put one there: it sees the source");
+  }
+}
+
+}  // namespace
+
+std::string bad_data(const Shot& shot) {
+  std::string unusable = unusable_because(shot);
+  if (!unusable.empty()) {
+    return unusable;
+  }
+  const std::size_t reference = reference_of(shot.bench);
+  if (reference == shot.bench.gauges.size() || shot.channels.size() != shot.bench.gauges.size()) {
+    return "no channel of a gauge on the input bar";
+  }
+  const auto foot = foot_in(readings_of(shot.channels[reference]), shot.rate.Hz());
+  if (!foot) {
+    return "gauge " + shot.bench.gauges[reference].name +
+           " holds no pulse that stands out of its noise";
+  }
+  if (quiet_samples(*foot, shot.rate.Hz()) < kFewestQuiet) {
+    return "too few quiet samples before the pulse: " +
+           std::to_string(quiet_samples(*foot, shot.rate.Hz())) + " of at least " +
+           std::to_string(kFewestQuiet);
+  }
+  return {};
+}
+
+Campaign read_campaign(const std::vector<Shot>& shots) {
+  if (shots.empty()) {
+    throw InputError("captures", "are none", "give at least one");
+  }
+  Campaign campaign;
+  campaign.bench = shots.front().bench;
+  require_gauges(campaign.bench);
+  campaign.period_s = shots.front().rate.period_s();
+  campaign.reference = reference_of(campaign.bench);
+  for (const Shot& shot : shots) {
+    if (shot.rate != shots.front().rate || shot.bench_toml != shots.front().bench_toml) {
+      throw InputError("capture " + shot.id, "is of another bench or rate than " + shots.front().id,
+                       "compare shots of one bench at a time");
+    }
+    if (const std::string reason = bad_data(shot); !reason.empty()) {
+      throw InputError("capture " + shot.id, reason, "repeat the shot, or leave this capture out");
+    }
+    campaign.shots.push_back(read_shot(shot, campaign.reference));
+    campaign.shots.back().facts.shot = campaign.shots.size() - 1;
+  }
+  set_temperatures(shots, campaign);
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    double step = 0.0;
+    for (const CampaignShot& shot : campaign.shots) {
+      step = std::max(step, step_of(shot.strain[j]));
+    }
+    campaign.step.push_back(step);
+  }
+  return campaign;
+}
+
+}  // namespace kolsky

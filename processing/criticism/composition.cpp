@@ -1,0 +1,160 @@
+#include "processing/criticism/composition.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+double relative_sd(const Measured& number) {
+  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
+}
+
+/// Relative standard deviation of what turns a gauge's reading into strain.
+double gain_sd(const Gauge& gauge) {
+  if (gauge.strain_per_V) {
+    return relative_sd(*gauge.strain_per_V);
+  }
+  if (gauge.bridge) {
+    return std::hypot(relative_sd(gauge.bridge->gauge_factor),
+                      relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
+  }
+  return gauge.gain_sd;
+}
+
+EffectUse filed(const std::string& id, std::vector<double> sds) {
+  EffectUse use = use_named(id);
+  for (std::size_t i = 0; i < sds.size(); ++i) {
+    use.values[i].prior_sd = sds[i];
+    use.values[i].prior_mean = use.effect->about().parameters[i].null_value;
+    use.values[i].free = sds[i] > 0.0;
+  }
+  return use;
+}
+
+}  // namespace
+
+std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
+  std::vector<EffectUse> list;
+  for (const Gauge& gauge : bench.gauges) {
+    if (const double sd = gain_sd(gauge); sd > 0.0) {
+      list.push_back(filed("gauge-factor:" + gauge.name, {sd}));
+    }
+    if (gauge.position_m.sd > 0.0) {
+      list.push_back(filed("gauge-position:" + gauge.name, {gauge.position_m.sd}));
+    }
+  }
+  if (bench.kind == BenchKind::bar && bench.input.length_m.sd > 0.0) {
+    list.push_back(filed("bar-length", {bench.input.length_m.sd}));
+  }
+  if (bench.input.density_kg_m3.sd > 0.0) {
+    list.push_back(filed("bar-density", {relative_sd(bench.input.density_kg_m3)}));
+  }
+  if (bench.specimen &&
+      (bench.specimen->length_m.sd > 0.0 || bench.specimen->diameter_m.sd > 0.0)) {
+    list.push_back(
+        filed("specimen-dimensions", {bench.specimen->length_m.sd, bench.specimen->diameter_m.sd}));
+  }
+  return list;
+}
+
+Composition::Composition(const Model& model, const Campaign& campaign)
+    : shots_(campaign.shots.size()), gauges_(campaign.gauges()) {
+  if (model.kind != campaign.bench.kind) {
+    throw InputError("model", "is of another kind of bench than the captures",
+                     "make one with `kolsky model new --kind`");
+  }
+  for (const EffectUse& use : model.effects) {
+    add(use, campaign);
+  }
+  for (const EffectUse& use : known_unknowns_of(campaign.bench)) {
+    if (model.find(use.id()) == nullptr) {
+      add(use, campaign);
+    }
+  }
+}
+
+void Composition::add(const EffectUse& use, const Campaign& campaign) {
+  const EffectAbout& about = use.effect->about();
+  std::size_t gauge = 0;
+  if (about.per_gauge) {
+    const auto& gauges = campaign.bench.gauges;
+    const auto found = std::find_if(gauges.begin(), gauges.end(),
+                                    [&](const Gauge& g) { return g.name == use.gauge; });
+    if (found == gauges.end()) {
+      throw InputError("effect " + use.id(), "names a gauge that the bench does not have",
+                       "name one of the bench file's gauges");
+    }
+    gauge = static_cast<std::size_t>(found - gauges.begin());
+  }
+  differs_by_shot_ = differs_by_shot_ || about.shot_facts;
+  changes_records_ = changes_records_ || about.stage == Stage::record;
+  std::vector<Slots> slots(about.parameters.size());
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    const EffectParameter& parameter = about.parameters[p];
+    const ModelValue& value = use.values[p];
+    const std::size_t by_shot = use.per_shot && !parameter.auxiliary() ? shots_ : 1;
+    const std::size_t by_gauge = about.each_gauge && !parameter.auxiliary() ? gauges_ : 1;
+    Slots own{by_shot, by_gauge, std::vector<Slot>(by_shot * by_gauge)};
+    for (std::size_t place = 0; place < own.of.size(); ++place) {
+      Slot& slot = own.of[place];
+      slot.fixed = value.value;
+      if (value.free) {
+        slot.number = static_cast<std::ptrdiff_t>(numbers_.size());
+        const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
+        numbers_.push_back({uses_.size(), p, value.value, scale, parameter.lower, parameter.upper,
+                            value.prior_mean, value.prior_sd,
+                            by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1});
+      }
+    }
+    slots[p] = std::move(own);
+  }
+  uses_.push_back(use);
+  gauge_of_use_.push_back(gauge);
+  slots_.push_back(std::move(slots));
+}
+
+std::vector<double> Composition::start() const {
+  std::vector<double> theta;
+  for (const FreeNumber& number : numbers_) {
+    theta.push_back(number.start / number.scale);
+  }
+  return theta;
+}
+
+std::vector<AppliedEffect> Composition::applied(const std::vector<double>& theta,
+                                                std::size_t shot) const {
+  std::vector<AppliedEffect> list;
+  for (std::size_t u = 0; u < uses_.size(); ++u) {
+    const EffectUse& use = uses_[u];
+    const bool each_gauge = use.effect->about().each_gauge;
+    const std::size_t copies = each_gauge ? gauges_ : 1;
+    for (std::size_t copy = 0; copy < copies; ++copy) {
+      AppliedEffect effect{use.effect, each_gauge ? copy : gauge_of_use_[u], {}};
+      for (const Slots& own : slots_[u]) {
+        const Slot& slot = own.at(shot, copy);
+        effect.values.push_back(slot.number < 0
+                                    ? slot.fixed
+                                    : theta[static_cast<std::size_t>(slot.number)] *
+                                          numbers_[static_cast<std::size_t>(slot.number)].scale);
+      }
+      list.push_back(std::move(effect));
+    }
+  }
+  return list;
+}
+
+std::vector<std::size_t> Composition::numbers_of(std::size_t use) const {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    if (numbers_[i].use == use) {
+      list.push_back(i);
+    }
+  }
+  return list;
+}
+
+}  // namespace kolsky

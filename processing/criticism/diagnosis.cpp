@@ -1,0 +1,666 @@
+#include "processing/criticism/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "processing/criticism/distortion.hpp"
+#include "processing/criticism/held_out.hpp"
+#include "processing/criticism/next_experiment.hpp"
+#include "processing/criticism/own_strengths.hpp"
+#include "processing/criticism/statistics.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
+/// the true one stays in the set in 99.7 of 100 cases.
+constexpr double kTie = 7.5;
+constexpr double kDetected = 6.0;      ///< sigma
+constexpr double kToldApart = 5.0;     ///< sigma beside a rival
+constexpr double kAllowedRest = 0.03;  ///< of a misfit that certified effects explain
+constexpr double kFarOff = 3.0;        ///< chi2 per degree of freedom
+constexpr std::size_t kMostRefits = 14;
+constexpr int kSimulatedRepeats = 2000;
+
+/// A candidate refitted in full beside the model.
+struct Refit {
+  std::size_t candidate = 0;
+  Studied studied;
+  double gain = 0.0;      ///< of the objective
+  double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
+  double log_p = 0.0;
+};
+
+Executor on_worker(std::size_t worker) {
+  Executor serial;
+  serial.first = worker;
+  serial.run = [worker](std::size_t count,
+                        const std::function<void(std::size_t, std::size_t)>& work) {
+    for (std::size_t i = 0; i < count; ++i) {
+      work(i, worker);
+    }
+  };
+  return serial;
+}
+
+double log_tail(double gain, double freedom, bool one_sided) {
+  const double log_p = log_chi2_tail(std::max(gain, 0.0), std::max(freedom, 1.0));
+  return one_sided ? log_p - std::log(2.0) : log_p;
+}
+
+double noise_of(const Misfit& misfit, std::size_t shots) {
+  return shots > 1 ? misfit.noise_scale : std::max(1.0, misfit.noise_scale);
+}
+
+class Search {
+ public:
+  /// @param start  the model before anything was fitted
+  Search(Study& study, const Studied& base, const Model& start)
+      : study_(study), base_(base), start_(start) {
+    candidates_ = candidates_for(base, study.campaign());
+    directions_.resize(candidates_.size());
+    study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
+      directions_[i] = direction_of(candidates_[i], base_, study_, worker);
+    });
+    simulate();
+  }
+
+  [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
+  [[nodiscard]] const std::vector<Direction>& directions() const { return directions_; }
+
+  /// ln of the chance that the best of all candidates does as well on noise.
+  [[nodiscard]] double with_search(double log_p) const {
+    return std::min(0.0, log_p + std::log(trials_));
+  }
+
+  /// What two directions share through the model's own numbers.
+  [[nodiscard]] double projected(std::size_t a, std::size_t b) const {
+    return directions_[a].model_share.col(0).dot(base_.fit.covariance *
+                                                 directions_[b].model_share.col(0));
+  }
+
+  [[nodiscard]] std::vector<Refit> refits() {
+    const std::vector<std::size_t> chosen = worth_refitting();
+    std::vector<std::optional<Refit>> done(chosen.size());
+    study_.executor().run(chosen.size(), [&](std::size_t i, std::size_t worker) {
+      done[i] = refit(chosen[i], worker);
+    });
+    std::vector<Refit> list;
+    for (auto& own : done) {
+      if (own && std::isfinite(own->gain) &&
+          own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
+                                  study_.campaign())) {
+        list.push_back(std::move(*own));
+      }
+    }
+    std::sort(list.begin(), list.end(),
+              [](const Refit& a, const Refit& b) { return a.evidence > b.evidence; });
+    return list;
+  }
+
+ private:
+  /// How many independent tests the search amounts to, from simulated repeats of pure noise: the
+  /// candidates' directions overlap.
+  void simulate() {
+    std::vector<std::size_t> single;
+    for (std::size_t i = 0; i < directions_.size(); ++i) {
+      if (directions_[i].freedom == 1.0 && directions_[i].information.rows() == 1) {
+        single.push_back(i);
+      }
+    }
+    const auto count = static_cast<Eigen::Index>(single.size());
+    double others = 0.0;
+    for (const Direction& direction : directions_) {
+      others += direction.information.rows() > 1 && direction.freedom > 0.0 ? 1.0 : 0.0;
+    }
+    if (count == 0) {
+      trials_ = std::max(1.0, others);
+      return;
+    }
+    Eigen::MatrixXd columns(base_.fit.residual.size(), count);
+    Eigen::MatrixXd shares(static_cast<Eigen::Index>(base_.fit.theta.size()), count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Direction& direction = directions_[single[static_cast<std::size_t>(i)]];
+      const double scale = 1.0 / std::sqrt(direction.information(0, 0));
+      columns.col(i) = direction.columns.col(0) * scale;
+      shares.col(i) = direction.model_share.col(0) * scale;
+    }
+    Eigen::MatrixXd gram =
+        columns.transpose() * columns - shares.transpose() * base_.fit.covariance * shares;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+    const Eigen::MatrixXd root =
+        solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    std::mt19937_64 random(20260101);
+    std::normal_distribution<double> normal;
+    std::vector<double> best;
+    Eigen::VectorXd draw(count);
+    for (int n = 0; n < kSimulatedRepeats; ++n) {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        draw[i] = normal(random);
+      }
+      const Eigen::VectorXd z = root * draw;
+      double largest = 0.0;
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const bool one_sided = candidates_[single[static_cast<std::size_t>(i)]].one_sided;
+        if (!one_sided || z[i] > 0.0) {
+          // One-sided tests have half the tail: the same chance lies at a smaller square.
+          const double tail = log_tail(z[i] * z[i], 1.0, one_sided);
+          largest = std::max(largest, -tail);
+        }
+      }
+      best.push_back(largest);
+    }
+    // Chance 5 % for the best of all: n tests have p = 1 - 0.95^(1/n) each.
+    std::nth_element(best.begin(), best.begin() + kSimulatedRepeats * 95 / 100, best.end());
+    const double p = std::exp(-best[static_cast<std::size_t>(kSimulatedRepeats) * 95 / 100]);
+    trials_ = std::max(1.0, std::log(0.95) / std::log1p(-std::min(p, 0.5))) + others;
+  }
+
+  [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const {
+    return direction.freedom > 0.0
+               ? equivalent_square(log_tail(direction.gain, direction.freedom, candidate.one_sided))
+               : 0.0;
+  }
+
+  /// The best variant of each effect, those near the best of all; first-order ties can separate at
+  /// finite size, the more so the larger the misfit.
+  [[nodiscard]] std::vector<std::size_t> worth_refitting() const {
+    std::map<std::string, std::pair<double, std::size_t>> best;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const double evidence = evidence_of(directions_[i], candidates_[i]);
+      auto& own = best[candidates_[i].id() + (candidates_[i].use.per_shot ? " per shot" : "")];
+      if (evidence > own.first) {
+        own = {evidence, i};
+      }
+    }
+    std::vector<std::pair<double, std::size_t>> ranked;
+    for (const auto& [id, own] : best) {
+      if (own.first > 0.0) {
+        ranked.push_back(own);
+      }
+    }
+    std::sort(ranked.rbegin(), ranked.rend());
+    std::vector<std::size_t> chosen;
+    for (const auto& [evidence, i] : ranked) {
+      const double margin = std::max(25.0, 0.6 * ranked.front().first);
+      if (chosen.size() < kMostRefits && evidence > ranked.front().first - margin) {
+        chosen.push_back(i);
+      }
+    }
+    return chosen;
+  }
+
+  std::optional<Refit> refit(std::size_t index, std::size_t worker) {
+    const Candidate& candidate = candidates_[index];
+    const Direction& direction = directions_[index];
+    const Model model = with(base_.model, candidate, true);
+    Composition composition(model, study_.campaign());
+    std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
+    // Begin where first order says the strengths are, or short of it.
+    std::vector<std::size_t> strengths;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[i];
+      const EffectUse& use = composition.uses()[number.use];
+      if (use.id() == candidate.id() &&
+          !use.effect->about().parameters[number.parameter].auxiliary()) {
+        strengths.push_back(i);
+      }
+    }
+    if (!candidate.frees_prior &&
+        static_cast<Eigen::Index>(strengths.size()) == direction.step.size()) {
+      for (std::size_t i = 0; i < strengths.size(); ++i) {
+        const FreeNumber& number = composition.numbers()[strengths[i]];
+        const double value = start[strengths[i]] * number.scale +
+                             direction.step[static_cast<Eigen::Index>(i)] * number.scale;
+        start[strengths[i]] = std::clamp(value, number.lower, number.upper) / number.scale;
+      }
+    }
+    ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker), std::move(start));
+    if (base_.misfit.chi2_reduced > kFarOff) {
+      // The model's own numbers may have gone far astray for want of this effect: begin again from
+      // where they started.
+      Model fresh = with(start_, candidate, true);
+      start_moduli(fresh, study_.campaign(), study_.residuals(), worker);
+      const Composition again(fresh, study_.campaign());
+      ModelFit other = fit_model(composition, study_.residuals(), on_worker(worker),
+                                 carry(again, again.start(), composition));
+      if (other.objective() < fit.objective()) {
+        fit = std::move(other);
+      }
+    }
+    const Misfit misfit =
+        misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
+    Refit out{index,
+              {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit},
+              0.0,
+              0.0,
+              0.0};
+    const double noise = noise_of(out.studied.misfit, study_.campaign().shots.size());
+    const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
+                           out.studied.fit.degrees_of_freedom(out.studied.composition);
+    out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise;
+    out.log_p = log_tail(out.gain, candidate.frees_prior ? 1.0 : std::round(freedom),
+                         candidate.one_sided && freedom < 1.5);
+    out.evidence = equivalent_square(out.log_p);
+    return out;
+  }
+
+  Study& study_;
+  const Studied& base_;
+  const Model& start_;
+  std::vector<Candidate> candidates_;
+  std::vector<Direction> directions_;
+  double trials_ = 1.0;
+};
+
+/// What smooth distortions of every gauge still find in a model's residuals.
+double unexplained(Study& study, const Studied& studied, double* excess) {
+  double gain = 0.0;
+  double freedom = 0.0;
+  std::vector<Direction> list;
+  const auto& campaign = study.campaign();
+  Eigen::Index total = 0;
+  for (const std::size_t j : study.residuals().others()) {
+    EffectUse use = null_use(distortion_effect(), campaign.bench.gauges[j].name);
+    list.push_back(direction_of({use, false, false}, studied, study, 0));
+    total += list.back().columns.cols();
+  }
+  Eigen::MatrixXd columns(studied.fit.residual.size(), total);
+  Eigen::Index at = 0;
+  for (const Direction& direction : list) {
+    columns.middleCols(at, direction.columns.cols()) = direction.columns;
+    at += direction.columns.cols();
+  }
+  for (Eigen::Index i = 0; i < total; ++i) {
+    const double norm = columns.col(i).norm();
+    if (norm > 0.0) {
+      columns.col(i) /= norm;
+    }
+  }
+  const Eigen::MatrixXd share = studied.fit.jacobian.transpose() * columns;
+  const Eigen::MatrixXd information =
+      columns.transpose() * columns - share.transpose() * studied.fit.covariance * share;
+  const Eigen::VectorXd pull = columns.transpose() * studied.fit.residual;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  for (Eigen::Index i = 0; i < total; ++i) {
+    constexpr double kResolved = 1e-7;
+    if (solver.eigenvalues()[i] > kResolved) {
+      const double z = solver.eigenvectors().col(i).dot(pull);
+      gain += z * z / solver.eigenvalues()[i];
+      freedom += 1.0;
+    }
+  }
+  const double noise = noise_of(studied.misfit, campaign.shots.size());
+  *excess = std::max(0.0, gain / noise - freedom);
+  return freedom > 0.0 ? log_chi2_tail(gain / noise, freedom) : 0.0;
+}
+
+/// How far the strengths that single shots give are from the common one: the chi2 that strengths of
+/// their own would gain, and the shots less one.
+std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
+                                       std::size_t per_shot) {
+  const ModelFit& fit = studied.fit;
+  std::ptrdiff_t column = -1;
+  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (studied.composition.uses()[number.use].id() == id) {
+      if (column >= 0 || number.shot >= 0) {
+        return {0.0, 1.0};
+      }
+      column = static_cast<std::ptrdiff_t>(i);
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(per_shot);
+  const Eigen::Index shots = fit.residual.size() / size;
+  if (column < 0 || shots < 3) {
+    return {0.0, 1.0};
+  }
+  // The column clear of the other numbers, over all shots.
+  Eigen::VectorXd clear = fit.jacobian.col(column);
+  Eigen::MatrixXd rest = fit.information;
+  rest.row(column).setZero();
+  rest.col(column).setZero();
+  rest(column, column) = 1.0;
+  Eigen::VectorXd share = fit.jacobian.transpose() * clear;
+  share[column] = 0.0;
+  clear -= fit.jacobian * rest.ldlt().solve(share);
+  double q = 0.0;
+  const double noise = std::max(1.0, studied.misfit.noise_scale);
+  for (Eigen::Index n = 0; n < shots; ++n) {
+    const auto own = clear.segment(n * size, size);
+    const double information = own.squaredNorm();
+    if (information > 0.0) {
+      const double pull = own.dot(fit.residual.segment(n * size, size));
+      q += pull * pull / information / noise;
+    }
+  }
+  return {q, static_cast<double>(shots - 1)};
+}
+
+/// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
+/// more than noise, and by more than a small part of what it explains.
+bool shots_agree(const Studied& studied, double gain, const std::string& id, std::size_t per_shot) {
+  constexpr double kChance = -14.0;
+  constexpr double kPart = 0.02;
+  const auto [q, freedom] = disagreement(studied, id, per_shot);
+  return log_chi2_tail(q, freedom) > kChance || q < kPart * gain;
+}
+
+HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
+  const std::size_t per_shot = study.residuals().per_shot();
+  const auto mean = [&](const Studied& studied) {
+    const std::vector<double> squares = held_out_squares(studied, per_shot);
+    return std::accumulate(squares.begin(), squares.end(), 0.0) /
+           static_cast<double>(squares.size() * per_shot);
+  };
+  return {mean(before), mean(after),
+          study.campaign().shots.size() > 1 ? after.misfit.noise_scale : 1.0};
+}
+
+/// Gain of chi2 on shots the fits did not see, and in how many of them.
+std::pair<double, std::size_t> certification(const Studied& before, const Studied& after,
+                                             std::size_t per_shot) {
+  const auto a = held_out_squares(before, per_shot);
+  const auto b = held_out_squares(after, per_shot);
+  double gain = 0.0;
+  std::size_t better = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    gain += a[n] - b[n];
+    better += a[n] > b[n] ? 1 : 0;
+  }
+  return {gain, better};
+}
+
+/// Strength and deviation of an effect in a fitted model.
+void set_strength(const Studied& studied, const std::string& id, CandidateResult& result) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || use->values.empty()) {
+    return;
+  }
+  const auto& parameters = use->effect->about().parameters;
+  std::size_t at = 0;
+  if (id == "end-reflection") {
+    at = 1;
+  }
+  result.parameter = parameters[at].name;
+  result.unit = parameters[at].unit;
+  result.strength = use->values[at].value;
+  result.sd = use->values[at].sd;
+}
+
+}  // namespace
+
+std::string name_of(DiagnosisVerdict verdict) {
+  switch (verdict) {
+    case DiagnosisVerdict::named:
+      return "named";
+    case DiagnosisVerdict::tied:
+      return "tied";
+    case DiagnosisVerdict::unknown:
+      return "unknown";
+    case DiagnosisVerdict::adequate:
+      return "adequate";
+    case DiagnosisVerdict::untestable:
+      return "untestable";
+    case DiagnosisVerdict::bad_data:
+      return "bad-data";
+  }
+  return {};
+}
+
+namespace {
+
+class Diagnostician {
+ public:
+  Diagnostician(Study& study, const DiagnosisOptions& options) : study_(study), options_(options) {}
+
+  Diagnosis run(const Model& model) {
+    options_.progress("fitting the model");
+    start_ = model;
+    Studied first = study_.fit(model);
+    diagnosis_.before = first.misfit;
+    Studied current = first;
+    while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
+    }
+    if (diagnosis_.effects.size() > 1) {
+      drop_unneeded(current);
+    }
+    conclude(first, current);
+    return std::move(diagnosis_);
+  }
+
+ private:
+  bool add_one(Studied& current) {
+    options_.progress(diagnosis_.effects.empty()
+                          ? "testing every effect of the library"
+                          : "testing what remains after " + diagnosis_.effects.back());
+    Search search(study_, current, start_);
+    if (diagnosis_.candidates.empty()) {
+      list_candidates(search);
+    }
+    const std::vector<Refit> refits = search.refits();
+    if (diagnosis_.effects.empty()) {
+      note_refits(search, refits, current);
+    }
+    if (refits.empty() || search.with_search(refits.front().log_p) > options_.log_alpha) {
+      return false;
+    }
+    const std::size_t per_shot = study_.residuals().per_shot();
+    for (const Refit& refit : refits) {
+      if (refit.evidence < refits.front().evidence - kTie) {
+        break;
+      }
+      const std::string id = search.candidates()[refit.candidate].id();
+      const auto [gain, better] = certification(current, refit.studied, per_shot);
+      const std::size_t shots = study_.campaign().shots.size();
+      const bool agrees = shots_agree(refit.studied, refit.gain, id, per_shot);
+      if (gain <= 0.0 || 2 * better < shots || !agrees ||
+          search.with_search(refit.log_p) > options_.log_alpha) {
+        set_verdict(id, "rejected");
+        continue;
+      }
+      std::vector<std::string> ties;
+      for (const Refit& rival : refits) {
+        const std::string other = search.candidates()[rival.candidate].id();
+        if (other != id && rival.evidence > refit.evidence - kTie) {
+          ties.push_back(other);
+        }
+      }
+      // The noise shows better now.
+      study_.residuals().freeze(refit.studied.composition, refit.studied.fit.theta);
+      Studied next = study_.refit(refit.studied);
+      study_.residuals().calibrate(next.fit.residual);
+      next = study_.refit(next);
+      diagnosis_.effects.push_back(id);
+      start_ = with(start_, search.candidates()[refit.candidate], true);
+      diagnosis_.tied_with[id] = ties;
+      current = std::move(next);
+      return true;
+    }
+    return false;
+  }
+
+  /// Backward: what later effects have made superfluous goes.
+  void drop_unneeded(Studied& current) {
+    for (std::size_t i = 0; i + 1 < diagnosis_.effects.size();) {
+      const std::string id = diagnosis_.effects[i];
+      Model without = current.model;
+      std::erase_if(without.effects, [&](const EffectUse& use) { return use.id() == id; });
+      const Composition composition(without, study_.campaign());
+      ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(),
+                               carry(current.composition, current.fit.theta, composition));
+      const double noise = noise_of(current.misfit, study_.campaign().shots.size());
+      const double loss = (fit.objective() - current.fit.objective()) / noise;
+      if (equivalent_square(log_tail(loss, 1.0, false)) < 16.0) {
+        const Misfit misfit =
+            misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
+        Model after = fitted(without, composition, fit);
+        current = {std::move(after), composition, std::move(fit), misfit};
+        diagnosis_.tied_with.erase(id);
+        diagnosis_.effects.erase(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(i));
+        set_verdict(id, "not needed");
+      } else {
+        ++i;
+      }
+    }
+  }
+
+  void conclude(const Studied& first, const Studied& current) {
+    options_.progress("looking for what nothing explains");
+    double excess = 0.0;
+    diagnosis_.unexplained_log_p = unexplained(study_, current, &excess);
+    diagnosis_.after = current.misfit;
+    // Both by the same measure of the noise.
+    const Studied before = diagnosis_.effects.empty() ? first : study_.refit(first);
+    diagnosis_.before = before.misfit;
+    diagnosis_.held_out = held_out(before, current, study_);
+    diagnosis_.model = current.model;
+    const double noise = noise_of(current.misfit, study_.campaign().shots.size());
+    const double explained = (before.fit.objective() - current.fit.objective()) / noise;
+    const bool rest =
+        diagnosis_.unexplained_log_p < -6.5 && excess > kAllowedRest * std::max(0.0, explained);
+    const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
+                                  [](const auto& own) { return !own.second.empty(); });
+    if (rest) {
+      diagnosis_.verdict = DiagnosisVerdict::unknown;
+      for (const std::string& id : diagnosis_.effects) {
+        set_verdict(id, "rejected");
+      }
+      if (!diagnosis_.effects.empty()) {
+        diagnosis_.notes.push_back("nearest, but not enough: " + diagnosis_.effects.front());
+      }
+      diagnosis_.effects.clear();
+      diagnosis_.tied_with.clear();
+    } else if (diagnosis_.effects.empty()) {
+      diagnosis_.verdict = DiagnosisVerdict::adequate;
+    } else {
+      diagnosis_.verdict = tied ? DiagnosisVerdict::tied : DiagnosisVerdict::named;
+    }
+    for (const std::string& id : diagnosis_.effects) {
+      set_verdict(id, diagnosis_.tied_with[id].empty() ? "named" : "tied");
+      for (CandidateResult& result : diagnosis_.candidates) {
+        if (result.effect == id) {
+          set_strength(current, id, result);
+        }
+      }
+    }
+    for (const auto& [id, ties] : diagnosis_.tied_with) {
+      for (const std::string& other : ties) {
+        set_verdict(other, "tied");
+      }
+      if (!ties.empty()) {
+        diagnosis_.next_experiment.push_back(next_experiment(id, ties, study_.campaign().bench));
+      }
+    }
+    if (study_.campaign().shots.size() < 2) {
+      diagnosis_.notes.emplace_back(
+          "one shot: nothing was held out over shots; repeat the shot to certify");
+    }
+  }
+
+  void set_verdict(const std::string& id, const std::string& verdict) {
+    for (CandidateResult& result : diagnosis_.candidates) {
+      if (result.effect == id) {
+        result.verdict = verdict;
+      }
+    }
+  }
+
+  /// First-order strengths and limits of every effect beside the first model.
+  void list_candidates(const Search& search) {
+    std::map<std::string, std::size_t> at;
+    for (std::size_t i = 0; i < search.candidates().size(); ++i) {
+      const Candidate& candidate = search.candidates()[i];
+      const Direction& direction = search.directions()[i];
+      const auto known = at.find(candidate.id());
+      if (known != at.end() && diagnosis_.candidates[known->second].gain >= direction.gain) {
+        continue;
+      }
+      CandidateResult result;
+      result.effect = candidate.id();
+      const EffectParameter& parameter = candidate.use.effect->about().parameters.front();
+      result.parameter = parameter.name;
+      result.unit = parameter.unit;
+      result.gain = direction.gain;
+      result.log_p =
+          search.with_search(log_tail(direction.gain, direction.freedom, candidate.one_sided));
+      if (direction.freedom > 0.0 && direction.information.rows() > 0) {
+        const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
+                                 ? candidate.use.values[0].prior_sd
+                                 : parameter.typical;
+        result.strength = parameter.null_value + direction.step[0] * scale;
+        result.sd = scale / std::sqrt(direction.information(0, 0));
+        result.detectable = kDetected * result.sd;
+        set_identifiable(search, i, result);
+        result.verdict = "not needed";
+      } else {
+        result.detectable = result.identifiable = INFINITY;
+        result.verdict = "untestable";
+      }
+      if (known != at.end()) {
+        diagnosis_.candidates[known->second] = result;
+      } else {
+        at[candidate.id()] = diagnosis_.candidates.size();
+        diagnosis_.candidates.push_back(std::move(result));
+      }
+    }
+  }
+
+  /// The strength that stands at 5 sigma beside whichever other effect resembles it most.
+  static void set_identifiable(const Search& search, std::size_t i, CandidateResult& result) {
+    const Direction& own = search.directions()[i];
+    result.identifiable = result.detectable;
+    if (own.information.rows() != 1) {
+      return;
+    }
+    double closest = 0.0;
+    for (std::size_t k = 0; k < search.directions().size(); ++k) {
+      const Direction& other = search.directions()[k];
+      if (search.candidates()[k].id() == search.candidates()[i].id() ||
+          other.information.rows() != 1 || other.freedom != 1.0) {
+        continue;
+      }
+      const double cross = (own.columns.col(0).dot(other.columns.col(0)) - search.projected(i, k)) /
+                           std::sqrt(own.information(0, 0) * other.information(0, 0));
+      if (cross * cross > closest) {
+        closest = std::min(1.0, cross * cross);
+        result.nearest_rival = search.candidates()[k].id();
+      }
+    }
+    result.identifiable = std::max(
+        result.detectable, kToldApart * result.sd / std::sqrt(std::max(1e-12, 1.0 - closest)));
+  }
+
+  void note_refits(const Search& search, const std::vector<Refit>& refits, const Studied& current) {
+    const std::size_t per_shot = study_.residuals().per_shot();
+    for (const Refit& refit : refits) {
+      for (CandidateResult& result : diagnosis_.candidates) {
+        if (result.effect == search.candidates()[refit.candidate].id()) {
+          result.gain = refit.gain;
+          result.log_p = search.with_search(refit.log_p);
+          result.held_out_gain = certification(current, refit.studied, per_shot).first;
+          set_strength(refit.studied, result.effect, result);
+        }
+      }
+    }
+  }
+
+  Study& study_;
+  const DiagnosisOptions& options_;
+  Model start_;  ///< unfitted, with the effects found so far
+  Diagnosis diagnosis_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(Study& study, const Model& model, const DiagnosisOptions& options) {
+  return Diagnostician(study, options).run(model);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "processing/criticism/composition.hpp"
+#include "processing/criticism/executor.hpp"
+#include "processing/criticism/residuals.hpp"
+
+namespace kolsky {
+
+/// A composition at its best fit to a campaign.
+struct ModelFit {
+  std::vector<double> theta;    ///< in scales, as Composition::numbers
+  Eigen::VectorXd residual;     ///< whitened
+  Eigen::MatrixXd jacobian;     ///< d residual / d theta
+  Eigen::MatrixXd information;  ///< J^T J + priors
+  Eigen::MatrixXd covariance;   ///< of theta, its inverse
+  double chi2 = 0.0;            ///< of the residuals
+  double penalty = 0.0;         ///< of the priors
+  bool converged = false;
+
+  [[nodiscard]] double objective() const { return chi2 + penalty; }
+  /// Degrees of freedom that the residuals have left.
+  [[nodiscard]] double degrees_of_freedom(const Composition& composition) const;
+};
+
+/// Maximum a posteriori fit by Gauss and Newton's method with Levenberg's damping, inside bounds.
+/// @param start  in scales; empty: the composition's
+/// @param chord  derivatives from nearby, used as long as they serve; none: made at every step
+[[nodiscard]] ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
+                                 const Executor& executor, std::vector<double> start = {},
+                                 const Eigen::MatrixXd* chord = nullptr);
+
+/// Derivatives of the residuals by some of the free numbers, by differences.
+[[nodiscard]] Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& residuals,
+                                          const std::vector<double>& theta,
+                                          const Eigen::VectorXd& at_theta,
+                                          const std::vector<std::size_t>& numbers,
+                                          const Executor& executor);
+
+/// Moves a model's moduli near enough to the campaign's for fit_model to converge: the bar's from
+/// the pulse's arrivals, a specimen's from a search over decades.
+void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
+                  std::size_t worker = 0);
+
+/// The model with its values and deviations from a fit. Strengths per shot or per gauge give their
+/// mean (per gauge: their root mean square).
+[[nodiscard]] Model fitted(const Model& model, const Composition& composition, const ModelFit& fit);
+
+}  // namespace kolsky

@@ -1,0 +1,592 @@
+#include "processing/criticism/residuals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "processing/base/error.hpp"
+#include "processing/criticism/smooth_power.hpp"
+#include "processing/criticism/specimen_response.hpp"
+#include "processing/identification/noise_spectrum.hpp"
+#include "processing/reduction/band_limit.hpp"
+#include "processing/reduction/pulse.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Zeros before and after each record, in time: the filter reaches to both sides, and what it
+/// smears before the first sample would come round to the end, where undamping raises it.
+constexpr double kLead_s = 100e-6;
+/// The filter passes half at this multiple of the highest frequency that is judged.
+constexpr double kFilterOverBand = 1.6;
+/// Beyond this multiple of the filter's limit it has left nothing.
+constexpr double kFilteredFrom = 2.2;
+/// What the filter smears over the cut ends of a record reaches this many of its widths into it.
+constexpr double kEdge = 8.0;
+constexpr double kWrapDamping = 1e-8;
+constexpr std::size_t kFewestJudged = 64;
+
+std::size_t small_factors(std::size_t n) {
+  for (;; ++n) {
+    std::size_t left = n;
+    for (const std::size_t factor : {2U, 3U, 5U}) {
+      while (left % factor == 0) {
+        left /= factor;
+      }
+    }
+    if (left == 1) {
+      return n;
+    }
+  }
+}
+
+std::size_t shortest(const Campaign& campaign) {
+  std::size_t samples = campaign.shots.front().strain.front().size();
+  for (const CampaignShot& shot : campaign.shots) {
+    samples = std::min(samples, shot.strain.front().size());
+  }
+  return samples;
+}
+
+std::size_t longest(const Campaign& campaign) {
+  std::size_t samples = 0;
+  for (const CampaignShot& shot : campaign.shots) {
+    samples = std::max(samples, shot.strain.front().size());
+  }
+  return samples;
+}
+
+constexpr std::size_t kMostDecimation = 8;
+
+/// A length that stays even with small factors however far it is decimated.
+std::size_t transform_length(std::size_t samples) {
+  return 2 * kMostDecimation *
+         small_factors((samples + 2 * kMostDecimation - 1) / (2 * kMostDecimation));
+}
+
+}  // namespace
+
+struct WhiteResiduals::Workspace {
+  DampedTransform whole;      ///< of records, at their rate
+  DampedTransform decimated;  ///< the same bins, for residuals
+  DampedTransform plain;      ///< of the judged window
+  std::vector<double> record;
+  std::vector<double> shaped;
+  std::vector<double> residual;
+  Spectrum full;
+  Spectrum carried;
+  Spectrum judged;
+  std::vector<Spectrum> records;  ///< of one shot where effects change them
+  std::vector<Spectrum> rows;     ///< one shot's residuals, plain, by other gauge
+  SpecimenResponse response;
+  std::vector<Eigen::MatrixXcd> whitener;  ///< by bin, of the evaluation under way
+  Eigen::MatrixXcd cross;
+
+  Workspace(std::size_t length, const JudgedBand& band, double period_s)
+      : whole(length, period_s, kWrapDamping),
+        decimated(length / band.decimation, period_s * static_cast<double>(band.decimation),
+                  kWrapDamping),
+        plain(band.judged, period_s * static_cast<double>(band.decimation), 1.0),
+        record(length),
+        residual(length / band.decimation),
+        full(whole.bins()),
+        carried(decimated.bins()),
+        judged(plain.bins()) {}
+};
+
+WhiteResiduals::~WhiteResiduals() = default;
+
+WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers)
+    : campaign_(campaign) {
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    if (j != campaign.reference) {
+      others_.push_back(j);
+    }
+  }
+  choose_band(band_limit_Hz);
+  const std::size_t length = transform_length(longest(campaign) + 2 * band_.lead);
+  for (std::size_t w = 0; w < workers; ++w) {
+    work_.push_back(std::make_unique<Workspace>(length, band_, campaign.period_s));
+  }
+  const Workspace& work = *work_.front();
+  for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+    damped_path_.push_back(work.whole.s(k));
+  }
+  for (std::size_t k = 1; k <= band_.bins_judged; ++k) {
+    plain_path_.push_back(work.plain.s(k));
+  }
+  prepare_noise();
+  prepare_spectra();
+  measure_signal();
+}
+
+void WhiteResiduals::choose_band(double asked_Hz) {
+  const double rate_Hz = 1.0 / campaign_.period_s;
+  const std::size_t reference = campaign_.reference;
+  DampedTransform transform(longest(campaign_), campaign_.period_s, kWrapDamping);
+  BandLimit limit(transform, transform.length());
+  band_.limit_Hz = asked_Hz;
+  if (asked_Hz <= 0.0) {
+    for (const CampaignShot& shot : campaign_.shots) {
+      const auto& record = shot.strain[reference];
+      const double step = campaign_.step[reference];
+      const double noise =
+          std::hypot(quiet_before(record, shot.quiet_samples).noise_rms, step / std::sqrt(12.0));
+      band_.limit_Hz = std::max(band_.limit_Hz, limit.from_noise(record, noise));
+    }
+    // Surface gauges see little of waves as short as the bar is thick.
+    constexpr double kBlind = 0.25;
+    for (const Bar* bar :
+         {&campaign_.bench.input, campaign_.bench.output ? &*campaign_.bench.output : nullptr}) {
+      if (bar != nullptr) {
+        const double speed = bar->youngs_modulus_Pa
+                                 ? std::sqrt(*bar->youngs_modulus_Pa / bar->density_kg_m3)
+                                 : 2200.0;
+        band_.limit_Hz = std::min(band_.limit_Hz, kBlind * speed / bar->dispersion_radius_m());
+      }
+    }
+    band_.limit_Hz = std::min(band_.limit_Hz, rate_Hz / 2.0 / (kFilterOverBand * kFilteredFrom));
+  }
+  band_.filter_Hz = kFilterOverBand * band_.limit_Hz;
+  band_.decimation = 1;
+  while (2 * band_.decimation <= kMostDecimation &&
+         rate_Hz / static_cast<double>(2 * band_.decimation) / 2.0 >
+             kFilteredFrom * band_.filter_Hz) {
+    band_.decimation *= 2;
+  }
+  const std::size_t d = band_.decimation;
+  band_.lead = d * static_cast<std::size_t>(std::ceil(kLead_s * rate_Hz / static_cast<double>(d)));
+  band_.edge = d * static_cast<std::size_t>(std::ceil(kEdge * BandLimit::smear_s(band_.filter_Hz) *
+                                                      rate_Hz / static_cast<double>(d)));
+  const std::size_t samples = shortest(campaign_);
+  if (samples < 2 * band_.edge + kFewestJudged * d) {
+    throw InputError("samples", "are too few for the band", "give longer records");
+  }
+  // The longest window with a length the transform likes.
+  std::size_t judged = (samples - 2 * band_.edge) / d;
+  judged -= judged % 2;
+  while (small_factors(judged) != judged || judged % 2 != 0) {
+    --judged;
+  }
+  band_.judged = judged;
+  const double bin_Hz = rate_Hz / static_cast<double>(d * judged);
+  band_.bins_judged = std::min(judged / 2 - 1, static_cast<std::size_t>(band_.limit_Hz / bin_Hz));
+  if (band_.bins_judged < 4) {
+    throw InputError("band limit", "leaves no frequency to judge",
+                     "give a wider band or a longer record");
+  }
+  const std::size_t length = transform_length(longest(campaign_) + 2 * band_.lead);
+  const double carried_Hz = rate_Hz / static_cast<double>(length);
+  band_.bins_carried =
+      std::min(length / d / 2 + 1,
+               static_cast<std::size_t>(kFilteredFrom * band_.filter_Hz / carried_Hz) + 1);
+}
+
+std::size_t WhiteResiduals::per_shot() const {
+  return 2 * band_.bins_judged * others_.size();
+}
+
+double WhiteResiduals::frequency_Hz(std::size_t bin) const {
+  return static_cast<double>(bin + 1) * work_.front()->plain.bin_width_Hz();
+}
+
+double WhiteResiduals::judged_period_s() const {
+  return campaign_.period_s * static_cast<double>(band_.decimation);
+}
+
+double WhiteResiduals::judged_start_s(std::size_t shot) const {
+  return static_cast<double>(band_.edge) * campaign_.period_s - campaign_.shots[shot].foot_s;
+}
+
+/// Each gauge's spectrum from the quiet parts of all shots, and how far gauges share their noise.
+void WhiteResiduals::prepare_noise() {
+  const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
+  std::vector<NoiseSpectrum> spectra;
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(gauges, gauges);
+  double samples = 0.0;
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    std::vector<std::span<const double>> quiet;
+    for (const CampaignShot& shot : campaign_.shots) {
+      quiet.emplace_back(shot.strain[j].data(), shot.quiet_samples);
+    }
+    spectra.emplace_back(quiet);
+  }
+  for (const CampaignShot& shot : campaign_.shots) {
+    samples += static_cast<double>(shot.quiet_samples);
+    for (Eigen::Index a = 0; a < gauges; ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        const auto& of_a = shot.strain[static_cast<std::size_t>(a)];
+        const auto& of_b = shot.strain[static_cast<std::size_t>(b)];
+        for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
+          shared(a, b) += of_a[n] * of_b[n];
+        }
+      }
+    }
+  }
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(gauges, gauges);
+  for (Eigen::Index a = 0; a < gauges; ++a) {
+    for (Eigen::Index b = 0; b < a; ++b) {
+      const double scale = std::sqrt(shared(a, a) * shared(b, b));
+      const double rho = scale > 0.0 ? shared(a, b) / scale : 0.0;
+      constexpr double kSignificant = 5.0;
+      if (std::abs(rho) > kSignificant / std::sqrt(samples)) {
+        correlation(a, b) = correlation(b, a) = std::clamp(rho, -0.95, 0.95);
+      }
+    }
+  }
+  const double d = static_cast<double>(band_.decimation);
+  // Sums over the decimated window: its samples are the noise's, its power d times less of them.
+  const double window = static_cast<double>(band_.judged) / d;
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    const double cycles = frequency_Hz(k) * campaign_.period_s;
+    Eigen::VectorXd amplitude(gauges);
+    for (Eigen::Index j = 0; j < gauges; ++j) {
+      const double step = campaign_.step[static_cast<std::size_t>(j)];
+      const double least = std::max(step * step / 12.0, 1e-24);
+      amplitude[j] =
+          std::sqrt(window * std::max(spectra[static_cast<std::size_t>(j)].power(cycles), least));
+    }
+    noise_.emplace_back(amplitude.asDiagonal() * correlation * amplitude.asDiagonal());
+  }
+}
+
+void WhiteResiduals::transform_record(Workspace& work, std::span<const double> record,
+                                      Spectrum& out) const {
+  std::fill(work.record.begin(), work.record.end(), 0.0);
+  std::copy(record.begin(), record.end(),
+            work.record.begin() + static_cast<std::ptrdiff_t>(band_.lead));
+  work.whole.forward(work.record, work.full);
+  out.resize(band_.bins_carried);
+  // The inverse at the decimated rate divides by its own, smaller length.
+  const double scale = 1.0 / static_cast<double>(band_.decimation);
+  for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+    out[k] = work.full[k] * damped_filter_[k] * scale;
+  }
+}
+
+void WhiteResiduals::prepare_spectra() {
+  const double wc = 2.0 * std::numbers::pi * band_.filter_Hz / std::pow(std::log(2.0), 0.25);
+  const auto pass = [&](Complex s) {
+    const Complex square = (s / wc) * (s / wc);
+    return std::exp(-square * square);
+  };
+  for (const Complex s : damped_path_) {
+    damped_filter_.push_back(pass(s));
+  }
+  for (const Complex s : plain_path_) {
+    filter_.push_back(pass(s).real());
+  }
+  for (const CampaignShot& shot : campaign_.shots) {
+    std::vector<Spectrum> of_shot(campaign_.gauges());
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      transform_record(*work_.front(), shot.strain[j], of_shot[j]);
+    }
+    spectra_.push_back(std::move(of_shot));
+  }
+}
+
+/// Undoes what effects say was done to the records after the strain was sensed.
+void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
+                                   const CampaignShot& shot) const {
+  work.records.resize(campaign_.gauges());
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    work.shaped = shot.strain[j];
+    const auto& addition = record.additions[j];
+    if (!addition.empty()) {
+      const double before = quiet_before(addition, shot.quiet_samples).baseline;
+      for (std::size_t n = 0; n < work.shaped.size(); ++n) {
+        work.shaped[n] -= addition[n] - before;
+      }
+    }
+    if (const double b = record.bridge_b; b != 0.0) {
+      for (double& e : work.shaped) {
+        const double root = 1.0 + 4.0 * b * e;
+        e = 2.0 * e / (1.0 + std::sqrt(std::max(root, 0.0)));
+      }
+    }
+    transform_record(work, work.shaped, work.records[j]);
+  }
+}
+
+void WhiteResiduals::plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const {
+  std::copy(damped.begin(), damped.end(), work.carried.begin());
+  std::fill(work.carried.begin() + static_cast<std::ptrdiff_t>(damped.size()), work.carried.end(),
+            0.0);
+  work.decimated.inverse(work.carried, work.residual);
+  const std::size_t first = (band_.lead + band_.edge) / band_.decimation;
+  work.plain.forward(std::span<const double>(work.residual).subspan(first, band_.judged),
+                     work.judged);
+  out.resize(band_.bins_judged);
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    out[k] = work.judged[k + 1] / filter_[k];
+  }
+}
+
+std::vector<Complex> WhiteResiduals::plain_ratios(const Scene& like, const Composition& composition,
+                                                  const std::vector<double>& theta) const {
+  Scene scene(campaign_.bench, *like.facts, plain_path_);
+  shape(composition.applied(theta, like.facts->shot), scene);
+  const Transfers transfers = transfers_of(scene, campaign_.reference);
+  std::vector<Complex> ratios(band_.bins_judged * others_.size());
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      ratios[k * others_.size() + i] =
+          transfers.reading[others_[i]][k] / transfers.reading[campaign_.reference][k];
+    }
+  }
+  return ratios;
+}
+
+/// Inverse Cholesky factor of G P G^H at one bin; `cross` becomes P G^H.
+Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::size_t bin,
+                                          Eigen::MatrixXcd& cross) const {
+  const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  Eigen::MatrixXcd G = Eigen::MatrixXcd::Zero(rows, gauges);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const auto other = static_cast<std::size_t>(i);
+    G(i, static_cast<Eigen::Index>(others_[other])) = 1.0;
+    G(i, static_cast<Eigen::Index>(campaign_.reference)) = -ratios[bin * others_.size() + other];
+  }
+  cross.noalias() = noise_[bin] * G.adjoint();
+  const Eigen::LLT<Eigen::MatrixXcd> factor(G * cross);
+  Eigen::MatrixXcd inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
+  if (!correction_.empty()) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      inverse.row(i) /= std::sqrt(correction_[bin][static_cast<std::size_t>(i)]);
+    }
+  }
+  return inverse;
+}
+
+void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
+  const Scene scene(campaign_.bench, campaign_.shots.front().facts, plain_path_);
+  const std::vector<Complex> ratios = plain_ratios(scene, composition, theta);
+  spread_.clear();
+  Eigen::MatrixXcd cross;
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    const Eigen::MatrixXcd inverse = whitener(ratios, k, cross);
+    // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
+    spread_.push_back(cross * inverse.adjoint() / std::numbers::sqrt2);
+  }
+}
+
+void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
+  const std::size_t shots = campaign_.shots.size();
+  if (shots < 3) {
+    return;
+  }
+  const std::size_t bins = band_.bins_judged;
+  std::vector<Spectrum> sources;
+  for (std::size_t n = 0; n < shots; ++n) {
+    sources.push_back(source_spectrum(n, white));
+  }
+  std::vector<std::vector<double>> correction(bins, std::vector<double>(others_.size(), 1.0));
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    std::vector<double> power(bins);
+    for (std::size_t k = 0; k < bins; ++k) {
+      double all = 0.0;
+      double source_power = 0.0;
+      Complex followed = 0.0;
+      for (std::size_t n = 0; n < shots; ++n) {
+        const auto at = static_cast<Eigen::Index>(n * per_shot() + index(k, i));
+        const Complex w(white[at], white[at + 1]);
+        all += std::norm(w);
+        source_power += std::norm(sources[n][k]);
+        followed += w * std::conj(sources[n][k]);
+      }
+      const double freedom = 2.0 * static_cast<double>(shots - 1);
+      power[k] = (all - std::norm(followed) / source_power) / freedom;
+    }
+    const std::vector<double> shape = smooth_power(power);
+    for (std::size_t k = 0; k < bins; ++k) {
+      const double before = correction_.empty() ? 1.0 : correction_[k][i];
+      correction[k][i] = before * shape[k];
+    }
+  }
+  correction_ = std::move(correction);
+}
+
+Eigen::VectorXd WhiteResiduals::evaluate(const Composition& composition,
+                                         const std::vector<double>& theta, std::size_t worker) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(size()));
+  evaluate_shots(composition, theta, 0, campaign_.shots.size(), worker, out.data());
+  return out;
+}
+
+Eigen::VectorXd WhiteResiduals::evaluate_shot(const Composition& composition,
+                                              const std::vector<double>& theta, std::size_t shot,
+                                              std::size_t worker) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(per_shot()));
+  evaluate_shots(composition, theta, shot, shot + 1, worker, out.data());
+  return out;
+}
+
+void WhiteResiduals::evaluate_shots(const Composition& composition,
+                                    const std::vector<double>& theta, std::size_t first,
+                                    std::size_t end, std::size_t worker, double* next) {
+  Workspace& work = *work_[worker];
+  const std::size_t reference = campaign_.reference;
+  std::optional<Scene> scene;
+  Transfers transfers;
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  Eigen::VectorXcd r(rows);
+  Eigen::VectorXcd white(rows);
+  Spectrum damped(band_.bins_carried);
+  for (std::size_t n = first; n < end; ++n) {
+    const CampaignShot& shot = campaign_.shots[n];
+    if (!scene || composition.differs_by_shot()) {
+      scene.emplace(campaign_.bench, shot.facts, damped_path_);
+      shape(composition.applied(theta, n), *scene);
+      const std::vector<Complex> ratios = plain_ratios(*scene, composition, theta);
+      work.whitener.resize(band_.bins_judged);
+      for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+        work.whitener[k] = std::numbers::sqrt2 * whitener(ratios, k, work.cross);
+      }
+      transfers = transfers_of(*scene, reference);
+      for (std::size_t j : others_) {
+        for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+          transfers.reading[j][k] /= transfers.reading[reference][k];
+        }
+      }
+    } else if (composition.changes_records()) {
+      scene->facts = &shot.facts;
+      scene->record = RecordScene{};
+      scene->record.additions.resize(campaign_.gauges());
+      for (const AppliedEffect& effect : composition.applied(theta, n)) {
+        if (effect.effect->about().stage == Stage::record) {
+          effect.effect->apply(*scene, effect.values, effect.gauge);
+        }
+      }
+    }
+    const std::vector<Spectrum>* records = &spectra_[n];
+    if (composition.changes_records()) {
+      shape_records(work, scene->record, shot);
+      records = &work.records;
+    }
+    const Spectrum& source = (*records)[reference];
+    const bool nonlinear = scene->specimen && scene->specimen->nonlinear();
+    if (nonlinear) {
+      // Of the reference record, what the specimen's further strain q has sent there goes first.
+      work.response.solve(*scene, transfers, reference, source, work.decimated);
+    }
+    work.rows.resize(others_.size());
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      const std::size_t j = others_[i];
+      for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+        damped[k] = (*records)[j][k] - transfers.reading[j][k] * source[k];
+      }
+      if (nonlinear) {
+        const Spectrum& q = work.response.q();
+        for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+          damped[k] -= (transfers.reading_of_q[j][k] -
+                        transfers.reading[j][k] * transfers.reading_of_q[reference][k]) *
+                       q[k];
+        }
+      }
+      plain_spectrum(work, damped, work.rows[i]);
+    }
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        r[i] = work.rows[static_cast<std::size_t>(i)][k];
+      }
+      white.noalias() = work.whitener[k] * r;
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        *next++ = white[i].real();
+        *next++ = white[i].imag();
+      }
+    }
+  }
+}
+
+std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const double> white) const {
+  Workspace& work = *work_.front();
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  std::vector<Spectrum> spectra(campaign_.gauges(), Spectrum(work.plain.bins(), 0.0));
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    Eigen::VectorXcd w(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const std::size_t at = index(k, static_cast<std::size_t>(i));
+      w[i] = {white[at], white[at + 1]};
+    }
+    const Eigen::VectorXcd e = spread_[k] * w;
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      spectra[j][k + 1] = e[static_cast<Eigen::Index>(j)];
+    }
+  }
+  std::vector<std::vector<double>> list;
+  for (const Spectrum& spectrum : spectra) {
+    std::vector<double> record(band_.judged);
+    work.plain.inverse(spectrum, record);
+    list.push_back(std::move(record));
+  }
+  return list;
+}
+
+std::vector<double> WhiteResiduals::judged_record(std::size_t shot, std::size_t gauge) {
+  Workspace& work = *work_.front();
+  Spectrum plain;
+  plain_spectrum(work, spectra_[shot][gauge], plain);
+  std::fill(work.judged.begin(), work.judged.end(), 0.0);
+  const Complex mean = [&] {
+    double sum = 0.0;
+    const std::size_t first = (band_.lead + band_.edge) / band_.decimation;
+    for (std::size_t n = 0; n < band_.judged; ++n) {
+      sum += work.residual[first + n];
+    }
+    return Complex(sum);
+  }();
+  work.judged[0] = mean;
+  std::copy(plain.begin(), plain.end(), work.judged.begin() + 1);
+  std::vector<double> record(band_.judged);
+  work.plain.inverse(work.judged, record);
+  return record;
+}
+
+void WhiteResiduals::measure_signal() {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+      double energy = 0.0;
+      for (const double value : judged_record(n, j)) {
+        energy += value * value;
+      }
+      sum += energy / noise_power(j);
+    }
+  }
+  // Noise of unit power has as many whitened residuals as its band has bins, twice.
+  signal_energy_ =
+      sum * 2.0 * static_cast<double>(band_.bins_judged) / static_cast<double>(band_.judged);
+}
+
+double WhiteResiduals::noise_power(std::size_t gauge) const {
+  const auto j = static_cast<Eigen::Index>(gauge);
+  double sum = 0.0;
+  for (const Eigen::MatrixXd& power : noise_) {
+    sum += power(j, j);
+  }
+  const double n = static_cast<double>(band_.judged);
+  return 2.0 * sum / (n * n);
+}
+
+std::vector<Complex> WhiteResiduals::source_spectrum(std::size_t shot, const Eigen::VectorXd& white,
+                                                     std::size_t worker) {
+  Spectrum plain;
+  plain_spectrum(*work_[worker], spectra_[shot][campaign_.reference], plain);
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  const auto reference = static_cast<Eigen::Index>(campaign_.reference);
+  Eigen::VectorXcd w(rows);
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto at =
+          static_cast<Eigen::Index>(shot * per_shot() + index(k, static_cast<std::size_t>(i)));
+      w[i] = {white[at], white[at + 1]};
+    }
+    plain[k] -= (spread_[k].row(reference) * w)(0, 0);
+  }
+  return plain;
+}
+
+}  // namespace kolsky

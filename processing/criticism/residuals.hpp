@@ -1,0 +1,124 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include "processing/criticism/campaign.hpp"
+#include "processing/criticism/composition.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// The part of the records that is judged and how.
+struct JudgedBand {
+  double limit_Hz = 0.0;       ///< highest frequency judged
+  double filter_Hz = 0.0;      ///< the filter passes half here
+  std::size_t decimation = 1;  ///< residuals are formed at 1/decimation of the rate
+  std::size_t lead = 0;        ///< zeros before a record [samples]
+  std::size_t edge = 0;        ///< samples at either end that are not judged
+  std::size_t judged = 0;      ///< samples of the judged window, decimated
+  std::size_t bins_judged = 0;
+  std::size_t bins_carried = 0;
+};
+
+/// Whitened residuals of a campaign under compositions of effects.
+///
+/// Each shot's source is free at all times and eliminated exactly: with H_j a gauge's reading of a
+/// unit source and y its record,
+///     r_j(t) = y_j - (H_j / H_ref) y_ref,     j != reference,
+/// is causal, so that a record cut while waves ring loses nothing, and under the true model noise
+/// alone, of covariance G P G^H at each frequency (P the gauges' noise, G = [-H_j/H_ref, 1]).
+/// Whitened with it, their sum of squares is that of all records with the source at its best:
+/// the covariance follows the parameters, or what is noise in y_ref would pull at them.
+///
+/// Work space is per worker; evaluations in different workers may run at once.
+class WhiteResiduals {
+ public:
+  /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where surface gauges
+  /// go blind
+  WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers);
+  ~WhiteResiduals();
+
+  /// Takes from this composition how residuals are shared out among the gauges.
+  void freeze(const Composition& composition, const std::vector<double>& theta);
+
+  /// Corrects the whitener by what the residuals of a fit show of the noise: at each frequency the
+  /// part that does not follow the shots' sources cannot be an unchanging error of the model. Its
+  /// power over the assumed one is taken as s0 + s1/f + s2/f^2, for each component of the
+  /// residuals. With fewer than three shots nothing is corrected.
+  /// @param white  residuals under the whitener as it is
+  void calibrate(const Eigen::VectorXd& white);
+
+  /// All shots' residuals, shot by shot, of unit variance under the true model.
+  [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
+                                         const std::vector<double>& theta, std::size_t worker = 0);
+  /// Those of one shot.
+  [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
+                                              const std::vector<double>& theta, std::size_t shot,
+                                              std::size_t worker);
+
+  [[nodiscard]] std::size_t size() const { return per_shot() * campaign_.shots.size(); }
+  [[nodiscard]] std::size_t per_shot() const;
+  [[nodiscard]] const JudgedBand& band() const { return band_; }
+  [[nodiscard]] const Campaign& campaign() const { return campaign_; }
+
+  /// Gauges in the order of a residual's components: all but the reference.
+  [[nodiscard]] const std::vector<std::size_t>& others() const { return others_; }
+  /// Index within a shot's residuals of the real part at a judged bin; the imaginary part follows.
+  [[nodiscard]] std::size_t index(std::size_t bin, std::size_t other) const {
+    return 2 * (bin * others_.size() + other);
+  }
+  [[nodiscard]] double frequency_Hz(std::size_t bin) const;
+
+  /// What whitened residuals of one shot are at every gauge, the reference included: the best
+  /// estimate of each gauge's deviation from a wave common to all, in strain.
+  /// @return by gauge, over the judged window at the decimated rate
+  [[nodiscard]] std::vector<std::vector<double>> deviations(std::span<const double> white) const;
+  /// The judged window of one gauge's record, filtered and decimated alike.
+  [[nodiscard]] std::vector<double> judged_record(std::size_t shot, std::size_t gauge);
+  /// Energy of all records over that of their noise, in the units of whitened residuals.
+  [[nodiscard]] double signal_energy() const { return signal_energy_; }
+  [[nodiscard]] double judged_period_s() const;
+  [[nodiscard]] double judged_start_s(std::size_t shot) const;
+  /// Power of a gauge's noise in the judged band, strain^2 per judged sample.
+  [[nodiscard]] double noise_power(std::size_t gauge) const;
+  /// Spectrum over the judged bins of a shot's source at the reference gauge, as all gauges
+  /// together have it: unlike the record there, its error is independent of the residuals.
+  [[nodiscard]] std::vector<Complex> source_spectrum(std::size_t shot, const Eigen::VectorXd& white,
+                                                     std::size_t worker = 0);
+
+ private:
+  struct Workspace;
+  using Spectrum = std::vector<Complex>;
+
+  [[nodiscard]] std::vector<Complex> plain_ratios(const Scene& like, const Composition& composition,
+                                                  const std::vector<double>& theta) const;
+  [[nodiscard]] Eigen::MatrixXcd whitener(std::span<const Complex> ratios, std::size_t bin,
+                                          Eigen::MatrixXcd& cross) const;
+  void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
+                      std::size_t first, std::size_t end, std::size_t worker, double* out);
+  void choose_band(double asked_Hz);
+  void prepare_noise();
+  void prepare_spectra();
+  void measure_signal();
+  void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
+  void shape_records(Workspace& work, const RecordScene& record, const CampaignShot& shot) const;
+  void plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const;
+
+  const Campaign& campaign_;
+  JudgedBand band_;
+  std::vector<std::size_t> others_;
+  std::vector<Complex> damped_path_;
+  std::vector<Complex> plain_path_;
+  std::vector<double> filter_;                  ///< at the judged bins
+  std::vector<Complex> damped_filter_;          ///< at the carried bins
+  std::vector<Eigen::MatrixXd> noise_;          ///< covariance of the gauges per judged bin (power)
+  std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
+  std::vector<std::vector<double>> correction_;  ///< of the noise's power, by bin and component
+  std::vector<Eigen::MatrixXcd> spread_;         ///< whitened residual to deviations of all gauges
+  double signal_energy_ = 0.0;
+  std::vector<std::unique_ptr<Workspace>> work_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,99 @@
+#include "processing/criticism/specimen_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kolsky {
+
+namespace {
+
+constexpr int kMostIterations = 30;
+constexpr double kConverged = 1e-7;
+
+}  // namespace
+
+void SpecimenResponse::to_time(const std::vector<Complex>& spectrum, DampedTransform& transform,
+                               std::vector<double>& out) {
+  wide_.assign(transform.bins(), 0.0);
+  std::copy(spectrum.begin(), spectrum.end(), wide_.begin());
+  out.resize(transform.length());
+  transform.inverse(wide_, out);
+}
+
+void SpecimenResponse::to_spectrum(const std::vector<double>& record, DampedTransform& transform,
+                                   std::vector<Complex>& out) {
+  wide_.resize(transform.bins());
+  transform.forward(record, wide_);
+  std::copy_n(wide_.begin(), out.size(), out.begin());
+}
+
+void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std::size_t reference,
+                             const std::vector<Complex>& source, DampedTransform& transform) {
+  const SpecimenScene& specimen = *scene.specimen;
+  const std::size_t places = scene.s.size();
+  q_.assign(places, 0.0);
+  next_.resize(places);
+  spectrum_.resize(places);
+  double before = 1e300;
+  double mixing = 1.0;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    const auto& own = transfers.reading[reference];
+    const auto strength = [&](std::size_t k) {
+      return (source[k] - transfers.reading_of_q[reference][k] * q_[k]) / own[k];
+    };
+    for (std::size_t k = 0; k < places; ++k) {
+      spectrum_[k] = transfers.stress[k] * strength(k) + transfers.stress_of_q[k] * q_[k];
+    }
+    to_time(spectrum_, transform, stress_);
+    for (std::size_t k = 0; k < places; ++k) {
+      spectrum_[k] = transfers.strain[k] * strength(k) + transfers.strain_of_q[k] * q_[k];
+    }
+    to_time(spectrum_, transform, strain_);
+    extra_.assign(strain_.size(), 0.0);
+    material_.assign(strain_.size(), 0.0);
+    if (specimen.lateral_inertia_kg_per_m != 0.0) {
+      for (std::size_t k = 0; k < places; ++k) {
+        spectrum_[k] *= scene.s[k];
+      }
+      to_time(spectrum_, transform, rate_);
+      for (std::size_t n = 0; n < rate_.size(); ++n) {
+        material_[n] -= specimen.lateral_inertia_kg_per_m * rate_[n] * rate_[n] / 16.0;
+      }
+    }
+    for (std::size_t n = 0; n < strain_.size(); ++n) {
+      const double e = std::clamp(strain_[n], -0.5, 0.9);
+      if (specimen.friction != 0.0) {
+        // A specimen that keeps its volume: d grows as h^-1/2.
+        const double h = specimen.length_m * (1.0 - e);
+        const double d = specimen.diameter_m / std::sqrt(1.0 - e);
+        material_[n] += stress_[n] * (1.0 / (1.0 + specimen.friction * d / (3.0 * h)) - 1.0);
+      }
+      if (specimen.stiffening != 0.0) {
+        const double spring = std::max(0.05, 1.0 + specimen.stiffening * e);
+        extra_[n] += (stress_[n] + material_[n]) / specimen.solid.E1_Pa * (1.0 / spring - 1.0);
+      }
+      if (specimen.gap_m != 0.0) {
+        extra_[n] += std::clamp(strain_[n], 0.0, specimen.gap_m / specimen.length_m);
+      }
+    }
+    to_spectrum(material_, transform, spectrum_);
+    to_spectrum(extra_, transform, next_);
+    double change = 0.0;
+    double size = 0.0;
+    for (std::size_t k = 0; k < places; ++k) {
+      next_[k] += specimen.solid.compliance(scene.s[k], k) * spectrum_[k];
+      change += std::norm(next_[k] - q_[k]);
+      size += std::norm(next_[k]);
+    }
+    mixing = change < before ? std::min(1.0, mixing * 1.2) : mixing * 0.5;
+    for (std::size_t k = 0; k < places; ++k) {
+      q_[k] += mixing * (next_[k] - q_[k]);
+    }
+    if (change <= kConverged * kConverged * size) {
+      break;
+    }
+    before = change;
+  }
+}
+
+}  // namespace kolsky

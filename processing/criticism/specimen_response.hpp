@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "processing/models/transfers.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// The strain q(t) by which a specimen departs from its linear law under one shot's source, found
+/// with the source: the reference gauge has seen what q sent there, too.
+///   stiffening   spring strain sigma/E1 -> sigma / (E1 (1 + b e))
+///   friction     material stress = measured / (1 + mu d / 3h), current d and h
+///   gap          bars approach by delta before the specimen is loaded
+///   lateral      - m strain'^2 / 16 of the stress is inertia (its linear part is in the transfers)
+class SpecimenResponse {
+ public:
+  /// @param transfers   reading relative to the reference's, except the reference's own
+  /// @param source      record of the reference gauge, on the scene's path
+  void solve(const Scene& scene, const Transfers& transfers, std::size_t reference,
+             const std::vector<Complex>& source, DampedTransform& transform);
+
+  [[nodiscard]] const std::vector<Complex>& q() const { return q_; }
+
+ private:
+  void to_time(const std::vector<Complex>& spectrum, DampedTransform& transform,
+               std::vector<double>& out);
+  void to_spectrum(const std::vector<double>& record, DampedTransform& transform,
+                   std::vector<Complex>& out);
+
+  std::vector<Complex> q_, next_, wide_, spectrum_;
+  std::vector<double> stress_, strain_, rate_, extra_, material_;
+};
+
+}  // namespace kolsky

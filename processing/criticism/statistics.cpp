@@ -1,0 +1,59 @@
+#include "processing/criticism/statistics.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+
+namespace kolsky {
+
+double log_chi2_tail(double x, double k) {
+  if (x <= 0.0) {
+    return 0.0;
+  }
+  const double a = k / 2.0;
+  const double z = x / 2.0;
+  if (z < a + 30.0) {
+    return std::log(std::max(boost::math::gamma_q(a, z), 1e-300));
+  }
+  // Lentz's evaluation of the continued fraction of Gamma(a, z) e^z z^-a.
+  double b = z + 1.0 - a;
+  double c = 1e300;
+  double d = 1.0 / b;
+  double h = d;
+  for (int i = 1; i < 500; ++i) {
+    const double an = -i * (i - a);
+    b += 2.0;
+    d = 1.0 / (an * d + b);
+    c = b + an / c;
+    const double factor = c * d;
+    h *= factor;
+    if (std::abs(factor - 1.0) < 1e-14) {
+      break;
+    }
+  }
+  return -z + a * std::log(z) - std::lgamma(a) + std::log(h);
+}
+
+double log_f_tail(double f, double m, double n) {
+  if (f <= 0.0) {
+    return 0.0;
+  }
+  // Of very many degrees of freedom in the denominator, or far out: chi-square.
+  const boost::math::fisher_f distribution(m, n);
+  const double tail = boost::math::cdf(boost::math::complement(distribution, f));
+  return tail > 1e-280 ? std::log(tail) : log_chi2_tail(f * m / (1.0 + f * m / n), m);
+}
+
+double equivalent_square(double log_tail) {
+  // chi-square of one degree of freedom with the same tail, by bisection on its logarithm.
+  double low = 0.0;
+  double high = std::max(4.0, -2.5 * log_tail + 10.0);
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (low + high);
+    (log_chi2_tail(middle, 1.0) > log_tail ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace kolsky

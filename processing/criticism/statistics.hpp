@@ -1,0 +1,16 @@
+#pragma once
+
+namespace kolsky {
+
+/// ln of the probability that a chi-square variable of k degrees of freedom exceeds x; exact far
+/// into the tail, where the probability itself underflows.
+[[nodiscard]] double log_chi2_tail(double x, double k);
+
+/// The same for Fisher's F with m and n degrees of freedom.
+[[nodiscard]] double log_f_tail(double f, double m, double n);
+
+/// Evidence on one scale whatever the number of free strengths: the square of the normal deviate
+/// with this two-sided tail probability.
+[[nodiscard]] double equivalent_square(double log_tail);
+
+}  // namespace kolsky

@@ -1,0 +1,48 @@
+#include "processing/criticism/study.hpp"
+
+namespace kolsky {
+
+Study::Study(const Campaign& campaign, double band_limit_Hz, Executor executor)
+    : campaign_(campaign),
+      executor_(std::move(executor)),
+      residuals_(campaign, band_limit_Hz, executor_.workers) {}
+
+Studied Study::fit(const Model& model) {
+  Model started = model;
+  start_moduli(started, campaign_, residuals_);
+  Composition composition(started, campaign_);
+  residuals_.freeze(composition, composition.start());
+  ModelFit fit = fit_model(composition, residuals_, executor_);
+  residuals_.freeze(composition, fit.theta);
+  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  residuals_.calibrate(fit.residual);
+  residuals_.freeze(composition, fit.theta);
+  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
+  Model after = fitted(started, composition, fit);
+  return {std::move(after), std::move(composition), std::move(fit), misfit};
+}
+
+Studied Study::refit(const Studied& studied) {
+  residuals_.freeze(studied.composition, studied.fit.theta);
+  ModelFit fit = fit_model(studied.composition, residuals_, executor_, studied.fit.theta);
+  const Misfit misfit =
+      misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(studied.composition));
+  Model after = fitted(studied.model, studied.composition, fit);
+  return {std::move(after), studied.composition, std::move(fit), misfit};
+}
+
+Studied Study::as_it_is(const Model& model) {
+  Composition composition(model, campaign_);
+  ModelFit fit;
+  fit.theta = composition.start();
+  residuals_.freeze(composition, fit.theta);
+  fit.residual = residuals_.evaluate(composition, fit.theta);
+  fit.chi2 = fit.residual.squaredNorm();
+  fit.converged = true;
+  const Misfit misfit =
+      misfit_of(residuals_, fit.residual, static_cast<double>(fit.residual.size()));
+  return {model, std::move(composition), std::move(fit), misfit};
+}
+
+}  // namespace kolsky

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/fit.hpp"
+#include "processing/criticism/misfit.hpp"
+
+namespace kolsky {
+
+/// A model fitted to a campaign.
+struct Studied {
+  Model model;  ///< with values and deviations, the bench's known unknowns among its effects
+  Composition composition;
+  ModelFit fit;
+  Misfit misfit;
+};
+
+/// A campaign under study: its records ready, models fitted and compared one after the other.
+class Study {
+ public:
+  /// @param campaign  outlives this
+  /// @param band_limit_Hz  0: where the pulses fall below the noise
+  Study(const Campaign& campaign, double band_limit_Hz, Executor executor);
+
+  /// Fits from wherever the model's moduli are.
+  [[nodiscard]] Studied fit(const Model& model);
+  /// The same from where it is, with the noise as known by now.
+  [[nodiscard]] Studied refit(const Studied& studied);
+  /// The model as it is, nothing moved.
+  [[nodiscard]] Studied as_it_is(const Model& model);
+
+  [[nodiscard]] WhiteResiduals& residuals() { return residuals_; }
+  [[nodiscard]] const Campaign& campaign() const { return campaign_; }
+  [[nodiscard]] const Executor& executor() const { return executor_; }
+
+ private:
+  const Campaign& campaign_;
+  Executor executor_;
+  WhiteResiduals residuals_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "processing/base/bench.hpp"
+
+namespace kolsky {
+
+struct Scene;
+
+/// Where in the chain from impact to file an effect acts; they act in this order.
+enum class Stage { bench, material, propagation, boundary, specimen, sensor, record };
+
+[[nodiscard]] std::string name_of(Stage stage);
+
+struct EffectParameter {
+  std::string name;         ///< "D"
+  std::string unit;         ///< "1/Pa"; "-" for none
+  double null_value = 0.0;  ///< with which the effect is not there
+  double lower = 0.0;       ///< bounds of what is physical
+  double upper = 0.0;
+  double typical = 0.0;  ///< a step that matters: scales derivatives and searches
+  /// An auxiliary parameter (a relaxation time) means nothing while the strength is null: these
+  /// are the values from which searches start. Empty for a strength.
+  std::vector<double> starts{};
+
+  /// Present or not: first order asks for a share of it, a model that holds the effect has it
+  /// whole.
+  bool is_switch = false;
+
+  [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
+};
+
+/// What people are told of an effect.
+struct EffectAbout {
+  std::string id;
+  Stage stage = Stage::material;
+  std::string definition;  ///< one line, with the parameters' symbols
+  std::string reference;
+  std::vector<BenchKind> kinds;
+  std::vector<EffectParameter> parameters;
+  bool per_gauge = false;   ///< used once a gauge: "gauge-position:g3"
+  bool each_gauge = false;  ///< one effect with strengths of their own at every gauge
+  bool per_shot = false;    ///< its strength may differ from shot to shot
+  bool shot_facts = false;  ///< depends on the shot's amplitude or temperature
+  bool base = false;        ///< of the paper's model; never a candidate
+};
+
+/// A physical or instrumental effect that a model may hold. One small class in one file of
+/// processing/models/effects, which defines `const Effect& <file name>_effect()`; nothing else
+/// needs to know of it.
+class Effect {
+ public:
+  explicit Effect(EffectAbout about) : about_(std::move(about)) {}
+  virtual ~Effect() = default;
+  Effect(const Effect&) = delete;
+  Effect& operator=(const Effect&) = delete;
+
+  [[nodiscard]] const EffectAbout& about() const { return about_; }
+
+  /// Changes the scene at the effect's stage.
+  /// @param values  one per parameter
+  /// @param gauge   its place in the bench, for effects of one gauge
+  virtual void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const = 0;
+
+  /// What keeps the effect from being tested on this bench at all; empty where nothing does.
+  [[nodiscard]] virtual std::string untestable_because(const Bench& /*bench*/) const { return {}; }
+
+ private:
+  EffectAbout about_;
+};
+
+/// All effects, in the order of their file names.
+[[nodiscard]] const std::vector<const Effect*>& effect_library();
+
+/// @return nullptr where there is no such effect
+[[nodiscard]] const Effect* find_effect(const std::string& id);
+
+}  // namespace kolsky

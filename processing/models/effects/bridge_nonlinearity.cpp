@@ -1,0 +1,32 @@
+#include "processing/models/effect.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class BridgeNonlinearity final : public Effect {
+ public:
+  BridgeNonlinearity()
+      : Effect({
+            .id = "bridge-nonlinearity",
+            .stage = Stage::record,
+            .definition = "reading = e (1 + b e)",
+            .reference = "effects.md",
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
+            .parameters = {{"b", "-", 0.0, -50.0, 50.0, 0.5, {}}},
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    scene.record.bridge_b = values[0];
+  }
+};
+
+}  // namespace
+
+const Effect& bridge_nonlinearity_effect();
+const Effect& bridge_nonlinearity_effect() {
+  static const BridgeNonlinearity effect;
+  return effect;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,37 @@
+#include "processing/models/effect.hpp"
+#include "processing/models/exact_waves.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class GeometricDispersion final : public Effect {
+ public:
+  GeometricDispersion()
+      : Effect({
+            .id = "geometric-dispersion",
+            .stage = Stage::propagation,
+            .definition = "gamma, surface-to-mean += s (exact first mode - elementary)",
+            .reference = "Pochhammer, Chree; physics.md",
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
+            .parameters = {{"s", "-", 0.0, -1.0, 3.0, 0.1, {}}},
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    if (values[0] != 0.0) {
+      for (BarScene& bar : scene.bars) {
+        blend_exact_waves(bar, scene.s, values[0]);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+const Effect& geometric_dispersion_effect();
+const Effect& geometric_dispersion_effect() {
+  static const GeometricDispersion effect;
+  return effect;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,32 @@
+#include "processing/models/effect.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class InterfaceGap final : public Effect {
+ public:
+  InterfaceGap()
+      : Effect({
+            .id = "interface-gap",
+            .stage = Stage::specimen,
+            .definition = "a gap or soft layer closes before the specimen is loaded",
+            .reference = "effects.md",
+            .kinds = {BenchKind::shpb},
+            .parameters = {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}}},
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    scene.specimen->gap_m = values[0];
+  }
+};
+
+}  // namespace
+
+const Effect& interface_gap_effect();
+const Effect& interface_gap_effect() {
+  static const InterfaceGap effect;
+  return effect;
+}
+
+}  // namespace kolsky

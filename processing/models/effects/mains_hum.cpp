@@ -1,0 +1,43 @@
+#include <cmath>
+#include <numbers>
+
+#include "processing/models/additions.hpp"
+#include "processing/models/effect.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class MainsHum final : public Effect {
+ public:
+  MainsHum()
+      : Effect({
+            .id = "mains-hum",
+            .stage = Stage::record,
+            .definition = "reading of each gauge += c cos(2 pi f t) + d sin(2 pi f t)",
+            .reference = "effects.md",
+            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .parameters =
+                {{"c", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
+                 {"d", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
+                 {"f", "Hz", 0.0, 45.0, 1000.0, 1.0, {50.0, 60.0, 100.0, 120.0, 150.0, 180.0}}},
+            .each_gauge = true,
+            .per_shot = true,
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
+    const double w = 2.0 * std::numbers::pi * values[2];
+    add_to(scene.record.additions[gauge], scene.facts->time_s,
+           [&](double t) { return values[0] * std::cos(w * t) + values[1] * std::sin(w * t); });
+  }
+};
+
+}  // namespace
+
+const Effect& mains_hum_effect();
+const Effect& mains_hum_effect() {
+  static const MainsHum effect;
+  return effect;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,32 @@
+#include "processing/models/effect.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class Punching final : public Effect {
+ public:
+  Punching()
+      : Effect({
+            .id = "punching",
+            .stage = Stage::specimen,
+            .definition = "shortening += s sum over faces of k F (1 - nu^2) J_bar / d_s",
+            .reference = "physics.md; effects.md",
+            .kinds = {BenchKind::shpb},
+            .parameters = {{"s", "-", 0.0, 0.0, 5.0, 0.2, {}}},
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    scene.specimen->punching = values[0];
+  }
+};
+
+}  // namespace
+
+const Effect& punching_effect();
+const Effect& punching_effect() {
+  static const Punching effect;
+  return effect;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,32 @@
+#include "processing/models/effect.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class SpecimenInertia final : public Effect {
+ public:
+  SpecimenInertia()
+      : Effect({
+            .id = "specimen-inertia",
+            .stage = Stage::specimen,
+            .definition = "waves cross the specimen, of density s rho",
+            .reference = "effects.md",
+            .kinds = {BenchKind::shpb},
+            .parameters = {{"s", "-", 0.0, 0.0, 4.0, 0.2, {}}},
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    scene.specimen->wave_density_kg_m3 = values[0] * scene.specimen->density_kg_m3;
+  }
+};
+
+}  // namespace
+
+const Effect& specimen_inertia_effect();
+const Effect& specimen_inertia_effect() {
+  static const SpecimenInertia effect;
+  return effect;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,39 @@
+#include "processing/models/effect.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+namespace {
+
+class SpecimenSecondRelaxation final : public Effect {
+ public:
+  SpecimenSecondRelaxation()
+      : Effect({
+            .id = "specimen-second-relaxation",
+            .stage = Stage::specimen,
+            .definition = "J_s += D / (1 + s tau)",
+            .reference = "effects.md",
+            .kinds = {BenchKind::shpb},
+            .parameters = {{"D", "1/Pa", 0.0, 0.0, 1e-3, 1e-10, {}},
+                           {"tau",
+                            "s",
+                            0.0,
+                            2e-7,
+                            1e-1,
+                            1e-5,
+                            {2e-6, 5e-6, 1.2e-5, 3e-5, 8e-5, 2e-4, 6e-4, 2e-3}}},
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    scene.specimen->solid.relaxations.push_back({values[0], values[1]});
+  }
+};
+
+}  // namespace
+
+const Effect& specimen_second_relaxation_effect();
+const Effect& specimen_second_relaxation_effect() {
+  static const SpecimenSecondRelaxation effect;
+  return effect;
+}
+
+}  // namespace kolsky

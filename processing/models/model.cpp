@@ -1,0 +1,102 @@
+#include "processing/models/model.hpp"
+
+#include <algorithm>
+
+#include "processing/base/error.hpp"
+#include "processing/base/material.hpp"
+
+namespace kolsky {
+
+namespace {
+
+std::string nearest_ids(const std::string& id) {
+  std::string list;
+  for (const Effect* effect : effect_library()) {
+    const std::string& known = effect->about().id;
+    if (known.find(id) != std::string::npos || id.find(known) != std::string::npos ||
+        known.substr(0, 4) == id.substr(0, 4)) {
+      list += (list.empty() ? "" : ", ") + known;
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string EffectUse::id() const {
+  return gauge.empty() ? effect->about().id : effect->about().id + ":" + gauge;
+}
+
+const EffectUse* Model::find(const std::string& id) const {
+  const auto found =
+      std::find_if(effects.begin(), effects.end(), [&](const auto& use) { return use.id() == id; });
+  return found == effects.end() ? nullptr : &*found;
+}
+
+EffectUse* Model::find(const std::string& id) {
+  return const_cast<EffectUse*>(static_cast<const Model*>(this)->find(id));
+}
+
+EffectUse null_use(const Effect& effect, const std::string& gauge) {
+  EffectUse use;
+  use.effect = &effect;
+  use.gauge = gauge;
+  for (const EffectParameter& parameter : effect.about().parameters) {
+    ModelValue value;
+    value.value = parameter.auxiliary() ? parameter.starts.front() : parameter.null_value;
+    use.values.push_back(value);
+  }
+  return use;
+}
+
+EffectUse use_named(const std::string& id) {
+  const auto colon = id.find(':');
+  const std::string name = id.substr(0, colon);
+  const std::string gauge = colon == std::string::npos ? "" : id.substr(colon + 1);
+  const Effect* effect = find_effect(name);
+  if (effect == nullptr) {
+    const std::string near = nearest_ids(name);
+    throw InputError("effect " + name, "is not in the library",
+                     near.empty() ? "`kolsky effects` lists them"
+                                  : "did you mean " + near + "? `kolsky effects` lists all");
+  }
+  if (effect->about().per_gauge && gauge.empty()) {
+    throw InputError("effect " + name, "is of one gauge, and none is named",
+                     "write " + name + ":GAUGE");
+  }
+  if (!effect->about().per_gauge && !gauge.empty()) {
+    throw InputError("effect " + id, "is not of one gauge", "write " + name);
+  }
+  EffectUse use = null_use(*effect, gauge);
+  const auto& parameters = effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].is_switch) {
+      use.values[p].value = parameters[p].upper;
+      use.values[p].free = false;
+    }
+  }
+  return use;
+}
+
+Model paper_model(BenchKind kind, bool elastic) {
+  Model model;
+  model.kind = kind;
+  if (!elastic) {
+    EffectUse bar = use_named("three-element-bar");
+    const Material pmma = paper_pmma();
+    bar.values[0].value = pmma.E1_Pa;
+    bar.values[1].value = pmma.E2_Pa;
+    bar.values[2].value = pmma.eta2_Pa_s;
+    for (ModelValue& value : bar.values) {
+      value.free = kind == BenchKind::bar;
+    }
+    model.effects.push_back(bar);
+  }
+  model.effects.push_back(use_named("elementary-waves"));
+  if (kind == BenchKind::shpb) {
+    model.effects.push_back(use_named("three-element-specimen"));
+  }
+  return model;
+}
+
+}  // namespace kolsky

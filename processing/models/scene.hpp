@@ -1,0 +1,108 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processing/base/bench.hpp"
+#include "processing/waves/compliance.hpp"
+
+namespace kolsky {
+
+/// The uniaxial compliance of a bar or a specimen as effects build it up:
+///   J = 1/E1 + 1/(E2 (1 + (s eta2/E2)^beta)) + sum D/(1 + s tau) + phi/s + what expressions add
+/// An elastic material has no Kelvin branch (`E2_Pa` infinite).
+struct Solid {
+  struct Relaxation {
+    double D_per_Pa = 0.0;
+    double tau_s = 0.0;
+  };
+
+  double E1_Pa = 0.0;
+  double E2_Pa = 0.0;
+  double eta2_Pa_s = 0.0;
+  double beta = 1.0;
+  std::vector<Relaxation> relaxations{};
+  double phi_per_Pa_s = 0.0;
+  std::vector<Complex> further_per_Pa{};  ///< on the scene's path; empty for none
+
+  /// J at the path's place k.
+  [[nodiscard]] Complex compliance(Complex s, std::size_t k) const;
+};
+
+/// A bar, and what is known of waves in it at every place of the scene's path.
+struct BarScene {
+  double length_m = 0.0;
+  double radius_m = 0.0;  ///< for dispersion
+  double area_m2 = 0.0;
+  double density_kg_m3 = 0.0;
+  double poisson_ratio = 0.0;
+  bool elastic = false;  ///< its modulus is filed, no model of its material applies
+  Solid solid{};
+  /// Stress reflection of its far end; 0: no wave comes back.
+  double far_reflection = 0.0;
+
+  std::vector<Complex> J_per_Pa{};
+  std::vector<Complex> gamma_per_m{};
+  std::vector<Complex> surface_over_mean{};  ///< axial strain
+};
+
+struct GaugeScene {
+  std::string name{};
+  std::size_t bar = 0;  ///< 0 input, 1 output
+  double position_m = 0.0;
+  std::vector<Complex> factor{};  ///< reading over surface strain, on the path
+  double offset_m = 0.0;          ///< chi of bending (effects.md)
+  std::vector<std::pair<std::size_t, double>> picks_up{};  ///< crosstalk: gauge and its share
+};
+
+/// The specimen between the bars.
+struct SpecimenScene {
+  double length_m = 0.0;
+  double diameter_m = 0.0;
+  double density_kg_m3 = 0.0;
+  double poisson_ratio = 0.0;
+  Solid solid{};
+  double wave_density_kg_m3 = 0.0;        ///< density that waves in it see; 0: equilibrium
+  double lateral_inertia_kg_per_m = 0.0;  ///< m of stress += m (strain''/8 + strain'^2/16)
+  double punching = 0.0;                  ///< strength of the bar ends' indentation
+  double stiffening = 0.0;                ///< E1 (1 + b strain)
+  double friction = 0.0;                  ///< mu of Coulomb friction at its faces
+  double gap_m = 0.0;                     ///< closes before it is loaded
+
+  [[nodiscard]] double area_m2() const;
+  /// Whether its answer depends on how hard it is loaded.
+  [[nodiscard]] bool nonlinear() const;
+};
+
+/// What is known of one shot besides its records.
+struct ShotFacts {
+  std::size_t shot = 0;
+  double peak_strain = 0.0;             ///< largest at the first gauge
+  std::optional<double> warmer_by_K{};  ///< than the campaign's reference, where logged
+  std::vector<double> time_s{};         ///< of its samples, from the pulse's foot
+};
+
+/// Memoryless maps and additions between strain and what was recorded.
+struct RecordScene {
+  double bridge_b = 0.0;                         ///< reading = e (1 + b e)
+  std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
+};
+
+/// One shot's bench and physics on a path of the Laplace variable, as effects shape it stage by
+/// stage.
+struct Scene {
+  std::span<const Complex> s{};
+  const ShotFacts* facts = nullptr;
+  std::vector<BarScene> bars{};
+  std::vector<GaugeScene> gauges{};
+  std::optional<SpecimenScene> specimen{};
+  RecordScene record{};
+
+  /// The bench as filed; right-going waves in a bar, free far ends around a specimen.
+  Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex> path);
+};
+
+}  // namespace kolsky

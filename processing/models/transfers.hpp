@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+
+/// What a scene's gauges read of a unit source: the mean strain of the wave that travels in +x on
+/// the input bar, where the reference gauge sits. Nothing is assumed of the impacted end: whatever
+/// it sends back joins the source.
+struct Transfers {
+  using Spectrum = std::vector<Complex>;
+
+  std::vector<Spectrum> reading;  ///< by gauge, along the path
+
+  /// For a specimen whose answer is not linear: a strain q that its linear part does not foresee is
+  /// a second source (see SpecimenScene).
+  std::vector<Spectrum> reading_of_q;
+  Spectrum stress, stress_of_q;  ///< of the specimen [Pa]
+  Spectrum strain, strain_of_q;
+};
+
+/// Elementary gamma = s sqrt(rho J), J and a surface like the mean, for the bars of a scene whose
+/// materials are known.
+void set_elementary_waves(Scene& scene);
+
+/// Bar: exp(-gamma x) + R exp(-gamma (2 L - x)). Specimen between two bars: continuity of force and
+/// velocity at both faces, a layer that waves cross where it has inertia (physics.md; effects.md,
+/// specimen-inertia, punching), the output bar's far end as filed.
+[[nodiscard]] Transfers transfers_of(const Scene& scene, std::size_t reference);
+
+}  // namespace kolsky

@@ -1,0 +1,2 @@
+#include "drivers/files/journal.hpp"
+#include "drivers/iio/iio_session.hpp"

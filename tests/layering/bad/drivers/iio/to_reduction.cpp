@@ -1,0 +1,1 @@
+#include "processing/reduction/reducer.hpp"

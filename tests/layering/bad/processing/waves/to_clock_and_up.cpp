@@ -1,0 +1,2 @@
+#include <chrono>
+#include "processing/reduction/reducer.hpp"
