@@ -104,7 +104,8 @@ void BarData::choose_band(double asked_Hz) {
 void BarData::choose_judged_part() {
   const double period_s = records_.front().period_s;
   const double duration_s = static_cast<double>(transform_.length()) * period_s;
-  const std::size_t slow_length = std::min(transform_length(2 * path_.size()), transform_.length());
+  const std::size_t slow_length =
+      std::min(good_transform_length(2 * path_.size()), transform_.length());
   slow_.emplace(slow_length, duration_s / static_cast<double>(slow_length));
   slow_spectrum_.resize(slow_->bins());
   slow_record_.resize(slow_->length());
@@ -129,7 +130,7 @@ void BarData::choose_judged_part() {
                      "give longer records");
   }
   auto judged = static_cast<std::size_t>(room) / 2 * 2;
-  while (transform_length(judged) != judged) {
+  while (good_transform_length(judged) != judged) {
     judged -= 2;
   }
   places_.judged_end = places_.judged_begin + judged;

@@ -77,7 +77,7 @@ struct Periodogram {
       return;
     }
     samples = shortest / 2 * 2;
-    while (transform_length(samples) != samples) {
+    while (good_transform_length(samples) != samples) {
       samples -= 2;
     }
     DampedTransform transform(samples, 1.0, 1.0);
