@@ -3,6 +3,7 @@
 namespace kolsky::cli {
 
 Command import_csv_command();
+Command identify_bar_command();
 Command identify_specimen_command();
 Command plan_command();
 Command reduce_command();
@@ -31,36 +32,39 @@ Command release_command();
 Command stop_command();
 
 std::vector<Command> all_commands() {
+  // One a line, so that a new one touches no other.
+  // clang-format off
   return {
-      // One a line, so that a new one touches no other.
-      import_csv_command(),  //
-      identify_specimen_command(),  //
-      plan_command(),  //
-      reduce_command(),  //
-      export_command(),  //
-      effects_command(),  //
-      model_new_command(),  //
-      model_add_command(),  //
-      model_remove_command(),  //
-      model_show_command(),  //
-      model_history_command(),  //
-      model_revert_command(),  //
-      fit_command(),  //
-      diagnose_command(),  //
-      impact_command(),  //
-      verify_command(),  //
-      status_command(),  //
-      arm_command(),  //
-      disarm_command(),  //
-      fire_command(),  //
-      force_trigger_command(),  //
-      shots_command(),  //
-      get_command(),  //
-      watch_command(),  //
-      reload_command(),  //
-      release_command(),  //
-      stop_command(),  //
+      import_csv_command(),
+      identify_bar_command(),
+      identify_specimen_command(),
+      plan_command(),
+      reduce_command(),
+      export_command(),
+      effects_command(),
+      model_new_command(),
+      model_add_command(),
+      model_remove_command(),
+      model_show_command(),
+      model_history_command(),
+      model_revert_command(),
+      fit_command(),
+      diagnose_command(),
+      impact_command(),
+      verify_command(),
+      status_command(),
+      arm_command(),
+      disarm_command(),
+      fire_command(),
+      force_trigger_command(),
+      shots_command(),
+      get_command(),
+      watch_command(),
+      reload_command(),
+      release_command(),
+      stop_command(),
   };
+  // clang-format on
 }
 
 }  // namespace kolsky::cli
