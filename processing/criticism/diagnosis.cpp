@@ -132,7 +132,7 @@ class Search {
     });
     std::vector<Refit> list;
     for (auto& own : done) {
-      if (own && std::isfinite(own->gain) &&
+      if (own && std::isfinite(own->gain) && !beyond_the_record(own->studied, *own) &&
           own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
                                   study_.campaign())) {
         list.push_back(std::move(*own));
@@ -144,6 +144,25 @@ class Search {
   }
 
  private:
+  /// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
+  /// (a dashpot, a spring) that it only imitates.
+  [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const {
+    const Candidate& candidate = candidates_[refit.candidate];
+    const EffectUse* use = studied.model.find(candidate.id());
+    const auto& parameters = candidate.use.effect->about().parameters;
+    constexpr double kMuchSlower = 5.0;
+    const double period_s = study_.residuals().judged_period_s();
+    const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
+    for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
+      const double value = use->values[p].value;
+      if (parameters[p].auxiliary() && parameters[p].unit == "s" &&
+          (value > kMuchSlower * record_s || value < 0.5 * study_.campaign().period_s)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// How many independent tests the search amounts to, from simulated repeats of pure noise: the
   /// candidates' directions overlap.
   void simulate() {
@@ -320,6 +339,8 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
     list.push_back(direction_of({use, false, false}, studied, study, 0));
     total += list.back().columns.cols();
   }
+  list.push_back(direction_of({null_use(bent_scale_effect()), false, false}, studied, study, 0));
+  total += list.back().columns.cols();
   Eigen::MatrixXd columns(studied.fit.residual.size(), total);
   Eigen::Index at = 0;
   for (const Direction& direction : list) {
