@@ -63,34 +63,45 @@ double noise_of(const Misfit& misfit, std::size_t shots) {
 std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
                                        std::size_t per_shot) {
   const ModelFit& fit = studied.fit;
-  std::ptrdiff_t column = -1;
-  for (std::size_t i = fit.theta.size(); i-- > 0;) {
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
     const FreeNumber& number = studied.composition.numbers()[i];
-    if (studied.composition.uses()[number.use].id() == id && number.shot < 0) {
-      column = static_cast<std::ptrdiff_t>(i);
+    const EffectUse& use = studied.composition.uses()[number.use];
+    if (use.id() == id && number.shot < 0 &&
+        !use.effect->about().parameters[number.parameter].auxiliary()) {
+      own.push_back(static_cast<Eigen::Index>(i));
     }
   }
   const auto size = static_cast<Eigen::Index>(per_shot);
   const Eigen::Index shots = fit.residual.size() / size;
-  if (column < 0 || shots < 3) {
+  if (own.empty() || shots < 3) {
     return {0.0, 1.0};
   }
-  // The column clear of the other numbers, over all shots.
-  Eigen::VectorXd clear = fit.jacobian.col(column);
+  // What its strengths add to the residuals, clear of the other numbers, over all shots.
+  Eigen::VectorXd clear = Eigen::VectorXd::Zero(fit.residual.size());
   Eigen::MatrixXd rest = fit.information;
-  rest.row(column).setZero();
-  rest.col(column).setZero();
-  rest(column, column) = 1.0;
+  for (const Eigen::Index column : own) {
+    const FreeNumber& number = studied.composition.numbers()[static_cast<std::size_t>(column)];
+    const EffectUse& use = studied.composition.uses()[number.use];
+    const double null_value = use.effect->about().parameters[number.parameter].null_value;
+    const double strength = fit.theta[static_cast<std::size_t>(column)] - null_value / number.scale;
+    clear += strength * fit.jacobian.col(column);
+    rest.row(column).setZero();
+    rest.col(column).setZero();
+    rest(column, column) = 1.0;
+  }
   Eigen::VectorXd share = fit.jacobian.transpose() * clear;
-  share[column] = 0.0;
+  for (const Eigen::Index column : own) {
+    share[column] = 0.0;
+  }
   clear -= fit.jacobian * rest.ldlt().solve(share);
   double q = 0.0;
   const double noise = std::max(1.0, studied.misfit.noise_scale);
   for (Eigen::Index n = 0; n < shots; ++n) {
-    const auto own = clear.segment(n * size, size);
-    const double information = own.squaredNorm();
+    const auto part = clear.segment(n * size, size);
+    const double information = part.squaredNorm();
     if (information > 0.0) {
-      const double pull = own.dot(fit.residual.segment(n * size, size));
+      const double pull = part.dot(fit.residual.segment(n * size, size));
       q += pull * pull / information / noise;
     }
   }
@@ -313,10 +324,12 @@ class Search {
   /// How much more than noise the shots differ in the direction of an effect's strength: noise
   /// whose frequencies hang together scatters more there than its spectrum says.
   [[nodiscard]] double scatter_of(const Studied& studied, const std::string& id) const {
-    // What is known of the noise beforehand counts as much as this many shots.
-    constexpr double kBelief = 20.0;
+    // What is known of the noise beforehand counts as much as this many shots; of slow noise, among
+    // which additions to a record are sought, little is known.
+    const Effect* effect = studied.model.find(id)->effect;
+    const double belief = effect->about().stage == Stage::record ? 3.0 : 20.0;
     const auto [q, freedom] = disagreement(studied, id, study_.residuals().per_shot());
-    return std::max(1.0, (kBelief + q) / (kBelief + freedom));
+    return std::max(1.0, (belief + q) / (belief + freedom));
   }
 
   Study& study_;

@@ -124,8 +124,8 @@ TEST_P(EveryEffect, IsNotThereAtItsNullAndIsThereBesideIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Library, EveryEffect, ::testing::ValuesIn(effect_library()),
-                         [](const auto& info) {
-                           std::string name = info.param->about().id;
+                         [](const auto& tested) {
+                           std::string name = tested.param->about().id;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
