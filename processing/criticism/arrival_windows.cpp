@@ -51,13 +51,13 @@ Layout layout_of(const Scene& scene, std::size_t gauge, std::size_t reference, d
   const double fade = std::max(shortest_s, kFade * pulse_s) / 2.0;
   const Boundary fall{foot + pulse_s, fade};
   if (!scene.specimen) {
-    return {{"before the pulse", "incident pulse", "after the pulse"}, {rise, fall}};
+    return {{kBeforePulse, "incident pulse", "after the pulse"}, {rise, fall}};
   }
   if (own.bar != 0) {
-    return {{"before the pulse", "transmitted pulse", "later"}, {rise, fall}};
+    return {{kBeforePulse, "transmitted pulse", "later"}, {rise, fall}};
   }
   const double back = foot + 2.0 * (input.length_m - own.position_m) / speed;
-  return {{"before the pulse", "incident pulse", "reflected pulse", "later"},
+  return {{kBeforePulse, "incident pulse", "reflected pulse", "later"},
           {rise, {back - 0.5 * shortest_s, 0.5 * shortest_s}, {back + pulse_s, fade}}};
 }
 

@@ -8,6 +8,8 @@
 
 namespace kolsky {
 
+inline constexpr const char* kBeforePulse = "before the pulse";
+
 /// A stretch of a gauge's judged record, named after the wave that arrives in it. Neighbours fade
 /// into one another: the squares of all weights of a gauge add up to one at every sample, so that
 /// energies of the stretches add up to that of the record.

@@ -48,6 +48,23 @@ void mark_significant(std::vector<Place>& places) {
   }
 }
 
+/// Weights of the mean before the pulse.
+std::vector<double> mean_before(const std::vector<ArrivalWindow>& windows) {
+  if (windows.empty() || windows.front().name != kBeforePulse) {
+    return {};
+  }
+  std::vector<double> weights = windows.front().weight;
+  double sum = 0.0;
+  for (double& weight : weights) {
+    weight *= weight;
+    sum += weight;
+  }
+  for (double& weight : weights) {
+    weight /= sum;
+  }
+  return weights;
+}
+
 using Key = std::tuple<std::size_t, std::string, std::size_t>;
 
 /// How much of a place's spectra follows the sources, shot by shot.
@@ -90,9 +107,11 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
       peaks.push_back(peak);
     }
     peaks_.push_back(std::move(peaks));
+    quiet_.emplace_back();
     for (const auto& of_gauge : windows_.back()) {
+      quiet_.back().push_back(mean_before(of_gauge));
       for (const ArrivalWindow& window : of_gauge) {
-        static_cast<void>(noise_of(window));
+        static_cast<void>(noise_of(window, quiet_.back().back()));
       }
     }
   }
@@ -121,8 +140,9 @@ void Comparer::choose_bands() {
   }
 }
 
-const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window) {
-  const auto found = noise_.find(window.weight);
+const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window,
+                                                 const std::vector<double>& quiet) {
+  const auto found = noise_.find({window.weight, quiet});
   if (found != noise_.end()) {
     return found->second;
   }
@@ -131,8 +151,20 @@ const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window) {
     ranges.push_back(band.bins);
   }
   return noise_
-      .emplace(window.weight, tile_noise(window.weight, residuals_.band().bins_judged, ranges))
+      .emplace(std::pair{window.weight, quiet},
+               tile_noise(window.weight, quiet, residuals_.band().bins_judged, ranges))
       .first->second;
+}
+
+/// Deviations hold no bin 0: here they are zero on average before the pulse.
+void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const {
+  const std::vector<double>& quiet = quiet_[shot][gauge];
+  if (!quiet.empty()) {
+    const double mean = std::inner_product(record.begin(), record.end(), quiet.begin(), 0.0);
+    for (double& value : record) {
+      value -= mean;
+    }
+  }
 }
 
 std::vector<Comparer::Reading> Comparer::plain_readings() const {
@@ -247,6 +279,7 @@ std::vector<Comparer::Windowed> Comparer::windowed(const Reading& reading,
   }
   std::vector<double> record(transform_.length());
   transform_.inverse(z, record);
+  level(record, shot, reading.gauge);
   std::vector<Windowed> list;
   std::vector<double> part(record.size());
   for (const ArrivalWindow& window : windows_[shot][reading.gauge]) {
@@ -267,7 +300,7 @@ void Comparer::add_tiles(const Reading& reading, const std::vector<Windowed>& wi
   for (const Windowed& own : windows) {
     const auto& weight = own.window->weight;
     const double length = std::inner_product(weight.begin(), weight.end(), weight.begin(), 0.0);
-    const std::vector<TileNoise>& noise = noise_of(*own.window);
+    const std::vector<TileNoise>& noise = noise_of(*own.window, quiet_[shot][reading.gauge]);
     for (std::size_t b = 0; b < bands_.size(); ++b) {
       Tile tile;
       tile.gauge = reading.gauge;
@@ -401,8 +434,10 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
 
 ComparedRecord Comparer::record(std::span<const double> white, std::size_t shot,
                                 std::size_t gauge) {
-  return {residuals_.judged_record(shot, gauge), residuals_.deviations(white)[gauge],
-          peaks_[shot][gauge]};
+  ComparedRecord record{residuals_.judged_record(shot, gauge), residuals_.deviations(white)[gauge],
+                        peaks_[shot][gauge]};
+  level(record.deviation, shot, gauge);
+  return record;
 }
 
 Comparison compare(Study& study, const Studied& studied) {

@@ -119,14 +119,19 @@ class Comparer {
                                                std::span<const double> white, std::size_t shot);
   void add_tiles(const Reading& reading, const std::vector<Windowed>& windows, std::size_t shot,
                  std::vector<Tile>& tiles);
-  [[nodiscard]] const std::vector<TileNoise>& noise_of(const ArrivalWindow& window);
+  [[nodiscard]] const std::vector<TileNoise>& noise_of(const ArrivalWindow& window,
+                                                       const std::vector<double>& quiet);
+  void level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const;
 
   WhiteResiduals& residuals_;
   DampedTransform transform_;
   std::vector<ComparedBand> bands_;
   std::vector<std::vector<std::vector<ArrivalWindow>>> windows_;  ///< by shot and gauge
   std::vector<std::vector<double>> peaks_;                        ///< by shot and gauge
-  std::map<std::vector<double>, std::vector<TileNoise>> noise_;   ///< by window's weights
+  /// Weights of the mean before the pulse, by shot and gauge; empty where nothing is before it.
+  std::vector<std::vector<std::vector<double>>> quiet_;
+  /// By the weights of a window and of the mean.
+  std::map<std::pair<std::vector<double>, std::vector<double>>, std::vector<TileNoise>> noise_;
   std::vector<Reading> plain_;
 };
 

@@ -26,8 +26,13 @@ struct BinRange {
 /// The mean is exact. The variance takes the window's spectrum as narrow against the judged band:
 /// Cov Z(f), Z(f') = 2/N times the transform of the squared window at f - f', and at f + f' without
 /// the conjugate.
+///
+/// Bin 0 is not judged, so z floats; it is taken to be zero on average before the pulse: z(t) less
+/// its mean there, weighted by `quiet`. That mean's own noise is counted as a component of its own.
 /// @param window  one weight per sample, an even number of them
-[[nodiscard]] std::vector<TileNoise> tile_noise(std::span<const double> window, std::size_t judged,
+/// @param quiet   weights of the mean, summing to one; empty: nothing is subtracted
+[[nodiscard]] std::vector<TileNoise> tile_noise(std::span<const double> window,
+                                                std::span<const double> quiet, std::size_t judged,
                                                 std::span<const BinRange> ranges);
 
 }  // namespace kolsky
