@@ -11,7 +11,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kFalseDiscovery = 0.01;
+constexpr double kFalseDiscovery = 0.005;
 /// A gauge is off beyond doubt where noise would have it so once in a million.
 const double kBeyondDoubt = std::log(1e-6);
 constexpr std::size_t kFewestBins = 4;

@@ -79,7 +79,7 @@ class Comparer {
   Comparer(WhiteResiduals& residuals, const Composition& composition,
            const std::vector<double>& theta);
 
-  /// Of all shots together. False discovery is held at 1 % over the tiles and over the regions
+  /// Of all shots together. False discovery is held at 0.5 % over the tiles and over the regions
   /// (Benjamini and Hochberg).
   [[nodiscard]] Comparison compare(const Eigen::VectorXd& white, const Misfit& misfit);
 

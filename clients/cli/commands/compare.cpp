@@ -3,11 +3,13 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/comparison_page.hpp"
 #include "clients/cli/comparison_text.hpp"
 #include "clients/cli/criticism_text.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
 #include "drivers/files/model_file.hpp"
+#include "drivers/files/new_file.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -16,6 +18,7 @@ struct Settings {
   std::vector<std::string> captures;
   std::string model;
   bool fit = false;
+  std::optional<std::string> report;
   std::optional<double> band_limit_Hz;
 };
 
@@ -49,6 +52,11 @@ int run(const Settings& settings, Context& context) {
   Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);
   const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
   const std::string note = how(settings, file);
+  if (settings.report) {
+    replace_file(*settings.report,
+                 render_html(comparison_page(settings.model + " against the measurements", note,
+                                             study, studied, comparer, comparison)));
+  }
   if (context.json) {
     context.out << to_text(JsonObject{{"model", settings.model},
                                       {"misfit", describe(studied.misfit)},
@@ -83,11 +91,13 @@ Command compare_command() {
       "A model that was never fitted is fitted first.";
   command.examples =
       "  kolsky compare shots/*.h5 --model m.toml\n"
-      "  kolsky compare shots --model m.toml --json\n";
+      "  kolsky compare shots --model m.toml --report where.html\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
       needed("--model", "M.toml", "the model to compare", &s.model),
       flag("--fit", "fit the model to these captures first; the file stays as it is", &s.fit),
+      option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
+             &s.report),
       option("--band-limit", "HZ",
              "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
   command.run = [settings](Context& context) { return run(*settings, context); };
