@@ -26,6 +26,7 @@ struct Panel {
   Axis x;
   Axis y;
   std::vector<Series> series;
+  double shaded = 0.0;  ///< y from -shaded to shaded is set off where a renderer can; 0: nothing
 };
 
 /// A page of panels.

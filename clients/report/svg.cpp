@@ -34,32 +34,6 @@ struct Frame {
   [[nodiscard]] double bottom() const { return top + height; }
 };
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char character : text) {
-    switch (character) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        // XML has no control characters but tab and line ends.
-        if (static_cast<unsigned char>(character) >= 0x20U || character == '\t') {
-          out += character;
-        }
-    }
-  }
-  return out;
-}
-
 Range padded(Range range) {
   const double margin = kPadding * (range.high - range.low);
   return {range.low - margin, range.high + margin};
@@ -80,6 +54,13 @@ class PanelDrawing {
         "<clipPath id=\"{}\"><rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>"
         "</clipPath>\n<g clip-path=\"url(#{})\">\n",
         clip, frame_.left, frame_.top, frame_.width, frame_.height, clip);
+    if (panel_.shaded > 0.0) {
+      const double top = page_y(panel_.shaded);
+      out += fmt::format(
+          "<rect class=\"shaded\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" "
+          "height=\"{:.2f}\"/>\n",
+          frame_.left, top, frame_.width, page_y(-panel_.shaded) - top);
+    }
     for (std::size_t i = 0; i < panel_.series.size(); ++i) {
       out += path(panel_.series[i], kColours.at(i % kColours.size()));
     }
@@ -185,8 +166,7 @@ class PanelDrawing {
   AxisLayout y_;
 };
 
-constexpr std::string_view kStyle =
-    "<style>"
+constexpr std::string_view kRules =
     "text{font-family:'DejaVu Sans',Verdana,Helvetica,Arial,sans-serif;fill:#222}"
     ".page{font-size:18px;font-weight:bold}"
     ".note{font-size:12px;fill:#555}"
@@ -197,9 +177,45 @@ constexpr std::string_view kStyle =
     ".zero{stroke:#a8a8a8;stroke-width:1}"
     ".frame{fill:none;stroke:#444;stroke-width:1}"
     ".line{fill:none;stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}"
-    "</style>\n";
+    ".shaded{fill:#f0e6c8}";
 
 }  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char character : text) {
+    switch (character) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        // XML has no control characters but tab and line ends.
+        if (static_cast<unsigned char>(character) >= 0x20U || character == '\t') {
+          out += character;
+        }
+    }
+  }
+  return out;
+}
+
+std::string panel_style() {
+  return std::string(kRules);
+}
+
+std::string panel_svg(const Panel& panel, double width, double height, std::size_t number) {
+  return fmt::format("<svg viewBox=\"0 0 {0:.0f} {1:.0f}\" role=\"img\" aria-label=\"{2}\">\n",
+                     width, height, escaped(panel.title)) +
+         PanelDrawing(panel, {0.0, 0.0, width, height}).text(number) + "</svg>\n";
+}
 
 std::string render_svg(const Figure& figure) {
   const std::size_t across = figure.panels.size() > 1 ? 2 : 1;
@@ -211,9 +227,9 @@ std::string render_svg(const Figure& figure) {
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n<title>{2}</title>\n{3}"
+      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n<title>{2}</title>\n<style>{3}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      width, height, escaped(figure.title), kStyle);
+      width, height, escaped(figure.title), kRules);
   out += fmt::format("<text class=\"page\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n", kPageMargin,
                      kPageMargin + 14.0, escaped(figure.title));
   for (std::size_t i = 0; i < figure.notes.size(); ++i) {

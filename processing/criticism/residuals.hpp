@@ -75,6 +75,9 @@ class WhiteResiduals {
   /// estimate of each gauge's deviation from a wave common to all, in strain.
   /// @return by gauge, over the judged window at the decimated rate
   [[nodiscard]] std::vector<std::vector<double>> deviations(std::span<const double> white) const;
+  /// Whitened residuals of one shot at a bin, times this, are the spectrum of all gauges'
+  /// deviations there: gauges x others.
+  [[nodiscard]] const Eigen::MatrixXcd& spread(std::size_t bin) const { return spread_[bin]; }
   /// The judged window of one gauge's record, filtered and decimated alike.
   [[nodiscard]] std::vector<double> judged_record(std::size_t shot, std::size_t gauge);
   /// Energy of all records over that of their noise, in the units of whitened residuals.

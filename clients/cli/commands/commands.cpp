@@ -16,6 +16,7 @@ Command model_show_command();
 Command model_history_command();
 Command model_revert_command();
 Command fit_command();
+Command compare_command();
 Command diagnose_command();
 Command impact_command();
 Command verify_command();
@@ -51,6 +52,31 @@ std::vector<Command> all_commands() {
       fit_command(),
       diagnose_command(),
       impact_command(),
+      verify_command(),
+      status_command(),
+      arm_command(),
+      disarm_command(),
+      fire_command(),
+      force_trigger_command(),
+      shots_command(),
+      get_command(),
+      watch_command(),
+      reload_command(),
+      release_command(),
+      stop_command(),
+      import_csv_command(),
+      reduce_command(),
+      effects_command(),
+      model_new_command(),
+      model_add_command(),
+      model_remove_command(),
+      model_show_command(),
+      model_history_command(),
+      model_revert_command(),
+      fit_command(),
+      compare_command(),
+      diagnose_command(),
+      export_command(),
       verify_command(),
       status_command(),
       arm_command(),

@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/comparison_page.hpp"
 #include "clients/cli/criticism_text.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
@@ -21,6 +22,7 @@ struct Settings {
   std::vector<std::string> captures;
   std::string model;
   std::optional<std::string> output;
+  std::optional<std::string> report;
   std::optional<double> band_limit_Hz;
 };
 
@@ -130,7 +132,12 @@ Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   if (progress) {
     options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };
   }
-  return diagnose(study, model, options);
+  Diagnosis diagnosis = diagnose(study, model, options);
+  if (settings.report) {
+    replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",
+                                                              study, model, diagnosis)));
+  }
+  return diagnosis;
 }
 
 int run(const Settings& settings, Context& context) {
@@ -171,6 +178,8 @@ Command diagnose_command() {
       needed("--model", "M.toml", "the model to diagnose", &s.model),
       option("-o,--output", "M2.toml", "where to write the model with what was found, fitted",
              &s.output),
+      option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
+             &s.report),
       option("--band-limit", "HZ",
              "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
   command.run = [settings](Context& context) { return run(*settings, context); };

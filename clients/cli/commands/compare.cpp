@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/comparison_page.hpp"
+#include "clients/cli/comparison_text.hpp"
+#include "clients/cli/criticism_text.hpp"
+#include "clients/cli/json_value.hpp"
+#include "clients/cli/model_text.hpp"
+#include "drivers/files/model_file.hpp"
+#include "drivers/files/new_file.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+struct Settings {
+  std::vector<std::string> captures;
+  std::string model;
+  bool fit = false;
+  std::optional<std::string> report;
+  std::optional<double> band_limit_Hz;
+};
+
+bool was_fitted(const ModelFile& file) {
+  return std::any_of(file.history.begin(), file.history.end(),
+                     [](const ModelStep& step) { return !step.data_sha256.empty(); });
+}
+
+/// What was done to the model before it was compared, for people.
+std::string how(const Settings& settings, const ModelFile& file) {
+  if (settings.fit) {
+    return "fitted to these captures first, as asked; the model file stays as it is";
+  }
+  if (!was_fitted(file)) {
+    return "the model was never fitted: fitted to these captures first; the model file stays as "
+           "it is";
+  }
+  if (file.history.back().data_sha256.empty()) {
+    return "as it is in the file, which was changed after its last fit: `kolsky fit`, or --fit "
+           "here";
+  }
+  return "as it is in the file";
+}
+
+int run(const Settings& settings, Context& context) {
+  const ModelFile file = read_model(settings.model);
+  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  Study study(campaign, settings.band_limit_Hz.value_or(0.0), all_cores());
+  const bool fit_first = settings.fit || !was_fitted(file);
+  const Studied studied = fit_first ? study.fit(file.model) : study.as_it_is(file.model);
+  Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);
+  const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
+  const std::string note = how(settings, file);
+  if (settings.report) {
+    replace_file(*settings.report,
+                 render_html(comparison_page(settings.model + " against the measurements", note,
+                                             study, studied, comparer, comparison)));
+  }
+  if (context.json) {
+    context.out << to_text(JsonObject{{"model", settings.model},
+                                      {"misfit", describe(studied.misfit)},
+                                      {"where", describe_tiles(comparison, campaign)},
+                                      {"regions", describe_regions(comparison, campaign)},
+                                      {"fitted_first", fit_first},
+                                      {"converged", studied.fit.converged},
+                                      {"parameters", describe_parameters(studied.model)},
+                                      {"effects", describe_effects(studied.model)},
+                                      {"notes", std::vector<std::string>{note}}})
+                << "\n";
+    return kDone;
+  }
+  context.out << settings.model << ": " << note << "\n"
+              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n\n"
+              << places_table(comparison, campaign) << "\n"
+              << worst_plot(comparison, comparer, study, studied.fit.residual, context.terminal);
+  return kDone;
+}
+
+}  // namespace
+
+Command compare_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "compare";
+  command.purpose =
+      "shows where a model fails: gauge, arrival window, frequency band, shot\n"
+      "Residuals in units of the measured noise; what repeats from shot to shot is the model's "
+      "fault.\n"
+      "A model that was never fitted is fitted first.";
+  command.examples =
+      "  kolsky compare shots/*.h5 --model m.toml\n"
+      "  kolsky compare shots --model m.toml --report where.html\n";
+  command.arguments = {
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("--model", "M.toml", "the model to compare", &s.model),
+      flag("--fit", "fit the model to these captures first; the file stays as it is", &s.fit),
+      option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
+             &s.report),
+      option("--band-limit", "HZ",
+             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

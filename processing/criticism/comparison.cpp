@@ -1,0 +1,448 @@
+#include "processing/criticism/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "processing/criticism/statistics.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kFalseDiscovery = 0.005;
+/// A gauge is off beyond doubt where noise would have it so once in a million.
+const double kBeyondDoubt = std::log(1e-6);
+constexpr std::size_t kFewestBins = 4;
+constexpr std::size_t kMostBands = 6;
+/// Of a unit row: below this what is left of a gauge's deviation is rounding.
+constexpr double kNothingLeft = 1e-4;
+
+double log_p_of(double energy, const TileNoise& noise) {
+  return noise.mean > 0.0 ? log_chi2_tail(energy * noise.freedom / noise.mean, noise.freedom) : 0.0;
+}
+
+/// Benjamini and Hochberg: the largest ln p that still counts among these.
+double discovery_limit(std::vector<double> log_ps) {
+  std::sort(log_ps.begin(), log_ps.end());
+  double limit = -HUGE_VAL;
+  for (std::size_t i = 0; i < log_ps.size(); ++i) {
+    const double share = static_cast<double>(i + 1) / static_cast<double>(log_ps.size());
+    if (log_ps[i] <= std::log(kFalseDiscovery * share)) {
+      limit = log_ps[i];
+    }
+  }
+  return limit;
+}
+
+template <class Place>
+void mark_significant(std::vector<Place>& places) {
+  std::vector<double> log_ps;
+  for (const Place& place : places) {
+    log_ps.push_back(place.log_p);
+  }
+  const double limit = discovery_limit(std::move(log_ps));
+  for (Place& place : places) {
+    place.significant = place.log_p <= limit;
+  }
+}
+
+/// Weights of the mean before the pulse.
+std::vector<double> mean_before(const std::vector<ArrivalWindow>& windows) {
+  if (windows.empty() || windows.front().name != kBeforePulse) {
+    return {};
+  }
+  std::vector<double> weights = windows.front().weight;
+  double sum = 0.0;
+  for (double& weight : weights) {
+    weight *= weight;
+    sum += weight;
+  }
+  for (double& weight : weights) {
+    weight /= sum;
+  }
+  return weights;
+}
+
+using Key = std::tuple<std::size_t, std::string, std::size_t>;
+
+/// How much of a place's spectra follows the sources, shot by shot.
+class Following {
+ public:
+  void add(Complex value, Complex source) {
+    all_ += std::norm(value);
+    power_ += std::norm(source);
+    sum_ += value * std::conj(source);
+  }
+  [[nodiscard]] double all() const { return all_; }
+  [[nodiscard]] double followed() const { return power_ > 0.0 ? std::norm(sum_) / power_ : 0.0; }
+
+ private:
+  double all_ = 0.0;
+  double power_ = 0.0;
+  Complex sum_ = 0.0;
+};
+
+}  // namespace
+
+double Region::sigma() const {
+  return noise.mean > 0.0 ? std::sqrt(energy / noise.mean) : 0.0;
+}
+
+Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
+                   const std::vector<double>& theta)
+    : residuals_(residuals), transform_(residuals.band().judged, residuals.judged_period_s(), 1.0) {
+  choose_bands();
+  plain_ = plain_readings();
+  const Campaign& campaign = residuals.campaign();
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    windows_.push_back(arrival_windows(residuals, composition, theta, n));
+    std::vector<double> peaks;
+    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+      double peak = 0.0;
+      for (const double value : residuals.judged_record(n, j)) {
+        peak = std::max(peak, std::abs(value));
+      }
+      peaks.push_back(peak);
+    }
+    peaks_.push_back(std::move(peaks));
+    quiet_.emplace_back();
+    for (const auto& of_gauge : windows_.back()) {
+      quiet_.back().push_back(mean_before(of_gauge));
+      for (const ArrivalWindow& window : of_gauge) {
+        static_cast<void>(noise_of(window, quiet_.back().back()));
+      }
+    }
+  }
+}
+
+void Comparer::choose_bands() {
+  const std::size_t last = residuals_.band().bins_judged + 1;
+  std::vector<std::size_t> edges{last};
+  while (edges.size() < kMostBands && edges.back() / 2 >= kFewestBins) {
+    edges.push_back((edges.back() + 1) / 2);
+  }
+  edges.push_back(1);
+  std::reverse(edges.begin(), edges.end());
+  if (edges.size() > 2 && edges[1] - edges[0] < kFewestBins) {
+    edges.erase(edges.begin() + 1);
+  }
+  const double width = transform_.bin_width_Hz();
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    ComparedBand band{width * static_cast<double>(edges[b]),
+                      width * static_cast<double>(edges[b + 1]),
+                      {edges[b], edges[b + 1]}};
+    // What windows smear beyond the judged band belongs to its nearest part.
+    band.bins.first = b == 0 ? 0 : band.bins.first;
+    band.bins.end = b + 2 == edges.size() ? transform_.bins() : band.bins.end;
+    bands_.push_back(band);
+  }
+}
+
+const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window,
+                                                 const std::vector<double>& quiet) {
+  const auto found = noise_.find({window.weight, quiet});
+  if (found != noise_.end()) {
+    return found->second;
+  }
+  std::vector<BinRange> ranges;
+  for (const ComparedBand& band : bands_) {
+    ranges.push_back(band.bins);
+  }
+  return noise_
+      .emplace(std::pair{window.weight, quiet},
+               tile_noise(window.weight, quiet, residuals_.band().bins_judged, ranges))
+      .first->second;
+}
+
+/// Deviations hold no bin 0: here they are zero on average before the pulse.
+void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const {
+  const std::vector<double>& quiet = quiet_[shot][gauge];
+  if (!quiet.empty()) {
+    const double mean = std::inner_product(record.begin(), record.end(), quiet.begin(), 0.0);
+    for (double& value : record) {
+      value -= mean;
+    }
+  }
+}
+
+std::vector<Comparer::Reading> Comparer::plain_readings() const {
+  const std::size_t bins = residuals_.band().bins_judged;
+  const auto others = static_cast<Eigen::Index>(residuals_.others().size());
+  std::vector<Reading> list;
+  for (std::size_t j = 0; j < residuals_.campaign().gauges(); ++j) {
+    Reading reading{j, Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(bins), others),
+                    std::vector<double>(bins, 0.0)};
+    for (std::size_t k = 0; k < bins; ++k) {
+      const auto row = residuals_.spread(k).row(static_cast<Eigen::Index>(j));
+      const double length = row.norm();
+      if (length > 0.0) {
+        reading.rows.row(static_cast<Eigen::Index>(k)) = row / length;
+        reading.scale[k] = length;
+      }
+    }
+    list.push_back(std::move(reading));
+  }
+  return list;
+}
+
+/// Takes from `other` what follows from `known`, in one band.
+void Comparer::given(const Reading& known, Reading& other, const ComparedBand& band) const {
+  const std::size_t bins = residuals_.band().bins_judged;
+  for (std::size_t f = std::max<std::size_t>(1, band.bins.first);
+       f < std::min(band.bins.end, bins + 1); ++f) {
+    const auto k = static_cast<Eigen::Index>(f - 1);
+    const Complex common = known.rows.row(k).dot(other.rows.row(k));
+    Eigen::RowVectorXcd rest = other.rows.row(k) - common * known.rows.row(k);
+    const double left = rest.norm();
+    if (left < kNothingLeft) {
+      other.rows.row(k).setZero();
+      other.scale[f - 1] = 0.0;
+    } else {
+      other.rows.row(k) = rest / left;
+      other.scale[f - 1] *= left;
+    }
+  }
+}
+
+/// ln probability of a reading's energy in a band over all shots.
+double Comparer::band_log_p(const Reading& reading, const ComparedBand& band,
+                            std::span<const double> white) const {
+  const std::size_t bins = residuals_.band().bins_judged;
+  const std::size_t others = residuals_.others().size();
+  double energy = 0.0;
+  double freedom = 0.0;
+  for (std::size_t start = 0; start < white.size(); start += residuals_.per_shot()) {
+    for (std::size_t f = std::max<std::size_t>(1, band.bins.first);
+         f < std::min(band.bins.end, bins + 1); ++f) {
+      if (reading.scale[f - 1] == 0.0) {
+        continue;
+      }
+      Complex z = 0.0;
+      for (std::size_t i = 0; i < others; ++i) {
+        const std::size_t at = start + residuals_.index(f - 1, i);
+        z += reading.rows(static_cast<Eigen::Index>(f - 1), static_cast<Eigen::Index>(i)) *
+             Complex(white[at], white[at + 1]);
+      }
+      energy += std::norm(z);
+      freedom += 2.0;
+    }
+  }
+  return freedom > 0.0 ? log_chi2_tail(energy, freedom) : 0.0;
+}
+
+/// The gauges' readings for these residuals: in every band those beyond doubt first, the rest given
+/// them.
+std::vector<Comparer::Reading> Comparer::readings(std::span<const double> white) const {
+  std::vector<Reading> list = plain_;
+  if (residuals_.others().size() < 2) {
+    return list;
+  }
+  for (const ComparedBand& band : bands_) {
+    std::vector<Reading*> left;
+    for (Reading& reading : list) {
+      left.push_back(&reading);
+    }
+    while (left.size() > 1) {
+      std::vector<double> log_ps;
+      for (const Reading* reading : left) {
+        log_ps.push_back(band_log_p(*reading, band, white));
+      }
+      const auto worst = std::min_element(log_ps.begin(), log_ps.end());
+      if (*worst > kBeyondDoubt) {
+        break;
+      }
+      const auto place = left.begin() + (worst - log_ps.begin());
+      const Reading* known = *place;
+      left.erase(place);
+      for (Reading* other : left) {
+        given(*known, *other, band);
+      }
+    }
+  }
+  return list;
+}
+
+std::vector<Comparer::Windowed> Comparer::windowed(const Reading& reading,
+                                                   std::span<const double> white,
+                                                   std::size_t shot) {
+  const std::size_t bins = residuals_.band().bins_judged;
+  const std::size_t others = residuals_.others().size();
+  Spectrum z(transform_.bins(), 0.0);
+  for (std::size_t k = 0; k < bins; ++k) {
+    for (std::size_t i = 0; i < others; ++i) {
+      const std::size_t at = residuals_.index(k, i);
+      z[k + 1] += reading.rows(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) *
+                  Complex(white[at], white[at + 1]);
+    }
+  }
+  std::vector<double> record(transform_.length());
+  transform_.inverse(z, record);
+  level(record, shot, reading.gauge);
+  std::vector<Windowed> list;
+  std::vector<double> part(record.size());
+  for (const ArrivalWindow& window : windows_[shot][reading.gauge]) {
+    for (std::size_t n = 0; n < record.size(); ++n) {
+      part[n] = record[n] * window.weight[n];
+    }
+    Windowed own{&window, Spectrum(transform_.bins())};
+    transform_.forward(part, own.spectrum);
+    list.push_back(std::move(own));
+  }
+  return list;
+}
+
+void Comparer::add_tiles(const Reading& reading, const std::vector<Windowed>& windows,
+                         std::size_t shot, std::vector<Tile>& tiles) {
+  const std::size_t bins = residuals_.band().bins_judged;
+  const double peak = peaks_[shot][reading.gauge];
+  for (const Windowed& own : windows) {
+    const auto& weight = own.window->weight;
+    const double length = std::inner_product(weight.begin(), weight.end(), weight.begin(), 0.0);
+    const std::vector<TileNoise>& noise = noise_of(*own.window, quiet_[shot][reading.gauge]);
+    for (std::size_t b = 0; b < bands_.size(); ++b) {
+      Tile tile;
+      tile.gauge = reading.gauge;
+      tile.window = own.window->name;
+      tile.band = b;
+      tile.shot = shot;
+      double squares = 0.0;
+      double known = 0.0;
+      for (std::size_t f = bands_[b].bins.first; f < bands_[b].bins.end; ++f) {
+        const bool half = f == 0 || f + 1 == transform_.bins();
+        const double power = (half ? 0.5 : 1.0) * std::norm(own.spectrum[f]);
+        const double scale = reading.scale[std::clamp<std::size_t>(f, 1, bins) - 1];
+        tile.energy += power;
+        squares += power * scale * scale;
+        known += scale > 0.0 ? 1.0 : 0.0;
+      }
+      if (known == 0.0) {
+        continue;  // the other gauges' deviations leave nothing to know of this one
+      }
+      tile.noise = noise[b];
+      tile.sigma = std::sqrt(tile.energy / tile.noise.mean);
+      // Parseval: a mean square is 2/N times the one-sided sum over the window's length.
+      const double mean_square = 2.0 * squares / static_cast<double>(weight.size()) / length;
+      tile.percent_of_peak = peak > 0.0 ? 100.0 * std::sqrt(mean_square) / peak : 0.0;
+      tile.log_p = log_p_of(tile.energy, tile.noise);
+      tiles.push_back(std::move(tile));
+    }
+  }
+}
+
+std::vector<Tile> Comparer::compare_shot(std::span<const double> white, std::size_t shot) {
+  std::vector<Tile> tiles;
+  for (const Reading& reading : readings(white)) {
+    add_tiles(reading, windowed(reading, white, shot), shot, tiles);
+  }
+  mark_significant(tiles);
+  double excess = 0.0;
+  for (const Tile& tile : tiles) {
+    excess += std::max(0.0, tile.energy - tile.noise.mean);
+  }
+  for (Tile& tile : tiles) {
+    tile.share = excess > 0.0 ? std::max(0.0, tile.energy - tile.noise.mean) / excess : 0.0;
+  }
+  return tiles;
+}
+
+Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit) {
+  const std::size_t shots = residuals_.campaign().shots.size();
+  const std::size_t per_shot = residuals_.per_shot();
+  const std::size_t bins = residuals_.band().bins_judged;
+  const std::span<const double> all(white.data(), static_cast<std::size_t>(white.size()));
+  Comparison comparison;
+  comparison.misfit = misfit;
+  comparison.bands = bands_;
+  std::vector<Spectrum> sources;
+  for (std::size_t n = 0; n < shots; ++n) {
+    sources.push_back(residuals_.source_spectrum(n, white));
+  }
+  std::map<Key, std::vector<Following>> following;
+  for (const Reading& reading : readings(all)) {
+    for (std::size_t n = 0; n < shots; ++n) {
+      const auto windows = windowed(reading, all.subspan(n * per_shot, per_shot), n);
+      add_tiles(reading, windows, n, comparison.tiles);
+      for (const Windowed& own : windows) {
+        for (std::size_t b = 0; b < bands_.size(); ++b) {
+          auto& bin = following[{reading.gauge, own.window->name, b}];
+          bin.resize(bins);
+          for (std::size_t f = std::max<std::size_t>(1, bands_[b].bins.first);
+               f < std::min(bands_[b].bins.end, bins + 1); ++f) {
+            bin[f - 1].add(own.spectrum[f], sources[n][f - 1]);
+          }
+        }
+      }
+    }
+  }
+  mark_significant(comparison.tiles);
+
+  std::map<Key, Region> regions;
+  for (const Tile& tile : comparison.tiles) {
+    Region& region = regions[{tile.gauge, tile.window, tile.band}];
+    region.gauge = tile.gauge;
+    region.window = tile.window;
+    region.band = tile.band;
+    region.energy += tile.energy;
+    region.noise.mean += tile.noise.mean;
+    region.noise.freedom += tile.noise.freedom;
+    comparison.excess += std::max(0.0, tile.energy - tile.noise.mean);
+  }
+  for (auto& [key, region] : regions) {
+    region.log_p = log_p_of(region.energy, region.noise);
+    double followed = 0.0;
+    double total = 0.0;
+    for (const Following& bin : following[key]) {
+      followed += bin.followed();
+      total += bin.all();
+    }
+    if (shots > 1 && total > followed) {
+      const double free = region.noise.freedom / static_cast<double>(shots);
+      const double rest = free * static_cast<double>(shots - 1);
+      region.repeat_log_p = log_f_tail((followed / free) / ((total - followed) / rest), free, rest);
+    }
+    comparison.regions.push_back(region);
+  }
+  mark_significant(comparison.regions);
+  std::vector<double> repeat_log_ps;
+  for (const Region& region : comparison.regions) {
+    repeat_log_ps.push_back(region.repeat_log_p);
+  }
+  const double repeat_limit = discovery_limit(std::move(repeat_log_ps));
+  for (Region& region : comparison.regions) {
+    region.repeats = region.significant && region.repeat_log_p <= repeat_limit;
+    regions[{region.gauge, region.window, region.band}] = region;
+  }
+  for (Tile& tile : comparison.tiles) {
+    Region& region = regions[{tile.gauge, tile.window, tile.band}];
+    const double over = std::max(0.0, tile.energy - tile.noise.mean);
+    tile.share = comparison.excess > 0.0 ? over / comparison.excess : 0.0;
+    // A place that fails over all shots does so in every shot that shows it at all.
+    tile.significant = tile.significant || (region.significant && tile.log_p < std::log(0.05));
+    tile.repeats = tile.significant && region.repeats;
+    region.share += tile.share;
+  }
+  for (Region& region : comparison.regions) {
+    region.share = regions[{region.gauge, region.window, region.band}].share;
+  }
+  const auto larger = [](const auto& a, const auto& b) { return a.share > b.share; };
+  std::stable_sort(comparison.tiles.begin(), comparison.tiles.end(), larger);
+  std::stable_sort(comparison.regions.begin(), comparison.regions.end(), larger);
+  return comparison;
+}
+
+ComparedRecord Comparer::record(std::span<const double> white, std::size_t shot,
+                                std::size_t gauge) {
+  ComparedRecord record{residuals_.judged_record(shot, gauge), residuals_.deviations(white)[gauge],
+                        peaks_[shot][gauge]};
+  level(record.deviation, shot, gauge);
+  return record;
+}
+
+Comparison compare(Study& study, const Studied& studied) {
+  return Comparer(study.residuals(), studied.composition, studied.fit.theta)
+      .compare(studied.fit.residual, studied.misfit);
+}
+
+}  // namespace kolsky

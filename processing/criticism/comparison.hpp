@@ -1,0 +1,141 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processing/criticism/arrival_windows.hpp"
+#include "processing/criticism/study.hpp"
+#include "processing/criticism/tile_noise.hpp"
+
+namespace kolsky {
+
+/// Part of the judged band, about an octave.
+struct ComparedBand {
+  double low_Hz = 0.0;
+  double high_Hz = 0.0;
+  BinRange bins;  ///< of the judged window's transform
+};
+
+/// What a model leaves unexplained in one arrival window and band of one gauge's record.
+struct Tile {
+  std::size_t gauge = 0;
+  std::string window;
+  std::size_t band = 0;
+  std::size_t shot = 0;
+  double energy = 0.0;           ///< whitened
+  TileNoise noise;               ///< what of it noise alone would leave
+  double sigma = 0.0;            ///< rms in units of the noise's: 1 under the true model
+  double percent_of_peak = 0.0;  ///< rms of the deviation, of the record's peak
+  double share = 0.0;            ///< of the whole misfit's excess over noise
+  double log_p = 0.0;            ///< ln of its probability under noise alone
+  bool significant = false;
+  bool repeats = false;  ///< over the shots, following their sources
+};
+
+/// The same place in all shots taken together.
+struct Region {
+  std::size_t gauge = 0;
+  std::string window;
+  std::size_t band = 0;
+  double energy = 0.0;
+  TileNoise noise;
+  double share = 0.0;
+  double log_p = 0.0;
+  bool significant = false;
+  double repeat_log_p = 0.0;  ///< ln probability of so much following the sources by chance
+  bool repeats = false;
+
+  [[nodiscard]] double sigma() const;
+};
+
+/// One gauge of one shot, over its judged window.
+struct ComparedRecord {
+  std::vector<double> measured;   ///< strain
+  std::vector<double> deviation;  ///< of the record from the wave common to all gauges; strain
+  double peak = 0.0;
+};
+
+struct Comparison {
+  Misfit misfit;
+  std::vector<ComparedBand> bands;
+  std::vector<Tile> tiles;
+  std::vector<Region> regions;
+  double excess = 0.0;  ///< chi-square over what noise leaves, over all tiles
+};
+
+/// Shares whitened residuals out among places: gauge x arrival window x frequency band x shot.
+///
+/// A residual is between gauges, so a fault of one is seen at all. At each frequency the deviation
+/// of every gauge from the wave common to all is divided by its own standard deviation: of all
+/// gauges the one at fault then stands out furthest (Baarda's test for outliers). Where a gauge
+/// stands out beyond doubt, what remains at the others is taken given that it is off (conditional
+/// on its deviation), so that one gauge's fault is not counted at its neighbours; and so on to the
+/// next. With two gauges nothing tells which is off: each has half of the misfit.
+class Comparer {
+ public:
+  /// @param residuals  as frozen at theta; outlives this
+  Comparer(WhiteResiduals& residuals, const Composition& composition,
+           const std::vector<double>& theta);
+
+  /// Of all shots together. False discovery is held at 0.5 % over the tiles and over the regions
+  /// (Benjamini and Hochberg).
+  [[nodiscard]] Comparison compare(const Eigen::VectorXd& white, const Misfit& misfit);
+
+  /// Of one shot by itself, as it comes in.
+  /// @param white  of this shot
+  [[nodiscard]] std::vector<Tile> compare_shot(std::span<const double> white, std::size_t shot);
+
+  [[nodiscard]] ComparedRecord record(std::span<const double> white, std::size_t shot,
+                                      std::size_t gauge);
+  [[nodiscard]] const std::vector<ComparedBand>& bands() const { return bands_; }
+  [[nodiscard]] const std::vector<ArrivalWindow>& windows(std::size_t shot,
+                                                          std::size_t gauge) const {
+    return windows_[shot][gauge];
+  }
+
+ private:
+  using Spectrum = std::vector<Complex>;
+  /// The rows by which a gauge's own deviation is read off whitened residuals, one per bin, of unit
+  /// length; none where the gauges before it leave nothing to know.
+  struct Reading {
+    std::size_t gauge = 0;
+    Eigen::MatrixXcd rows;      ///< bins x others
+    std::vector<double> scale;  ///< strain per unit, by bin: 0 where nothing is left
+  };
+  struct Windowed {
+    const ArrivalWindow* window;
+    Spectrum spectrum;
+  };
+
+  void choose_bands();
+  [[nodiscard]] std::vector<Reading> plain_readings() const;
+  void given(const Reading& known, Reading& other, const ComparedBand& band) const;
+  [[nodiscard]] double band_log_p(const Reading& reading, const ComparedBand& band,
+                                  std::span<const double> white) const;
+  [[nodiscard]] std::vector<Reading> readings(std::span<const double> white) const;
+  [[nodiscard]] std::vector<Windowed> windowed(const Reading& reading,
+                                               std::span<const double> white, std::size_t shot);
+  void add_tiles(const Reading& reading, const std::vector<Windowed>& windows, std::size_t shot,
+                 std::vector<Tile>& tiles);
+  [[nodiscard]] const std::vector<TileNoise>& noise_of(const ArrivalWindow& window,
+                                                       const std::vector<double>& quiet);
+  void level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const;
+
+  WhiteResiduals& residuals_;
+  DampedTransform transform_;
+  std::vector<ComparedBand> bands_;
+  std::vector<std::vector<std::vector<ArrivalWindow>>> windows_;  ///< by shot and gauge
+  std::vector<std::vector<double>> peaks_;                        ///< by shot and gauge
+  /// Weights of the mean before the pulse, by shot and gauge; empty where nothing is before it.
+  std::vector<std::vector<std::vector<double>>> quiet_;
+  /// By the weights of a window and of the mean.
+  std::map<std::pair<std::vector<double>, std::vector<double>>, std::vector<TileNoise>> noise_;
+  std::vector<Reading> plain_;
+};
+
+/// Compares a model where it stands. @param studied  of this study, the last one evaluated
+[[nodiscard]] Comparison compare(Study& study, const Studied& studied);
+
+}  // namespace kolsky
