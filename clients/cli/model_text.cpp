@@ -63,8 +63,8 @@ std::string digest_of(const std::vector<std::string>& captures) {
   return all.hex();
 }
 
-Executor all_cores() {
-  Executor executor;
+Workers all_cores() {
+  Workers executor;
   executor.workers = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t workers = executor.workers;
   executor.run = [workers](std::size_t count,

@@ -5,7 +5,7 @@
 
 #include "clients/cli/json_value.hpp"
 #include "processing/base/shot.hpp"
-#include "processing/criticism/executor.hpp"
+#include "processing/criticism/workers.hpp"
 #include "processing/models/model.hpp"
 
 namespace kolsky::cli {
@@ -17,7 +17,7 @@ namespace kolsky::cli {
 [[nodiscard]] std::string digest_of(const std::vector<std::string>& captures);
 
 /// As many threads as the machine has cores.
-[[nodiscard]] Executor all_cores();
+[[nodiscard]] Workers all_cores();
 
 /// "2026-11-21T14:00:00Z"
 [[nodiscard]] std::string utc_now();

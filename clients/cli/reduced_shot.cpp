@@ -4,37 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/files/bench_file.hpp"
 #include "drivers/files/capture.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
-namespace {
-
-constexpr double kLoadingStart = 0.05;  // of the peak stress
-constexpr double kLoadingEnd = 0.98;    // of the largest strain
-
-std::size_t index_of_largest(const std::vector<double>& history) {
-  return static_cast<std::size_t>(std::max_element(history.begin(), history.end()) -
-                                  history.begin());
-}
-
-// The last sample before `peak` at which the history is still below the level.
-std::size_t rise_before(const std::vector<double>& history, std::size_t peak, double level) {
-  std::size_t i = peak;
-  while (i > 0 && history[i] >= level) {
-    --i;
-  }
-  return i;
-}
-
-std::size_t first_at(const std::vector<double>& history, double level) {
-  return static_cast<std::size_t>(
-      std::find_if(history.begin(), history.end(), [&](double value) { return value >= level; }) -
-      history.begin());
-}
-
-}  // namespace
-
 std::string absolute_name(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::path absolute = std::filesystem::weakly_canonical(path, ignored);
@@ -48,36 +22,50 @@ bool assumes_bar_model(const Shot& shot, const ReductionOptions& options) {
   return !all_elastic && !options.bar_model.has_value() && !shot.bar_model.has_value();
 }
 
-ReducedShot reduce_capture(const std::filesystem::path& capture, const ReductionOptions& options) {
-  ReducedShot reduced{read_capture(capture), {}, absolute_name(capture), false};
-  reduced.default_bar_model = assumes_bar_model(reduced.shot, options);
+void rebench(Shot& shot, const std::filesystem::path& path) {
+  const BenchFile file = read_bench(path);
+  const auto& gauges = file.bench.gauges;
+  if (gauges.size() != shot.channels.size()) {
+    throw InputError(path.string() + ": gauges",
+                     std::to_string(gauges.size()) + " are filed but the capture has " +
+                         std::to_string(shot.channels.size()) + " channels",
+                     "file one gauge per channel, in their order");
+  }
+  for (std::size_t i = 0; i < gauges.size(); ++i) {
+    if (gauges[i].name != shot.channels[i].gauge || gauges[i].unit != shot.channels[i].unit) {
+      throw InputError(path.string() + ": gauges[" + std::to_string(i) + "]",
+                       gauges[i].name + " in " + gauges[i].unit + " stands where the capture has " +
+                           shot.channels[i].gauge + " in " + shot.channels[i].unit,
+                       "keep the gauges' names, units and order: they name the capture's channels");
+    }
+  }
+  const double off = file.bench.sampling_frequency_Hz / shot.rate.Hz() - 1.0;
+  if (std::abs(off) > 1e-9) {
+    throw InputError(path.string() + ": sampling_frequency_Hz",
+                     "is not the rate that the capture was taken at",
+                     "give the capture's own rate; import the table again for another");
+  }
+  shot.bench = file.bench;
+  shot.bench_toml = file.text;
+}
+
+ReducedShot reduce_capture(const std::filesystem::path& capture, const ReductionOptions& options,
+                           const std::optional<std::string>& bench) {
+  ReducedShot reduced;
+  reduced.shot = read_capture(capture);
+  reduced.capture = absolute_name(capture);
   try {
+    if (bench.has_value()) {
+      reduced.bench = absolute_name(*bench);
+      reduced.as_filed = Reducer(options).reduce(reduced.shot);
+      rebench(reduced.shot, *bench);
+    }
+    reduced.default_bar_model = assumes_bar_model(reduced.shot, options);
     reduced.reduction = Reducer(options).reduce(reduced.shot);
   } catch (const InputError& error) {
     throw error.inside(capture.string());
   }
   return reduced;
-}
-
-LoopSummary summarise(const Reduction& reduction) {
-  if (reduction.stress_Pa.empty()) {
-    return {};
-  }
-  const std::size_t peak = index_of_largest(reduction.stress_Pa);
-  const std::size_t furthest = index_of_largest(reduction.strain);
-  LoopSummary summary;
-  summary.peak_stress_Pa = reduction.stress_Pa[peak];
-  summary.strain_at_peak = reduction.strain[peak];
-  summary.peak_strain = reduction.strain[furthest];
-  const std::size_t begin =
-      rise_before(reduction.stress_Pa, peak, kLoadingStart * summary.peak_stress_Pa);
-  const std::size_t end = first_at(reduction.strain, kLoadingEnd * summary.peak_strain);
-  if (end > begin && end < reduction.strain.size()) {
-    summary.loading_s = reduction.time_s[end] - reduction.time_s[begin];
-    summary.mean_strain_rate_per_s =
-        (reduction.strain[end] - reduction.strain[begin]) / summary.loading_s;
-  }
-  return summary;
 }
 
 std::vector<double> true_strain(const Reduction& reduction) {

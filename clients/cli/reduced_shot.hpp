@@ -1,12 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "clients/cli/json_value.hpp"
 #include "clients/terminal/terminal.hpp"
 #include "processing/base/shot.hpp"
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/uncertainty/monte_carlo.hpp"
 
 namespace kolsky::cli {
 
@@ -17,7 +21,16 @@ struct ReducedShot {
   std::string capture;  ///< the file, absolute
   bool default_bar_model =
       false;  ///< the bars were taken for the paper's PMMA because nobody said what they are
+  std::string stress = "three-wave";       ///< how the stress was taken from the forces
+  std::vector<std::string> corrections{};  ///< that were asked for
+  std::optional<std::string> bench{};      ///< a corrected bench file, in place of the shot's own
+  std::optional<Uncertainty> uncertainty{};
+  std::optional<Reduction> as_filed{};  ///< then: the result with the shot's own bench
 };
+
+/// Puts a corrected bench in the place of a shot's own; the samples stay as they are.
+/// @throws InputError where the bench's gauges or rate are not the shot's
+void rebench(Shot& shot, const std::filesystem::path& bench);
 
 /// The path by which a file is named in output: the same from wherever it was given.
 [[nodiscard]] std::string absolute_name(const std::filesystem::path& path);
@@ -26,20 +39,10 @@ struct ReducedShot {
 [[nodiscard]] bool assumes_bar_model(const Shot& shot, const ReductionOptions& options);
 
 /// Reads a capture and reduces it. @throws InputError
+/// @param bench  a corrected bench file: the result then holds the one with the shot's own too
 [[nodiscard]] ReducedShot reduce_capture(const std::filesystem::path& capture,
-                                         const ReductionOptions& options);
-
-/// The numbers of a loop that go into one line.
-struct LoopSummary {
-  double peak_stress_Pa = 0.0;
-  double strain_at_peak = 0.0;  ///< at the peak stress
-  double peak_strain = 0.0;
-  double loading_s = 0.0;  ///< from 5 % of the peak stress to 98 % of the largest strain
-  double mean_strain_rate_per_s = 0.0;  ///< over the loading
-};
-
-/// All zero for an empty reduction.
-[[nodiscard]] LoopSummary summarise(const Reduction& reduction);
+                                         const ReductionOptions& options,
+                                         const std::optional<std::string>& bench = std::nullopt);
 
 /// True strain -ln(1 - e) and true stress s (1 - e) from engineering ones, compression positive,
 /// for a specimen that keeps its volume. NaN where e >= 1.
@@ -51,6 +54,10 @@ inline constexpr const char* kTrueHelp =
     "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), for "
     "a "
     "specimen that keeps its volume";
+
+/// The uncertainty's part of both.
+void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object);
+[[nodiscard]] std::string uncertainty_report(const Uncertainty& uncertainty);
 
 /// What `reduce --json` and `get --json` print.
 [[nodiscard]] JsonValue describe(const ReducedShot& shot, bool with_true);

@@ -1,10 +1,34 @@
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/cli/time_text.hpp"
+#include "processing/reduction/validity.hpp"
 
 namespace kolsky::cli {
 namespace {
 
-JsonValue describe(const Quality& quality) {
+JsonValue describe(const LoopSummary& summary) {
+  return JsonObject{{"peak_stress_Pa", summary.peak_stress_Pa},
+                    {"strain_at_peak", summary.strain_at_peak},
+                    {"peak_strain", summary.peak_strain},
+                    {"mean_strain_rate_per_s", summary.mean_strain_rate_per_s},
+                    {"loading_s", summary.loading_s}};
+}
+
+JsonValue describe(const Quotable& part) {
+  return JsonObject{{"any", part.any},
+                    {"from_s", part.from_s},
+                    {"to_s", part.to_s},
+                    {"from_strain", part.from_strain},
+                    {"to_strain", part.to_strain},
+                    {"text", part.text}};
+}
+
+JsonValue describe(const SpectralQuality& quality) {
+  return JsonObject{{"frequency_Hz", quality.frequency_Hz},
+                    {"input_dB", quality.input_dB},
+                    {"output_dB", quality.output_dB}};
+}
+
+JsonValue describe(const Quality& quality, const ReducedShot& reduced) {
   JsonObject checks;
   for (const Check& check : quality.checks) {
     checks.push_back({check.name, JsonObject{{"value", check.value},
@@ -13,18 +37,15 @@ JsonValue describe(const Quality& quality) {
                                              {"verdict", verdict_name(check.verdict)},
                                              {"text", check.text}}});
   }
+  const SpectralQuality spectral = spectral_quality(reduced.shot, reduced.reduction);
   return JsonObject{{"reducible", quality.reducible},
                     {"reason", quality.reason},
                     {"verdict", verdict_name(quality.verdict())},
-                    {"checks", std::move(checks)}};
-}
-
-JsonValue describe(const LoopSummary& summary) {
-  return JsonObject{{"peak_stress_Pa", summary.peak_stress_Pa},
-                    {"strain_at_peak", summary.strain_at_peak},
-                    {"peak_strain", summary.peak_strain},
-                    {"mean_strain_rate_per_s", summary.mean_strain_rate_per_s},
-                    {"loading_s", summary.loading_s}};
+                    {"checks", std::move(checks)},
+                    {"quotable", describe(quotable_part(reduced.reduction))},
+                    {"equilibrium", disagreement(reduced.reduction)},
+                    {"useful_band_Hz", spectral.useful_band_Hz},
+                    {"signal_to_noise", describe(spectral)}};
 }
 
 JsonObject describe(const std::map<std::string, std::string>& meta) {
@@ -48,7 +69,9 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                        {"arrival_s", reduction.arrival_s},
                        {"arrival_sigma_s", reduction.arrival_sigma_s},
                        {"band_limit_Hz", reduction.band_limit_Hz},
-                       {"quality", describe(reduction.quality)},
+                       {"quality", describe(reduction.quality, reduced)},
+                       {"stress_from", reduced.stress},
+                       {"corrections", reduced.corrections},
                        {"summary", describe(summarise(reduction))},
                        {"time_s", reduction.time_s},
                        {"stress_Pa", reduction.stress_Pa},
@@ -59,6 +82,20 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                        {"incident", reduction.incident},
                        {"reflected", reduction.reflected},
                        {"transmitted", reduction.transmitted}};
+  if (reduced.uncertainty) {
+    describe_uncertainty(*reduced.uncertainty, object);
+  }
+  if (reduced.as_filed) {
+    const Reduction& before = *reduced.as_filed;
+    object.push_back({"bench", *reduced.bench});
+    object.push_back({"as_filed", JsonObject{{"reducible", before.quality.reducible},
+                                             {"verdict", verdict_name(before.quality.verdict())},
+                                             {"summary", describe(summarise(before))},
+                                             {"time_s", before.time_s},
+                                             {"stress_Pa", before.stress_Pa},
+                                             {"strain", before.strain},
+                                             {"strain_rate_per_s", before.strain_rate_per_s}}});
+  }
   if (with_true) {
     object.push_back({"strain_true", true_strain(reduction)});
     object.push_back({"stress_true_Pa", true_stress_Pa(reduction)});

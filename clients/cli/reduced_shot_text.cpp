@@ -8,6 +8,7 @@
 #include "clients/figure/layout.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/terminal/plot.hpp"
+#include "processing/reduction/validity.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -73,6 +74,31 @@ std::string verdicts(const Quality& quality, const Terminal& terminal) {
   return text;
 }
 
+// What may be quoted, and up to which frequency the records tell anything.
+std::string validity(const ReducedShot& reduced, const Terminal& terminal) {
+  const auto columns = static_cast<std::size_t>(std::clamp(terminal.columns, 60, kPlotColumns));
+  std::string text;
+  std::string name = "may be quoted";
+  for (const std::string& line :
+       wrapped(quotable_part(reduced.reduction).text, columns - 2 - kNameColumns)) {
+    text += row(name, line);
+    name.clear();
+  }
+  const double useful_Hz = spectral_quality(reduced.shot, reduced.reduction).useful_band_Hz;
+  return text + row("useful band", useful_Hz > 0.0
+                                       ? "up to " + with_unit(useful_Hz, "Hz") +
+                                             ", signal over 10 dB above the noise on both bars"
+                                       : "none: the signal is nowhere 10 dB above the noise");
+}
+
+std::string as_filed(const Reduction& before) {
+  const LoopSummary loop = summarise(before);
+  return row(
+      "as filed",
+      fmt::format("{} at a strain of {}, largest strain {}", with_unit(loop.peak_stress_Pa, "Pa"),
+                  with_unit(loop.strain_at_peak, "strain"), with_unit(loop.peak_strain, "strain")));
+}
+
 std::string plots(const Reduction& reduction, const Terminal& terminal) {
   const int columns = std::min(terminal.columns, kPlotColumns);
   return "\n" + plot_text(loop_panel(reduction), {columns, kLoopRows}, terminal.colour) + "\n" +
@@ -89,6 +115,18 @@ std::string report(const ReducedShot& reduced, const Terminal& terminal) {
   const bool has_loop = !reduced.reduction.stress_Pa.empty();
   if (has_loop) {
     text += numbers(reduced.reduction);
+    if (reduced.stress != "three-wave" || !reduced.corrections.empty()) {
+      text += row("stress", fmt::format("{}{}{}", reduced.stress,
+                                        reduced.corrections.empty() ? "" : ", corrected for ",
+                                        fmt::join(reduced.corrections, ", ")));
+    }
+    text += validity(reduced, terminal);
+  }
+  if (reduced.uncertainty) {
+    text += uncertainty_report(*reduced.uncertainty);
+  }
+  if (reduced.as_filed) {
+    text += row("bench", *reduced.bench) + as_filed(*reduced.as_filed);
   }
   text += verdicts(reduced.reduction.quality, terminal);
   return has_loop ? text + plots(reduced.reduction, terminal) : text;

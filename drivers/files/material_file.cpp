@@ -89,4 +89,19 @@ std::string format_material(const Material& material) {
   return text;
 }
 
+std::string format_material(const Material& material, const Identified& identified) {
+  std::string text = format_material(material) + "covariance = [";  // E1, E2, eta2, row by row
+  for (std::size_t i = 0; i < identified.covariance.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + digits(identified.covariance[i]);
+  }
+  text += "]\n\n[identified]\nshots = " + std::to_string(identified.shots) + "\n";
+  text += "band_limit_Hz = " + digits(identified.band_limit_Hz) + "\n";
+  text += "dispersion = " + quoted(identified.dispersion) + "\n";
+  text += "chi2_reduced = " + digits(identified.chi2_reduced) + "\n";
+  if (identified.temperature_K) {
+    text += "temperature_K = " + digits(*identified.temperature_K) + "\n";
+  }
+  return text;
+}
+
 }  // namespace kolsky

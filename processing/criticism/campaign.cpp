@@ -80,6 +80,26 @@ double step_of(const std::vector<double>& strain) {
   return steps[steps.size() / 4];
 }
 
+/// A record that stays at its extreme far longer than it stays anywhere else near it has been cut
+/// off there, wherever its codes end: a table does not tell the converter's range.
+std::size_t flat_top(const std::vector<double>& readings) {
+  const auto [least, most] = std::minmax_element(readings.begin(), readings.end());
+  const double extreme = std::abs(*most) >= std::abs(*least) ? *most : *least;
+  std::size_t at_extreme = 0;
+  std::size_t elsewhere = 0;
+  std::size_t run = 0;
+  for (std::size_t n = 0; n < readings.size(); ++n) {
+    run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
+    if (readings[n] == extreme) {
+      at_extreme = std::max(at_extreme, run);
+    } else if (std::abs(readings[n]) > 0.5 * std::abs(extreme)) {
+      elsewhere = std::max(elsewhere, run);
+    }
+  }
+  constexpr std::size_t kLongRun = 8;
+  return at_extreme >= kLongRun && at_extreme > 3 * elsewhere ? at_extreme : 0;
+}
+
 std::optional<double> logged(const Shot& shot, const std::string& key) {
   const auto found = shot.meta.find(key);
   if (found == shot.meta.end()) {
@@ -161,6 +181,12 @@ std::string bad_data(const Shot& shot) {
   if (reference == shot.bench.gauges.size() || shot.channels.size() != shot.bench.gauges.size()) {
     return "no channel of a gauge on the input bar";
   }
+  for (const ChannelRecord& channel : shot.channels) {
+    if (const std::size_t flat = flat_top(readings_of(channel)); flat > 0) {
+      return "gauge " + channel.gauge + " stays at its extreme for " + std::to_string(flat) +
+             " samples: it was cut off there";
+    }
+  }
   const auto foot = foot_in(readings_of(shot.channels[reference]), shot.rate.Hz());
   if (!foot) {
     return "gauge " + shot.bench.gauges[reference].name +
@@ -180,6 +206,10 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
   }
   Campaign campaign;
   campaign.bench = shots.front().bench;
+  if (campaign.bench.kind == BenchKind::impact) {
+    throw InputError("captures", "are of an impact, which is not compared with its model yet",
+                     "foretell it with `kolsky impact` and hold the force beside the record");
+  }
   require_gauges(campaign.bench);
   campaign.period_s = shots.front().rate.period_s();
   campaign.reference = reference_of(campaign.bench);

@@ -59,6 +59,15 @@ void add_variants(const Effect& effect, const std::string& gauge, const Campaign
   const EffectAbout& about = effect.about();
   EffectUse use = null_use(effect, gauge);
   hold_auxiliaries(use);
+  if (about.each_gauge) {
+    // What all gauges have alike is the source's: without a bound such strengths run away together.
+    constexpr double kLargest = 30.0;
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      if (!about.parameters[p].auxiliary()) {
+        use.values[p].prior_sd = kLargest * about.parameters[p].typical;
+      }
+    }
+  }
   const auto auxiliary = std::find_if(about.parameters.begin(), about.parameters.end(),
                                       [](const auto& p) { return p.auxiliary(); });
   std::vector<EffectUse> variants{use};
@@ -88,7 +97,7 @@ std::vector<Candidate> candidates_for(const Studied& studied, const Campaign& ca
   for (const EffectUse& use : studied.composition.uses()) {
     const bool filed = std::any_of(use.values.begin(), use.values.end(),
                                    [](const auto& value) { return value.prior_sd > 0.0; });
-    if (filed && !use.effect->about().base) {
+    if (filed && !use.effect->about().base && !use.effect->about().each_gauge) {
       list.push_back({use, true, false});
     }
   }
@@ -206,7 +215,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, Study
         own.push_back(i);
       }
     }
-    Executor serial;
+    Workers serial;
     serial.run = [worker](std::size_t count,
                           const std::function<void(std::size_t, std::size_t)>& work) {
       for (std::size_t i = 0; i < count; ++i) {

@@ -37,8 +37,8 @@ struct Refit {
   double log_p = 0.0;
 };
 
-Executor on_worker(std::size_t worker) {
-  Executor serial;
+Workers on_worker(std::size_t worker) {
+  Workers serial;
   serial.first = worker;
   serial.run = [worker](std::size_t count,
                         const std::function<void(std::size_t, std::size_t)>& work) {
@@ -56,6 +56,45 @@ double log_tail(double gain, double freedom, bool one_sided) {
 
 double noise_of(const Misfit& misfit, std::size_t shots) {
   return shots > 1 ? misfit.noise_scale : std::max(1.0, misfit.noise_scale);
+}
+
+/// How far the strengths that single shots give are from the common one: the chi2 that strengths of
+/// their own would gain, and the shots less one.
+std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
+                                       std::size_t per_shot) {
+  const ModelFit& fit = studied.fit;
+  std::ptrdiff_t column = -1;
+  for (std::size_t i = fit.theta.size(); i-- > 0;) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (studied.composition.uses()[number.use].id() == id && number.shot < 0) {
+      column = static_cast<std::ptrdiff_t>(i);
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(per_shot);
+  const Eigen::Index shots = fit.residual.size() / size;
+  if (column < 0 || shots < 3) {
+    return {0.0, 1.0};
+  }
+  // The column clear of the other numbers, over all shots.
+  Eigen::VectorXd clear = fit.jacobian.col(column);
+  Eigen::MatrixXd rest = fit.information;
+  rest.row(column).setZero();
+  rest.col(column).setZero();
+  rest(column, column) = 1.0;
+  Eigen::VectorXd share = fit.jacobian.transpose() * clear;
+  share[column] = 0.0;
+  clear -= fit.jacobian * rest.ldlt().solve(share);
+  double q = 0.0;
+  const double noise = std::max(1.0, studied.misfit.noise_scale);
+  for (Eigen::Index n = 0; n < shots; ++n) {
+    const auto own = clear.segment(n * size, size);
+    const double information = own.squaredNorm();
+    if (information > 0.0) {
+      const double pull = own.dot(fit.residual.segment(n * size, size));
+      q += pull * pull / information / noise;
+    }
+  }
+  return {q, static_cast<double>(shots - 1)};
 }
 
 class Search {
@@ -93,7 +132,7 @@ class Search {
     });
     std::vector<Refit> list;
     for (auto& own : done) {
-      if (own && std::isfinite(own->gain) &&
+      if (own && std::isfinite(own->gain) && !beyond_the_record(own->studied, *own) &&
           own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
                                   study_.campaign())) {
         list.push_back(std::move(*own));
@@ -105,6 +144,25 @@ class Search {
   }
 
  private:
+  /// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
+  /// (a dashpot, a spring) that it only imitates.
+  [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const {
+    const Candidate& candidate = candidates_[refit.candidate];
+    const EffectUse* use = studied.model.find(candidate.id());
+    const auto& parameters = candidate.use.effect->about().parameters;
+    constexpr double kMuchSlower = 5.0;
+    const double period_s = study_.residuals().judged_period_s();
+    const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
+    for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
+      const double value = use->values[p].value;
+      if (parameters[p].auxiliary() && parameters[p].unit == "s" &&
+          (value > kMuchSlower * record_s || value < 0.5 * study_.campaign().period_s)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// How many independent tests the search amounts to, from simulated repeats of pure noise: the
   /// candidates' directions overlap.
   void simulate() {
@@ -244,11 +302,21 @@ class Search {
     const double noise = noise_of(out.studied.misfit, study_.campaign().shots.size());
     const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                            out.studied.fit.degrees_of_freedom(out.studied.composition);
-    out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise;
+    out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise /
+               scatter_of(out.studied, candidate.id());
     out.log_p = log_tail(out.gain, candidate.frees_prior ? 1.0 : std::round(freedom),
                          candidate.one_sided && freedom < 1.5);
     out.evidence = equivalent_square(out.log_p);
     return out;
+  }
+
+  /// How much more than noise the shots differ in the direction of an effect's strength: noise
+  /// whose frequencies hang together scatters more there than its spectrum says.
+  [[nodiscard]] double scatter_of(const Studied& studied, const std::string& id) const {
+    // What is known of the noise beforehand counts as much as this many shots.
+    constexpr double kBelief = 20.0;
+    const auto [q, freedom] = disagreement(studied, id, study_.residuals().per_shot());
+    return std::max(1.0, (kBelief + q) / (kBelief + freedom));
   }
 
   Study& study_;
@@ -271,6 +339,8 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
     list.push_back(direction_of({use, false, false}, studied, study, 0));
     total += list.back().columns.cols();
   }
+  list.push_back(direction_of({null_use(bent_scale_effect()), false, false}, studied, study, 0));
+  total += list.back().columns.cols();
   Eigen::MatrixXd columns(studied.fit.residual.size(), total);
   Eigen::Index at = 0;
   for (const Direction& direction : list) {
@@ -299,48 +369,6 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
   const double noise = noise_of(studied.misfit, campaign.shots.size());
   *excess = std::max(0.0, gain / noise - freedom);
   return freedom > 0.0 ? log_chi2_tail(gain / noise, freedom) : 0.0;
-}
-
-/// How far the strengths that single shots give are from the common one: the chi2 that strengths of
-/// their own would gain, and the shots less one.
-std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
-                                       std::size_t per_shot) {
-  const ModelFit& fit = studied.fit;
-  std::ptrdiff_t column = -1;
-  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
-    const FreeNumber& number = studied.composition.numbers()[i];
-    if (studied.composition.uses()[number.use].id() == id) {
-      if (column >= 0 || number.shot >= 0) {
-        return {0.0, 1.0};
-      }
-      column = static_cast<std::ptrdiff_t>(i);
-    }
-  }
-  const auto size = static_cast<Eigen::Index>(per_shot);
-  const Eigen::Index shots = fit.residual.size() / size;
-  if (column < 0 || shots < 3) {
-    return {0.0, 1.0};
-  }
-  // The column clear of the other numbers, over all shots.
-  Eigen::VectorXd clear = fit.jacobian.col(column);
-  Eigen::MatrixXd rest = fit.information;
-  rest.row(column).setZero();
-  rest.col(column).setZero();
-  rest(column, column) = 1.0;
-  Eigen::VectorXd share = fit.jacobian.transpose() * clear;
-  share[column] = 0.0;
-  clear -= fit.jacobian * rest.ldlt().solve(share);
-  double q = 0.0;
-  const double noise = std::max(1.0, studied.misfit.noise_scale);
-  for (Eigen::Index n = 0; n < shots; ++n) {
-    const auto own = clear.segment(n * size, size);
-    const double information = own.squaredNorm();
-    if (information > 0.0) {
-      const double pull = own.dot(fit.residual.segment(n * size, size));
-      q += pull * pull / information / noise;
-    }
-  }
-  return {q, static_cast<double>(shots - 1)};
 }
 
 /// An effect with the right shape but the wrong name has strengths that differ from shot to shot by

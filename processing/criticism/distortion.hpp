@@ -11,4 +11,7 @@ namespace kolsky {
 /// in the residuals of a model is misfit that the model does not explain.
 [[nodiscard]] const Effect& distortion_effect();
 
+/// The same of the sensors' scale: reading = e (1 + b e + c e^2) at every gauge.
+[[nodiscard]] const Effect& bent_scale_effect();
+
 }  // namespace kolsky

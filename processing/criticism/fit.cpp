@@ -60,7 +60,7 @@ double ModelFit::degrees_of_freedom(const Composition& composition) const {
 
 Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& residuals,
                             const std::vector<double>& theta, const Eigen::VectorXd& at_theta,
-                            const std::vector<std::size_t>& numbers, const Executor& executor) {
+                            const std::vector<std::size_t>& numbers, const Workers& executor) {
   Eigen::MatrixXd columns(at_theta.size(), static_cast<Eigen::Index>(numbers.size()));
   executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
     std::vector<double> moved = theta;
@@ -87,7 +87,7 @@ Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& resi
 }
 
 ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
-                   const Executor& executor, std::vector<double> start,
+                   const Workers& executor, std::vector<double> start,
                    const Eigen::MatrixXd* chord) {
   ModelFit fit;
   fit.theta = start.empty() ? composition.start() : std::move(start);
@@ -98,6 +98,12 @@ ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
   fit.residual = residuals.evaluate(composition, fit.theta, executor.first);
   fit.chi2 = fit.residual.squaredNorm();
   fit.penalty = penalty_of(composition, fit.theta);
+  if (count == 0) {
+    // Nothing is free: the model is what it is.
+    fit.jacobian.resize(fit.residual.size(), 0);
+    fit.converged = true;
+    return fit;
+  }
   double damping = 0.0;
   bool fresh = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {

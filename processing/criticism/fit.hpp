@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "processing/criticism/composition.hpp"
-#include "processing/criticism/executor.hpp"
 #include "processing/criticism/residuals.hpp"
+#include "processing/criticism/workers.hpp"
 
 namespace kolsky {
 
@@ -29,7 +29,7 @@ struct ModelFit {
 /// @param start  in scales; empty: the composition's
 /// @param chord  derivatives from nearby, used as long as they serve; none: made at every step
 [[nodiscard]] ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
-                                 const Executor& executor, std::vector<double> start = {},
+                                 const Workers& executor, std::vector<double> start = {},
                                  const Eigen::MatrixXd* chord = nullptr);
 
 /// Derivatives of the residuals by some of the free numbers, by differences.
@@ -37,7 +37,7 @@ struct ModelFit {
                                           const std::vector<double>& theta,
                                           const Eigen::VectorXd& at_theta,
                                           const std::vector<std::size_t>& numbers,
-                                          const Executor& executor);
+                                          const Workers& executor);
 
 /// Moves a model's moduli near enough to the campaign's for fit_model to converge: the bar's from
 /// the pulse's arrivals, a specimen's from a search over decades.

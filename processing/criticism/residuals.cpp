@@ -306,6 +306,12 @@ void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
         e = 2.0 * e / (1.0 + std::sqrt(std::max(root, 0.0)));
       }
     }
+    if (const double c = record.cubic; c != 0.0) {
+      // To first order: only ever asked for beside null.
+      for (double& e : work.shaped) {
+        e -= c * e * e * e;
+      }
+    }
     transform_record(work, work.shaped, work.records[j]);
   }
 }

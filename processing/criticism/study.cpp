@@ -2,7 +2,7 @@
 
 namespace kolsky {
 
-Study::Study(const Campaign& campaign, double band_limit_Hz, Executor executor)
+Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
     : campaign_(campaign),
       executor_(std::move(executor)),
       residuals_(campaign, band_limit_Hz, executor_.workers) {}

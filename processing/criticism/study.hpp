@@ -22,7 +22,7 @@ class Study {
  public:
   /// @param campaign  outlives this
   /// @param band_limit_Hz  0: where the pulses fall below the noise
-  Study(const Campaign& campaign, double band_limit_Hz, Executor executor);
+  Study(const Campaign& campaign, double band_limit_Hz, Workers executor);
 
   /// Fits from wherever the model's moduli are.
   [[nodiscard]] Studied fit(const Model& model);
@@ -33,11 +33,11 @@ class Study {
 
   [[nodiscard]] WhiteResiduals& residuals() { return residuals_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
-  [[nodiscard]] const Executor& executor() const { return executor_; }
+  [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
   const Campaign& campaign_;
-  Executor executor_;
+  Workers executor_;
   WhiteResiduals residuals_;
 };
 

@@ -1,10 +1,9 @@
 #include "processing/identification/bar_fit.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "processing/base/error.hpp"
 #include "processing/identification/bar_likelihood.hpp"
@@ -13,118 +12,266 @@ namespace kolsky {
 
 namespace {
 
-/// What Ceres minimises: the likelihood's residuals and, for each known unknown, its move itself
-/// (its prior). Parameters: logarithms of the solid's, then the moves in their standard deviations.
-struct Objective {
-  BarLikelihood* likelihood;
-  SolidKind solid;
-  std::size_t solid_parameters;
-  std::size_t moves;
+constexpr double kPriorOfLogs = 5.0;
+constexpr double kTypicalTime_s = 50e-6;  // of a glassy polymer's retardation
+/// E2 over E1 of a bar that counts as elastic, and how tightly that is held.
+constexpr double kUnseen = 1e6;
+constexpr double kHeld = 1e-3;
+constexpr double kPriorOfReflection = 2.0;
+constexpr int kMostSteps = 60;
+/// A step is not worth taking when it gains less in chi2: a hundredth of a standard deviation.
+constexpr double kNegligibleGain = 1e-4;
+/// Nor does it matter that a step foretold to gain less than this does not: the gradient leaves out
+/// what the parameters do to the weights in second order.
+constexpr double kDoubtfulGain = 1e-2;
+constexpr double kLongestLogStep = 1.0;
 
-  bool operator()(double const* const* blocks, double* residuals) const {
-    const double* p = blocks[0];
-    std::vector<double> parameters(solid_parameters);
-    std::transform(p, p + solid_parameters, parameters.begin(),
-                   [](double log) { return std::exp(log); });
-    const auto compliance = make_solid(solid, parameters);
-    const std::span<const double> moved(p + solid_parameters, moves);
-    likelihood->evaluate(*compliance, moved, {residuals, likelihood->residuals()});
-    std::copy(moved.begin(), moved.end(), residuals + likelihood->residuals());
-    return true;
+struct Prior {
+  Eigen::VectorXd centre;
+  Eigen::VectorXd weight;  ///< 1 / variance
+
+  [[nodiscard]] double chi2(const Eigen::VectorXd& at) const {
+    return ((at - centre).array().square() * weight.array()).sum();
   }
 };
 
-/// Minimum, and the residuals' derivatives there.
-struct Minimum {
-  std::vector<double> parameters;
-  double chi2 = 0.0;
-  Eigen::MatrixXd jacobian;
-};
-
-Eigen::MatrixXd dense(const ceres::CRSMatrix& sparse) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
-  for (int row = 0; row < sparse.num_rows; ++row) {
-    for (int i = sparse.rows[static_cast<std::size_t>(row)];
-         i < sparse.rows[static_cast<std::size_t>(row) + 1]; ++i) {
-      matrix(row, sparse.cols[static_cast<std::size_t>(i)]) =
-          sparse.values[static_cast<std::size_t>(i)];
-    }
+Prior prior_of(const BarData& data, const BarModel& model) {
+  const auto size = static_cast<Eigen::Index>(model.parameters());
+  Prior prior{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Ones(size)};
+  const std::vector<double> guess = first_guess(data, model.theory().solid);
+  for (std::size_t m = 0; m < guess.size(); ++m) {
+    prior.centre[static_cast<Eigen::Index>(m)] = guess[m];
+    prior.weight[static_cast<Eigen::Index>(m)] = 1.0 / (kPriorOfLogs * kPriorOfLogs);
   }
-  return matrix;
+  if (model.theory().lossless) {
+    prior.centre[1] = prior.centre[0] + std::log(kUnseen);
+    prior.centre[2] = prior.centre[1] + std::log(kTypicalTime_s);
+    prior.weight[1] = prior.weight[2] = 1.0 / (kHeld * kHeld);
+  }
+  if (const auto at = model.reflection_at()) {
+    prior.centre[static_cast<Eigen::Index>(*at)] = -1.0;
+    prior.weight[static_cast<Eigen::Index>(*at)] = 1.0 / (kPriorOfReflection * kPriorOfReflection);
+  }
+  return prior;
 }
 
-Minimum minimise(const Objective& objective, std::vector<double> start) {
-  using Cost = ceres::DynamicNumericDiffCostFunction<Objective, ceres::CENTRAL>;
-  ceres::NumericDiffOptions steps;
-  steps.relative_step_size = 1e-6;
-  auto cost = std::make_unique<Cost>(new Objective(objective), ceres::TAKE_OWNERSHIP, steps);
-  cost->AddParameterBlock(static_cast<int>(start.size()));
-  cost->SetNumResiduals(static_cast<int>(objective.likelihood->residuals() + objective.moves));
-  ceres::Problem problem;
-  problem.AddResidualBlock(cost.release(), nullptr, start.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 50;
-  options.function_tolerance = 1e-10;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (summary.termination_type != ceres::CONVERGENCE) {
-    throw InputError("fit", "does not converge: " + summary.message,
-                     "try another family of solids or a narrower band");
+/// A place in the parameters with what the data say there.
+struct Place {
+  Eigen::VectorXd at;
+  std::vector<ShotTerms> shots;
+  double objective = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+};
+
+Place look(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& at,
+           std::size_t shots) {
+  const std::span<const double> parameters(at.data(), static_cast<std::size_t>(at.size()));
+  Place place{at, likelihood.evaluate(parameters, shots), prior.chi2(at),
+              prior.weight.cwiseProduct(at - prior.centre), prior.weight.asDiagonal()};
+  for (const ShotTerms& shot : place.shots) {
+    place.objective += shot.chi2;
+    place.gradient += shot.gradient;
+    place.information += shot.information;
   }
-  Minimum minimum;
-  minimum.chi2 = 2.0 * summary.final_cost;
-  ceres::CRSMatrix jacobian;
-  problem.Evaluate({}, nullptr, nullptr, nullptr, &jacobian);
-  minimum.jacobian = dense(jacobian);
-  minimum.parameters = std::move(start);
-  return minimum;
+  return place;
+}
+
+Eigen::VectorXd step_from(const Place& place, double damping, std::size_t logs) {
+  Eigen::MatrixXd damped = place.information;
+  damped.diagonal() *= 1.0 + damping;
+  Eigen::VectorXd step = -damped.ldlt().solve(place.gradient);
+  const double longest = step.head(static_cast<Eigen::Index>(logs)).cwiseAbs().maxCoeff();
+  if (longest > kLongestLogStep) {
+    step *= kLongestLogStep / longest;
+  }
+  return step;
+}
+
+InputError not_converged() {
+  return {"fit", "does not converge",
+          "try another family of solids, another --dispersion or a narrower band"};
+}
+
+/// Levenberg's and Marquardt's search over the first so many shots, undamped as long as it goes
+/// downhill.
+Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& start,
+               std::size_t shots) {
+  const std::size_t logs = likelihood.model().solid_parameters();
+  const double judged = static_cast<double>(likelihood.residuals()) * static_cast<double>(shots) /
+                        static_cast<double>(likelihood.data().shots());
+  Place place = look(likelihood, prior, start, shots);
+  double damping = 0.0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Eigen::VectorXd step = step_from(place, damping, logs);
+    if (!step.allFinite() || !std::isfinite(place.objective)) {
+      throw not_converged();
+    }
+    const double gain = -place.gradient.dot(step);
+    // Where the model leaves more than noise, deviations are that much wider.
+    const double widened = std::max(1.0, place.objective / judged);
+    if (gain < kNegligibleGain * widened) {
+      return place;
+    }
+    Place next = look(likelihood, prior, place.at + step, shots);
+    if (next.objective < place.objective + 1e-9 * std::abs(place.objective)) {
+      place = std::move(next);
+      damping = damping > 1e-6 ? damping / 10.0 : 0.0;
+    } else if (gain < kDoubtfulGain * widened) {
+      return place;
+    } else {
+      damping = std::max(1e-3, damping * 10.0);
+    }
+  }
+  throw not_converged();
+}
+
+std::vector<std::vector<double>> rows_of(const Eigen::MatrixXd& matrix) {
+  std::vector<std::vector<double>> rows(static_cast<std::size_t>(matrix.rows()));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      rows[static_cast<std::size_t>(i)].push_back(matrix(i, j));
+    }
+  }
+  return rows;
+}
+
+std::vector<FittedNumber> numbers_of(SolidKind kind, const Eigen::VectorXd& logs,
+                                     const Eigen::MatrixXd& covariance) {
+  std::vector<FittedNumber> numbers;
+  const auto& family = parameters_of(kind);
+  for (std::size_t m = 0; m < family.size(); ++m) {
+    const auto i = static_cast<Eigen::Index>(m);
+    const double value = std::exp(logs[i]);
+    numbers.push_back({family[m].name, value, value * std::sqrt(covariance(i, i))});
+  }
+  return numbers;
+}
+
+/// The solid's parameters as one shot has them, the others held: one step from the common place.
+ShotEstimate estimate_of(const ShotTerms& shot, const Place& common, const Prior& prior,
+                         const BarLikelihood& likelihood) {
+  const auto n = static_cast<Eigen::Index>(likelihood.model().solid_parameters());
+  const Eigen::MatrixXd prior_information = prior.weight.head(n).asDiagonal();
+  const Eigen::MatrixXd covariance =
+      (shot.information.topLeftCorner(n, n) + prior_information).inverse();
+  const Eigen::VectorXd own_step = -covariance * shot.gradient.head(n);
+  const auto judged =
+      static_cast<double>(likelihood.residuals()) / static_cast<double>(likelihood.data().shots());
+  ShotEstimate estimate;
+  estimate.parameters =
+      numbers_of(likelihood.model().theory().solid, common.at.head(n) + own_step, covariance);
+  estimate.chi2_reduced = shot.chi2 / judged;
+  return estimate;
+}
+
+BarFit describe(const BarLikelihood& likelihood, const Prior& prior, const Place& place) {
+  const BarModel& model = likelihood.model();
+  const std::size_t solid = model.solid_parameters();
+  BarFit fit;
+  fit.solid = model.theory().solid;
+  fit.theory = model.theory().waves;
+  fit.far_end = model.theory().far_end;
+  fit.lossless = model.theory().lossless;
+  fit.band_limit_Hz = likelihood.data().band_limit_Hz();
+  fit.degrees_of_freedom = likelihood.residuals() - model.first_unknown();
+  double chi2 = 0.0;
+  for (const ShotTerms& shot : place.shots) {
+    chi2 += shot.chi2;
+    fit.shots.push_back(estimate_of(shot, place, prior, likelihood));
+  }
+  fit.chi2_reduced = chi2 / static_cast<double>(fit.degrees_of_freedom);
+  fit.log_evidence =
+      -0.5 * (place.objective + static_cast<double>(model.first_unknown()) *
+                                    std::log(static_cast<double>(likelihood.residuals())));
+  const Eigen::MatrixXd posterior = place.information.inverse() * std::max(1.0, fit.chi2_reduced);
+  fit.at.assign(place.at.data(), place.at.data() + place.at.size());
+  fit.posterior = rows_of(posterior);
+  fit.parameters = numbers_of(model.theory().solid, place.at, posterior);
+  fit.covariance.assign(solid, std::vector<double>(solid));
+  for (std::size_t i = 0; i < solid; ++i) {
+    for (std::size_t j = 0; j < solid; ++j) {
+      fit.covariance[i][j] =
+          fit.posterior[i][j] * fit.parameters[i].value * fit.parameters[j].value;
+    }
+  }
+  if (const auto at = model.reflection_at()) {
+    fit.reflection = {"reflection", fit.at[*at], std::sqrt(fit.posterior[*at][*at])};
+  }
+  for (std::size_t i = 0; i < model.unknowns().size(); ++i) {
+    const KnownUnknown& unknown = model.unknowns()[i];
+    const std::size_t at = model.first_unknown() + i;
+    fit.bench.push_back(
+        {unknown.name, fit.at[at] * unknown.sd, std::sqrt(fit.posterior[at][at]) * unknown.sd});
+  }
+  return fit;
 }
 
 }  // namespace
+
+std::vector<double> first_guess(const BarData& data, SolidKind solid) {
+  constexpr double kLeastTangent = 1e-4;
+  constexpr double kMostTangent = 0.3;
+  constexpr double kTypicalFrequency_Hz = 5e3;
+  const BarRecords& records = data.records().front();
+  const double span_m = records.position_m.back() - records.position_m.front();
+  const double time_s = records.rise_s.back() - records.rise_s.front();
+  if (time_s <= 0.0) {
+    throw InputError("gauges", "see the pulse in another order than they lie along the bar",
+                     "give positions from the impacted end, gauges in the order of the channels");
+  }
+  const double speed = span_m / time_s;
+  const double E1 = data.bench().input.density_kg_m3 * speed * speed;
+  const double decay_per_m = std::log(records.peak.front() / records.peak.back()) / span_m;
+  const double wavenumber = 2.0 * std::numbers::pi * kTypicalFrequency_Hz / speed;
+  const double tangent = std::clamp(2.0 * decay_per_m / wavenumber, kLeastTangent, kMostTangent);
+  const double E2 = E1 / (2.0 * tangent);
+  const double eta2 = E2 * kTypicalTime_s;
+  std::vector<double> guess;
+  switch (solid) {
+    case SolidKind::three_element:
+      guess = {E1, E2, eta2};
+      break;
+    case SolidKind::four_element_fluid:
+      guess = {E1, 100.0 * eta2, E2, eta2};
+      break;
+    case SolidKind::two_kelvin:
+      guess = {E1, 2.0 * E2, eta2, 2.0 * E2, 10.0 * eta2};
+      break;
+    case SolidKind::fractional:
+      guess = {E1, E2, eta2, 0.9};
+      break;
+  }
+  std::transform(guess.begin(), guess.end(), guess.begin(), [](double x) { return std::log(x); });
+  return guess;
+}
+
+BarFit fit_bar(BarData& data, const BarTheory& theory, const std::vector<double>& start) {
+  BarLikelihood likelihood(data, BarModel(data.bench(), data.records().front(), theory));
+  const Prior prior = prior_of(data, likelihood.model());
+  Eigen::VectorXd at = prior.centre;
+  if (!start.empty()) {
+    at = Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
+  }
+  const auto weigh = [&](bool exact) {
+    likelihood.weigh({at.data(), static_cast<std::size_t>(at.size())}, exact);
+  };
+  // Most of the way at the price of one shot; weights turn with the waves' phases, so that those of
+  // where it began do not do for where it ends.
+  for (int round = 0; round < 2; ++round) {
+    weigh(false);
+    at = minimise(likelihood, prior, at, 1).at;
+  }
+  weigh(true);
+  return describe(likelihood, prior, minimise(likelihood, prior, at, data.shots()));
+}
 
 BarFit fit_bar(const std::vector<Shot>& shots, const BarFitOptions& options) {
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot on the bar");
   }
-  BarLikelihood likelihood(shots, options.theory, options.band_limit_Hz);
-  const auto& family = parameters_of(options.solid);
-  const auto& unknowns = likelihood.unknowns();
-  std::vector<double> start;
-  for (const SolidParameter& parameter : family) {
-    start.push_back(std::log(parameter.start));
-  }
-  start.resize(family.size() + unknowns.size(), 0.0);
-  const Minimum minimum =
-      minimise({&likelihood, options.solid, family.size(), unknowns.size()}, std::move(start));
-
-  BarFit fit;
-  fit.solid = options.solid;
-  fit.theory = options.theory;
-  fit.band_limit_Hz = likelihood.band_limit_Hz();
-  fit.degrees_of_freedom = likelihood.residuals() - family.size();
-  fit.chi2_reduced = minimum.chi2 / static_cast<double>(fit.degrees_of_freedom);
-  fit.log_evidence =
-      -0.5 * (minimum.chi2 + static_cast<double>(family.size()) *
-                                 std::log(static_cast<double>(likelihood.residuals())));
-  const Eigen::MatrixXd inverse =
-      (minimum.jacobian.transpose() * minimum.jacobian).inverse() * std::max(1.0, fit.chi2_reduced);
-  fit.covariance.assign(family.size(), std::vector<double>(family.size()));
-  for (std::size_t i = 0; i < family.size(); ++i) {
-    const double value = std::exp(minimum.parameters[i]);
-    for (std::size_t j = 0; j < family.size(); ++j) {
-      fit.covariance[i][j] = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *
-                             value * std::exp(minimum.parameters[j]);
-    }
-    fit.parameters.push_back({family[i].name, value, std::sqrt(fit.covariance[i][i])});
-  }
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(family.size() + i);
-    fit.bench.push_back({unknowns[i].name, minimum.parameters[family.size() + i] * unknowns[i].sd,
-                         std::sqrt(inverse(at, at)) * unknowns[i].sd});
-  }
-  return fit;
+  BarData data(shots, options.band_limit_Hz);
+  return fit_bar(data, {options.theory, options.solid, options.far_end});
 }
 
 }  // namespace kolsky

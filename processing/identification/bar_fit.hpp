@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "processing/base/shot.hpp"
-#include "processing/identification/solids.hpp"
-#include "processing/waves/bar_modes.hpp"
+#include "processing/identification/bar_data.hpp"
+#include "processing/identification/bar_model.hpp"
 
 namespace kolsky {
 
@@ -14,6 +14,7 @@ struct BarFitOptions {
   SolidKind solid = SolidKind::three_element;
   WaveTheory theory = WaveTheory::exact;
   double band_limit_Hz = 0.0;  ///< 0: where the pulses fall below the noise
+  FarEndReturn far_end = FarEndReturn::free;
 };
 
 /// A fitted number: of the material, or a known unknown of the bench.
@@ -23,25 +24,47 @@ struct FittedNumber {
   double sd = 0.0;
 };
 
+/// What one shot by itself says of the solid, the bench as all shots together have it.
+struct ShotEstimate {
+  std::vector<FittedNumber> parameters;
+  double chi2_reduced = 0.0;
+};
+
 /// The maximum-likelihood fit of a bar's material to whole gauge records (see BarLikelihood).
 struct BarFit {
   SolidKind solid = SolidKind::three_element;
   WaveTheory theory = WaveTheory::exact;
+  FarEndReturn far_end = FarEndReturn::free;
+  bool lossless = false;                        ///< E2 and eta2 stand for none
   std::vector<FittedNumber> parameters;         ///< of the solid, in its order
   std::vector<std::vector<double>> covariance;  ///< of the solid's parameters
+  std::optional<FittedNumber> reflection;  ///< stress returned by the far end, where it is fitted
   std::vector<FittedNumber> bench;  ///< what the fit says of the known unknowns, in their own units
-  double chi2_reduced = 0.0;        ///< 1 where the model leaves noise alone
+  std::vector<ShotEstimate> shots;
+  double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
   std::size_t degrees_of_freedom = 0;
   double log_evidence =
       0.0;  ///< -(chi2 + parameters log data) / 2: families and theories compare by it
   double band_limit_Hz = 0.0;
   std::string
       warning;  ///< what keeps the result from being taken at its word; empty where nothing does
+  std::vector<double> at;                      ///< in BarModel's parameters
+  std::vector<std::vector<double>> posterior;  ///< covariance of `at`
 };
 
 /// Fits one bar's material to any number of shots at once. The deviations include those of the
-/// bench's known unknowns; where chi2_reduced exceeds 1 they are widened by its square root.
-/// @throws InputError as BarLikelihood, and where the search does not converge
+/// bench's known unknowns; where chi2_reduced exceeds 1 they are widened by its square root. The
+/// solid's parameters have a prior of five natural logarithms' deviation about values typical of
+/// the wave's speed: it matters only to those that the data leave open.
+/// @throws InputError as BarData, and where the search does not converge
 [[nodiscard]] BarFit fit_bar(const std::vector<Shot>& shots, const BarFitOptions& options);
+
+/// The same on data that are ready. @param start  in BarModel's parameters; empty: from the pulses'
+///   speed and decay
+[[nodiscard]] BarFit fit_bar(BarData& data, const BarTheory& theory,
+                             const std::vector<double>& start = {});
+
+/// Where a search for a solid may begin: logarithms of its parameters, in its order.
+[[nodiscard]] std::vector<double> first_guess(const BarData& data, SolidKind solid);
 
 }  // namespace kolsky

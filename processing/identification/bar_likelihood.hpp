@@ -1,87 +1,85 @@
 #pragma once
 
-#include <optional>
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 
-#include "processing/base/shot.hpp"
-#include "processing/identification/bar_records.hpp"
-#include "processing/identification/known_unknowns.hpp"
-#include "processing/waves/bar_modes.hpp"
-#include "processing/waves/transform.hpp"
+#include "processing/identification/bar_data.hpp"
+#include "processing/identification/bar_model.hpp"
 
 namespace kolsky {
 
-/// How likely the gauge records of a bar's shots are, given its compliance and the known unknowns
-/// of its bench.
+/// What one shot says of the parameters: its sum of squares, half the gradient of that, and the
+/// information they bear on.
+struct ShotTerms {
+  double chi2 = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+};
+
+/// How likely the gauge records of a bar's shots are under a model of it.
 ///
 /// Each shot's source, the right-going wave at the impacted end, is free at all times, so nothing
-/// is assumed of the striker or of what that end does; the far end is free. With h_j = a_j
-/// (exp(-gamma x_j) - exp(-gamma (2 L - x_j))), a_j the gauge's gain, the source is eliminated
-/// exactly,
-///     r_j(t) = y_j - (h_j / h_0) y_0,      j = 1 .. gauges - 1,
-/// which is causal, so that a record that ends while waves ring costs nothing, and under the model
-/// is noise alone. Its covariance at each frequency, diag(p_j) + p_0 g g^H with g_j = h_j / h_0 and
-/// p the noise's power, follows the parameters: the whitened sum of squares is then that with the
-/// source at its own best fit.
-///
-/// Holds work space: one thread at a time.
+/// is assumed of the striker or of what that end does. It is eliminated exactly,
+///     r_j(t) = y_j - g_j y_0,      j = 1 .. gauges - 1,
+/// which is causal (see BarData) and under the model noise alone. Its covariance at each frequency,
+/// diag(p_j) + p_0 g g^H with p the noise's power, follows the parameters: the whitened sum of
+/// squares is then that with the source at its own best fit, and so is the gradient, in which y_0
+/// gives way to the best estimate of what gauge 0 would show without noise,
+/// y_0 + p_0 g^H C^-1 r. Noise of gauge 0 reaches the others through the far end too, but only as
+/// far as the record is long, so that it is not steady: g g^H is averaged over how many returns
+/// there has been time for, and in the lowest bins, which that ties to each other and where a
+/// bar's retardation shows, the covariance is that of the record's own length.
+/// That covariance also holds what slow noise does within a record, and the error that noise of the
+/// quiet samples makes of y_0's baseline; in the other bins these are a baseline of y_0 and a jump
+/// between the ends of each r_j, unknown as the noise leaves them, which are eliminated.
 class BarLikelihood {
  public:
-  /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where surface gauges
-  /// go blind
-  /// @throws InputError where the shots are of different benches or cannot serve (see
-  /// read_bar_records)
-  BarLikelihood(const std::vector<Shot>& shots, WaveTheory theory, double band_limit_Hz);
+  /// @param data outlives this
+  BarLikelihood(BarData& data, BarModel model);
 
-  /// Whitened residuals, of unit variance each under the model.
-  /// @param moves  of the known unknowns, in their standard deviations
-  /// @param out    `residuals()` of them
-  void evaluate(const Compliance& compliance, std::span<const double> moves, std::span<double> out);
-
+  [[nodiscard]] const BarModel& model() const { return model_; }
+  [[nodiscard]] const BarData& data() const { return data_; }
+  /// Real numbers that are judged.
   [[nodiscard]] std::size_t residuals() const;
-  [[nodiscard]] const std::vector<KnownUnknown>& unknowns() const { return unknowns_; }
-  [[nodiscard]] const Bench& bench() const { return bench_; }
-  [[nodiscard]] const std::vector<BarRecords>& records() const { return records_; }
-  [[nodiscard]] double band_limit_Hz() const { return band_limit_Hz_; }
+
+  /// Sets the weights as they are at a place in the parameters. They follow it slowly, so a search
+  /// may keep them. @param exact  the lowest bins together taken together, else bin by bin
+  void weigh(std::span<const double> at, bool exact);
+
+  /// One per shot, of the first so many: near `at`, half of chi2 moves by
+  /// gradient . step + step . information . step / 2.
+  [[nodiscard]] std::vector<ShotTerms> evaluate(std::span<const double> at, std::size_t shots);
 
  private:
-  using Spectrum = std::vector<Complex>;
+  using Spectrum = BarData::Spectrum;
 
-  [[nodiscard]] std::size_t gauges() const { return records_.front().position_m.size(); }
-  void choose_band(double asked_Hz);
-  void prepare_noise();
-  void prepare_spectra();
-  /// h_j / h_0 for j = 1 .. gauges - 1 at the first `count` places of a path.
-  [[nodiscard]] std::vector<Spectrum> transfers(const MovedBench& moved,
-                                                const Compliance& compliance,
-                                                const std::vector<Complex>& path,
-                                                std::size_t count) const;
-  void residual_spectrum(std::size_t shot, std::size_t gauge, const Spectrum& transfer,
-                         Spectrum& out);
-  double* whiten(const std::vector<Spectrum>& residual, const std::vector<Spectrum>& transfer,
-                 double* out) const;
+  /// Whitening of the residuals, and what estimates gauge 0's noise from them, by bin.
+  struct Whitening {
+    Eigen::MatrixXcd lower_inverse;
+    Eigen::RowVectorXcd noise_of_first;  ///< p_0 g^H C^-1
+  };
+  struct Columns;
 
-  WaveTheory theory_;
-  Bench bench_;
-  std::vector<BarRecords> records_;
-  std::vector<KnownUnknown> unknowns_;
-  std::size_t lead_;
-  DampedTransform transform_;
-  std::optional<DampedTransform> plain_;  ///< of what is judged, on the imaginary axis
-  std::vector<Complex> damped_path_;
-  std::vector<Complex> plain_path_;  ///< from the first bin above zero, where offsets live
-  double band_limit_Hz_ = 0.0;
-  double filter_limit_Hz_ = 0.0;
-  std::size_t edge_ = 0;  ///< samples at either end that are not judged
-  std::size_t judged_ = 0;
-  std::size_t bins_judged_ = 0;   ///< of the plain transform
-  std::size_t bins_carried_ = 0;  ///< of the damped one; beyond, the filter has left nothing
-  std::vector<double> filter_;    ///< on the plain path
-  std::vector<std::vector<double>> noise_;      ///< power per bin, by gauge
-  std::vector<std::vector<Spectrum>> spectra_;  ///< damped and filtered, by shot and gauge
-  std::vector<double> work_;
-  Spectrum plain_spectrum_;
+  [[nodiscard]] std::vector<Whitening> whitening(std::span<const double> at);
+  void couple_lowest_bins(std::span<const double> at);
+  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at,
+                                               std::size_t stride) const;
+  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t stride) const;
+  [[nodiscard]] Spectrum judged_product(const Spectrum& filter, const Spectrum& spectrum);
+  [[nodiscard]] std::vector<Spectrum> residuals_of(
+      std::size_t shot, const std::vector<BarModel::Transfer>& transfers);
+  [[nodiscard]] std::vector<Eigen::MatrixXcd> bins_of(std::size_t shot, const Columns& columns);
+  [[nodiscard]] Eigen::MatrixXd white(const std::vector<Eigen::MatrixXcd>& bins) const;
+  [[nodiscard]] ShotTerms terms_of(std::size_t shot, const Columns& columns);
+
+  BarData& data_;
+  BarModel model_;
+  std::vector<Whitening> whitening_;
+  /// Of the first bins, real parts of all gauges before imaginary ones, bin after bin.
+  Eigen::MatrixXd lowest_lower_inverse_;
+  std::size_t lowest_bins_ = 0;
+  Spectrum product_;
 };
 
 }  // namespace kolsky

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -14,6 +15,7 @@ namespace kolsky {
 namespace {
 
 constexpr double kShortestPulse_s = 5e-6;
+constexpr double kReach_s = 500e-6;
 constexpr double kFootClearance_s = 10e-6;
 constexpr std::size_t kFewestQuiet = 32;
 
@@ -24,10 +26,17 @@ std::vector<double> readings_of(const ChannelRecord& channel) {
   return readings;
 }
 
-/// Foot of the first pulse in a record, in samples.
-double foot_in(const std::vector<double>& readings, double rate_Hz, const std::string& gauge) {
+/// The first pulse of a record.
+struct FirstPulse {
+  double foot = 0.0;  ///< in samples, as its half rise
+  double half = 0.0;
+  double height = 0.0;
+};
+
+FirstPulse first_pulse(const std::vector<double>& readings, double rate_Hz,
+                       const std::string& gauge) {
   const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
-  const auto reach = static_cast<std::size_t>(500e-6 * rate_Hz);
+  const auto reach = static_cast<std::size_t>(kReach_s * rate_Hz);
   const auto rise = find_first_pulse(readings, width, reach);
   if (!rise) {
     throw InputError("gauge " + gauge, "holds no pulse that stands out of its noise",
@@ -40,17 +49,24 @@ double foot_in(const std::vector<double>& readings, double rate_Hz, const std::s
   for (std::size_t n = 0; n < end; ++n) {
     shifted[n] = rise->sense * (readings[n] - baseline);
   }
-  const double peak =
+  FirstPulse pulse;
+  pulse.height =
       *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(rise->index), shifted.end());
-  return foot_of(shifted, rise->index, peak, 0.0).index;
+  pulse.foot = foot_of(shifted, rise->index, pulse.height, 0.0).index;
+  const double below = shifted[rise->index];
+  const double above = shifted[std::min(rise->index + 1, end - 1)];
+  const double share = above > below ? (0.5 * pulse.height - below) / (above - below) : 0.0;
+  pulse.half = static_cast<double>(rise->index) + std::clamp(share, 0.0, 1.0);
+  return pulse;
 }
 
 void require_bar(const Shot& shot) {
-  if (shot.bench.kind != BenchKind::bar) {
+  const Bench& bench = shot.bench;
+  if (bench.kind != BenchKind::bar) {
     throw InputError("kind", "is not \"bar\"",
                      "characterise a bar with a bench file of kind \"bar\"");
   }
-  if (shot.bench.gauges.size() < 2 || shot.channels.size() != shot.bench.gauges.size()) {
+  if (bench.gauges.size() < 2 || shot.channels.size() != bench.gauges.size()) {
     throw InputError("gauges", "are too few: what a bar does to a wave shows between two places",
                      "record the pulse with at least two gauges on the bar");
   }
@@ -60,39 +76,74 @@ void require_bar(const Shot& shot) {
   }
 }
 
-}  // namespace
-
-BarRecords read_bar_records(const Shot& shot) {
-  require_bar(shot);
-  const Bench& bench = shot.bench;
-  BarRecords records;
-  records.period_s = shot.rate.period_s();
-  records.channel.resize(bench.gauges.size());
-  std::iota(records.channel.begin(), records.channel.end(), std::size_t{0});
-  std::sort(records.channel.begin(), records.channel.end(), [&](std::size_t a, std::size_t b) {
+/// Channels in the order of their gauges along the bar, which must not all be at one place.
+std::vector<std::size_t> along_the_bar(const Bench& bench) {
+  std::vector<std::size_t> order(bench.gauges.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return bench.gauges[a].position_m < bench.gauges[b].position_m;
   });
-  const double rate_Hz = shot.rate.Hz();
-  const std::size_t first = records.channel.front();
-  const double foot = foot_in(readings_of(shot.channels[first]), rate_Hz, bench.gauges[first].name);
+  const double span =
+      bench.gauges[order.back()].position_m - bench.gauges[order.front()].position_m;
+  if (span < bench.input.diameter_m) {
+    throw InputError("gauges",
+                     "lie within " + in_words(span, "m") +
+                         " of each other, too near to show what "
+                         "the bar does to a wave",
+                     "put gauges at least a diameter of the bar apart, better ten");
+  }
+  return order;
+}
+
+std::size_t quiet_samples_before(double foot, double rate_Hz) {
   const auto quiet = static_cast<std::size_t>(std::max(0.0, foot - kFootClearance_s * rate_Hz));
   if (quiet < kFewestQuiet) {
     throw InputError(
         "samples", "are too few before the pulse: " + std::to_string(quiet),
         "record at least " + std::to_string(kFewestQuiet) + " quiet samples before it");
   }
+  return quiet;
+}
+
+void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readings,
+                  const FirstPulse& pulse, BarRecords& records) {
+  const Gauge& gauge = shot.bench.gauges[index];
+  const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
+  std::vector<double> strain(readings.size());
+  bridge.convert(readings, quiet_before(readings, records.quiet_samples).baseline, strain);
+  records.noise_rms.push_back(quiet_before(strain, records.quiet_samples).noise_rms);
+  records.rise_s.push_back(pulse.half * records.period_s);
+  records.position_m.push_back(gauge.position_m);
+  const auto rise = static_cast<std::size_t>(pulse.half);
+  const auto end =
+      std::min(strain.size(), rise + static_cast<std::size_t>(kReach_s / records.period_s));
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  records.peak.push_back(
+      std::abs(*std::max_element(strain.begin() + static_cast<std::ptrdiff_t>(rise),
+                                 strain.begin() + static_cast<std::ptrdiff_t>(end), larger)));
+  records.step.push_back(std::abs(bridge.sensitivity() * shot.channels[index].scale));
+  records.strain.push_back(std::move(strain));
+}
+
+}  // namespace
+
+BarRecords read_bar_records(const Shot& shot) {
+  require_bar(shot);
+  BarRecords records;
+  records.period_s = shot.rate.period_s();
+  records.channel = along_the_bar(shot.bench);
+  const double rate_Hz = shot.rate.Hz();
+  std::vector<std::vector<double>> readings;
+  std::vector<FirstPulse> pulses;
   for (const std::size_t index : records.channel) {
-    const Gauge& gauge = bench.gauges[index];
-    const BridgeConversion bridge(gauge, bench.bar_of(gauge), bench.positive);
-    const std::vector<double> readings = readings_of(shot.channels[index]);
-    std::vector<double> strain(readings.size());
-    bridge.convert(readings, quiet_before(readings, quiet).baseline, strain);
-    records.noise_rms.push_back(quiet_before(strain, quiet).noise_rms);
-    records.position_m.push_back(gauge.position_m);
-    records.strain.push_back(std::move(strain));
+    readings.push_back(readings_of(shot.channels[index]));
+    pulses.push_back(first_pulse(readings.back(), rate_Hz, shot.bench.gauges[index].name));
   }
-  records.quiet_samples = quiet;
-  records.foot_s = foot * records.period_s;
+  records.quiet_samples = quiet_samples_before(pulses.front().foot, rate_Hz);
+  records.foot_s = pulses.front().foot * records.period_s;
+  for (std::size_t j = 0; j < readings.size(); ++j) {
+    append_gauge(shot, records.channel[j], std::move(readings[j]), pulses[j], records);
+  }
   return records;
 }
 

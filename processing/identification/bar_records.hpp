@@ -12,15 +12,17 @@ struct BarRecords {
   std::vector<std::vector<double>>
       strain;                        ///< compression positive, less the baseline before the pulse
   std::vector<double> noise_rms;     ///< of each gauge, before the pulse
+  std::vector<double> step;          ///< of strain from code to code
+  std::vector<double> rise_s;        ///< when the first pulse passes half of its peak
+  std::vector<double> peak;          ///< of the first pulse
   std::vector<std::size_t> channel;  ///< each one's place in the bench's list of gauges
   std::size_t quiet_samples = 0;     ///< before the pulse
   double foot_s = 0.0;               ///< of the pulse at the first gauge, from the first sample
   double period_s = 0.0;
 };
 
-/// @throws InputError where the shot cannot serve: another kind of bench, fewer than two gauges, a
-/// hole, clipped codes,
-///         no pulse, no quiet samples before it
+/// @throws InputError where the shot cannot serve: another kind of bench, fewer than two gauges or
+///   all at one place, a hole, clipped codes, no pulse, no quiet samples before it
 [[nodiscard]] BarRecords read_bar_records(const Shot& shot);
 
 }  // namespace kolsky

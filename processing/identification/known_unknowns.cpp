@@ -42,6 +42,12 @@ std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& r
   if (bench.input.density_kg_m3.sd > 0.0) {
     list.push_back({"density", Of::density, 0, relative_sd(bench.input.density_kg_m3)});
   }
+  if (bench.input.diameter_m.sd > 0.0) {
+    list.push_back({"diameter", Of::diameter, 0, relative_sd(bench.input.diameter_m)});
+  }
+  if (bench.input.poisson_ratio.sd > 0.0) {
+    list.push_back({"poisson-ratio", Of::poisson_ratio, 0, relative_sd(bench.input.poisson_ratio)});
+  }
   return list;
 }
 
@@ -63,6 +69,15 @@ MovedBench::MovedBench(const Bar& filed, const BarRecords& records,
         break;
       case KnownUnknown::Of::density:
         bar.density_kg_m3.value *= 1.0 + move;
+        break;
+      case KnownUnknown::Of::diameter:
+        bar.diameter_m.value *= 1.0 + move;
+        if (bar.side_m) {
+          bar.side_m->value *= 1.0 + move;
+        }
+        break;
+      case KnownUnknown::Of::poisson_ratio:
+        bar.poisson_ratio.value *= 1.0 + move;
         break;
     }
   }

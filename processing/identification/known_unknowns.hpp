@@ -11,11 +11,11 @@ namespace kolsky {
 /// A filed number of the bench with a standard deviation: it may be off by about that much, and a
 /// fit may move it.
 struct KnownUnknown {
-  enum class Of { gain, position, length, density };
+  enum class Of { gain, position, length, density, diameter, poisson_ratio };
   std::string name;  ///< as the effect that would name it: "gauge-position:g3"
   Of of = Of::gain;
   std::size_t gauge = 0;  ///< for gain and position: its place in BarRecords
-  double sd = 0.0;        ///< relative for gain and density, metres for position and length
+  double sd = 0.0;        ///< metres for position and length, else relative
 };
 
 /// Those of a bench of kind "bar". Gains combine gauge factor, excitation and amplifier.

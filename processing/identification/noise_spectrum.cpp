@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "processing/waves/transform.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -36,14 +38,162 @@ std::vector<double> autocovariances(const std::vector<std::span<const double>>& 
   return covariance;
 }
 
+constexpr std::size_t kFewestForSpectrum = 32;
+constexpr std::size_t kMostSlowParts = 4;
+constexpr int kRounds = 40;
+/// What a part with its two numbers must add to the log likelihood.
+constexpr double kWorthAPart = 3.0;
+/// What the autoregressive model must be ahead: what slow noise does in a record of some length
+/// follows from the other one alone.
+constexpr double kClearlyAhead = 12.0;
+
+/// Power per sample, over its variance, that first-order noise shows in a stretch: its spectrum
+/// through the window's (Fejer's) kernel. @param samples  0: without the window
+double slow_power(double keep, double cycles, double n) {
+  const std::complex<double> z = keep * std::polar(1.0, -2.0 * std::numbers::pi * cycles);
+  std::complex<double> sum = 1.0 / (1.0 - z);
+  if (n > 0.0) {
+    sum -= z * (1.0 - std::pow(z, n)) / (n * (1.0 - z) * (1.0 - z));
+  }
+  return 2.0 * sum.real() - 1.0;
+}
+
+/// Mean power of the stretches' last `samples` at the transform's bins but that at zero.
+struct Periodogram {
+  std::size_t samples = 0;
+  double stretches = 0.0;
+  std::vector<double> cycles;
+  std::vector<double> power;
+
+  explicit Periodogram(const std::vector<std::span<const double>>& quiet) {
+    std::size_t shortest = SIZE_MAX;
+    for (const auto& stretch : quiet) {
+      if (!stretch.empty()) {
+        shortest = std::min(shortest, stretch.size());
+        stretches += 1.0;
+      }
+    }
+    if (stretches == 0.0 || shortest < kFewestForSpectrum) {
+      return;
+    }
+    samples = shortest / 2 * 2;
+    while (good_transform_length(samples) != samples) {
+      samples -= 2;
+    }
+    DampedTransform transform(samples, 1.0, 1.0);
+    std::vector<Complex> spectrum(transform.bins());
+    cycles.resize(transform.bins() - 2);
+    power.assign(cycles.size(), 0.0);
+    for (const auto& stretch : quiet) {
+      if (stretch.empty()) {
+        continue;
+      }
+      transform.forward(stretch.last(samples), spectrum);
+      for (std::size_t k = 0; k < power.size(); ++k) {
+        power[k] += std::norm(spectrum[k + 1]) / (static_cast<double>(samples) * stretches);
+      }
+    }
+    for (std::size_t k = 0; k < cycles.size(); ++k) {
+      cycles[k] = static_cast<double>(k + 1) / static_cast<double>(samples);
+    }
+  }
+
+  /// Whittle's log likelihood of a model's powers.
+  [[nodiscard]] double log_likelihood(const std::vector<double>& model) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < power.size(); ++k) {
+      sum -= std::log(model[k]) + power[k] / model[k];
+    }
+    return stretches * sum;
+  }
+};
+
 }  // namespace
 
-NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) {
+/// A sum of parts with positive weights, fitted to a periodogram.
+class NoiseSpectrum::Fit {
+ public:
+  explicit Fit(const Periodogram& data) : data_(&data) {
+    parts_.push_back(std::vector<double>(data.power.size(), 1.0));
+    const double mean = std::accumulate(data.power.begin(), data.power.end(), 0.0) /
+                        static_cast<double>(data.power.size());
+    weights_ = {mean};
+    refine();
+  }
+
+  void add(double keep) {
+    std::vector<double> part(data_->cycles.size());
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      part[k] = slow_power(keep, data_->cycles[k], static_cast<double>(data_->samples));
+    }
+    const double share = 0.3 * weights_[0] * static_cast<double>(part.size()) /
+                         std::accumulate(part.begin(), part.end(), 0.0);
+    weights_.push_back(share);
+    parts_.push_back(std::move(part));
+    keeps_.push_back(keep);
+    refine();
+  }
+
+  [[nodiscard]] double log_likelihood() const { return data_->log_likelihood(sum()); }
+  [[nodiscard]] double white() const { return weights_[0]; }
+  [[nodiscard]] std::vector<SlowPart> slow() const {
+    std::vector<SlowPart> list;
+    for (std::size_t i = 0; i < keeps_.size(); ++i) {
+      list.push_back({weights_[i + 1], keeps_[i]});
+    }
+    return list;
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> sum() const {
+    std::vector<double> total(data_->power.size(), 0.0);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      for (std::size_t k = 0; k < total.size(); ++k) {
+        total[k] += weights_[i] * parts_[i][k];
+      }
+    }
+    return total;
+  }
+
+  /// Steps that multiply the weights, keep them positive and never lower the likelihood.
+  void refine() {
+    for (int round = 0; round < kRounds; ++round) {
+      const std::vector<double> total = sum();
+      for (std::size_t i = 0; i < parts_.size(); ++i) {
+        double up = 0.0;
+        double down = 0.0;
+        for (std::size_t k = 0; k < total.size(); ++k) {
+          const double share = parts_[i][k] / total[k];
+          up += share * data_->power[k] / total[k];
+          down += share;
+        }
+        weights_[i] *= std::sqrt(up / down);
+      }
+    }
+  }
+
+  const Periodogram* data_;
+  std::vector<std::vector<double>> parts_;
+  std::vector<double> weights_;  ///< of white noise first
+  std::vector<double> keeps_;
+};
+
+double NoiseSpectrum::Autoregression::power(double cycles_per_sample) const {
+  std::complex<double> denominator = 1.0;
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const double phase = -2.0 * std::numbers::pi * cycles_per_sample * static_cast<double>(i + 1);
+    denominator += coefficients[i] * std::polar(1.0, phase);
+  }
+  return innovation / std::norm(denominator);
+}
+
+NoiseSpectrum::Autoregression NoiseSpectrum::autoregression(
+    const std::vector<std::span<const double>>& quiet) {
   std::size_t samples = 0;
   const std::vector<double> r = autocovariances(quiet, samples);
-  innovation_ = r[0];
+  Autoregression chosen{r[0], {}};
   if (r[0] <= 0.0) {
-    return;
+    return chosen;
   }
   // Levinson's recursion; of its orders the one with the smallest criterion is kept.
   std::vector<double> a;
@@ -67,19 +217,95 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
                                  static_cast<double>(order);
     if (criterion < best) {
       best = criterion;
-      innovation_ = error;
-      coefficients_ = a;
+      chosen = {error, a};
     }
+  }
+  return chosen;
+}
+
+NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) {
+  const Autoregression shaped = autoregression(quiet);
+  const Periodogram data(quiet);
+  if (data.power.empty() || shaped.innovation <= 0.0) {
+    shaped_ = shaped;
+    return;
+  }
+  Fit best(data);
+  double likelihood = best.log_likelihood();
+  for (std::size_t parts = 0; parts < kMostSlowParts; ++parts) {
+    Fit next = best;
+    double highest = -1e300;
+    double likely = 1.0;
+    const auto look = [&](double time) {
+      Fit with = best;
+      with.add(std::exp(-1.0 / time));
+      if (const double its = with.log_likelihood(); its > highest) {
+        highest = its;
+        likely = time;
+        next = with;
+      }
+    };
+    for (double time = 1.0; time < 4.0 * static_cast<double>(data.samples); time *= 2.0) {
+      look(time);
+    }
+    for (const double factor : {std::numbers::sqrt2, std::sqrt(std::numbers::sqrt2)}) {
+      const double centre = likely;
+      look(centre * factor);
+      look(centre / factor);
+    }
+    if (highest < likelihood + kWorthAPart) {
+      break;
+    }
+    likelihood = highest;
+    best = next;
+  }
+  white_ = best.white();
+  slow_ = best.slow();
+  std::vector<double> powers(data.cycles.size());
+  std::transform(data.cycles.begin(), data.cycles.end(), powers.begin(),
+                 [&](double cycles) { return shaped.power(cycles); });
+  const double own = likelihood - 2.0 * static_cast<double>(slow_.size());
+  const double others =
+      data.log_likelihood(powers) - static_cast<double>(shaped.coefficients.size());
+  if (others > own + kClearlyAhead) {
+    shaped_ = shaped;
+    slow_.clear();
   }
 }
 
 double NoiseSpectrum::power(double cycles_per_sample) const {
-  std::complex<double> denominator = 1.0;
-  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
-    const double phase = -2.0 * std::numbers::pi * cycles_per_sample * static_cast<double>(i + 1);
-    denominator += coefficients_[i] * std::polar(1.0, phase);
+  if (shaped_.innovation > 0.0) {
+    return shaped_.power(cycles_per_sample);
   }
-  return innovation_ / std::norm(denominator);
+  double total = white_;
+  for (const SlowPart& part : slow_) {
+    total += part.power(cycles_per_sample);
+  }
+  return total;
+}
+
+double NoiseSpectrum::SlowPart::power(double cycles_per_sample) const {
+  return variance * slow_power(keep, cycles_per_sample, 0.0);
+}
+
+double NoiseSpectrum::SlowPart::variance_of_mean(double samples) const {
+  return variance * slow_power(keep, 0.0, samples) / samples;
+}
+
+double NoiseSpectrum::variance_of_mean(std::size_t samples) const {
+  const auto count = static_cast<double>(samples);
+  if (shaped_.innovation > 0.0) {
+    return shaped_.power(0.0) / count;
+  }
+  double total = white_ / count;
+  for (const SlowPart& part : slow_) {
+    total += part.variance_of_mean(count);
+  }
+  return total;
+}
+
+std::size_t NoiseSpectrum::order() const {
+  return shaped_.innovation > 0.0 ? shaped_.coefficients.size() : 2 * slow_.size();
 }
 
 }  // namespace kolsky

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
 namespace kolsky {
 
-/// Power of a gauge's noise over frequency, from quiet stretches of its records: an autoregressive
-/// model whose order is chosen by Schwarz's criterion (Akaike's takes white noise for coloured too often), because a few hundred samples are too few for
-/// an averaged periodogram at the frequencies where the pulses live. White noise comes out with
-/// order 0.
+/// Power of a gauge's noise over frequency, from quiet stretches of its records, which are short:
+/// a few hundred samples, in which slow noise shows hardly at all but does as much harm as it can.
+/// Two families of models compete by Whittle's likelihood and Akaike's criterion,
+///   white noise and parts with first-order correlation, times from a sample to several stretches;
+///   an autoregressive model (noise that is shaped at high frequencies),
+/// each as simple as the data allow: white noise comes out as white. A stretch's own mean is
+/// unknown and its ends leak: the first family is compared as a stretch of that length shows it.
 class NoiseSpectrum {
  public:
   /// @param quiet  stretches of one gauge, each taken about its own mean; empty ones are passed
@@ -18,11 +22,35 @@ class NoiseSpectrum {
   /// Power per sample at a frequency in cycles per sample: for white noise its variance.
   [[nodiscard]] double power(double cycles_per_sample) const;
 
-  [[nodiscard]] std::size_t order() const { return coefficients_.size(); }
+  /// First-order noise: neighbouring samples are correlated by `keep`.
+  struct SlowPart {
+    double variance = 0.0;
+    double keep = 0.0;
+    [[nodiscard]] double power(double cycles_per_sample) const;
+    [[nodiscard]] double variance_of_mean(double samples) const;
+  };
+  /// The parts that are not white. None of a model that is shaped otherwise.
+  [[nodiscard]] const std::vector<SlowPart>& slow_parts() const { return slow_; }
+
+  /// Variance of the mean of so many neighbouring samples.
+  [[nodiscard]] double variance_of_mean(std::size_t samples) const;
+
+  /// Numbers beyond the white noise's variance that the model has.
+  [[nodiscard]] std::size_t order() const;
 
  private:
-  double innovation_ = 0.0;           ///< variance of what drives the model
-  std::vector<double> coefficients_;  ///< x[n] + sum a[i] x[n-1-i] = innovation
+  struct Autoregression {
+    double innovation = 0.0;           ///< variance of what drives the model
+    std::vector<double> coefficients;  ///< x[n] + sum a[i] x[n-1-i] = innovation
+    [[nodiscard]] double power(double cycles_per_sample) const;
+  };
+  class Fit;
+
+  static Autoregression autoregression(const std::vector<std::span<const double>>& quiet);
+
+  double white_ = 0.0;
+  std::vector<SlowPart> slow_;
+  Autoregression shaped_;  ///< in force where its innovation is above zero
 };
 
 }  // namespace kolsky

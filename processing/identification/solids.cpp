@@ -57,14 +57,13 @@ constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"}
 }  // namespace
 
 const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
-  static const std::vector<SolidParameter> three = {
-      {"E1_Pa", 5e9}, {"E2_Pa", 30e9}, {"eta2_Pa_s", 1.5e6}};
+  static const std::vector<SolidParameter> three = {{"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}};
   static const std::vector<SolidParameter> four = {
-      {"E1_Pa", 5e9}, {"eta2_Pa_s", 100e6}, {"E3_Pa", 30e9}, {"eta3_Pa_s", 1.5e6}};
+      {"E1_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
   static const std::vector<SolidParameter> kelvin = {
-      {"E1_Pa", 5e9}, {"E2_Pa", 40e9}, {"eta2_Pa_s", 1.0e6}, {"E3_Pa", 100e9}, {"eta3_Pa_s", 20e6}};
+      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
   static const std::vector<SolidParameter> fractional = {
-      {"E1_Pa", 5e9}, {"E2_Pa", 30e9}, {"eta2_Pa_s", 1.5e6}, {"beta", 0.9}};
+      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"beta"}};
   switch (kind) {
     case SolidKind::three_element:
       return three;

@@ -21,7 +21,6 @@ enum class SolidKind {
 /// One parameter of a family.
 struct SolidParameter {
   std::string name;  ///< with its unit, as in a material file: "E1_Pa"
-  double start;      ///< where a search may begin, for a glassy polymer
 };
 
 [[nodiscard]] const std::vector<SolidParameter>& parameters_of(SolidKind kind);

@@ -40,25 +40,54 @@ double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
   }
   pulse_transform_.forward(pulse, pulse_spectrum_);
   const double bin_Hz = pulse_transform_.bin_width_Hz();
-  const double threshold = kPowerOverNoise * noise_rms * noise_rms *
-                           static_cast<double>(pulse.size()) * static_cast<double>(kBins);
   const auto top =
       std::min(static_cast<std::size_t>(highest_Hz / bin_Hz), pulse_spectrum_.size() - 1);
   if (top <= kBins) {
     return highest_Hz;
   }
-  std::size_t low = top - kBins;
+  const double quiet = noise_rms * noise_rms * static_cast<double>(pulse.size());
+  const double threshold =
+      kPowerOverNoise * std::max(quiet, floor_below(top)) * static_cast<double>(kBins);
+  // Upwards from the pulse: what hums far above it is no part of it.
+  std::size_t low = 0;
   double power = 0.0;
-  for (std::size_t k = low; k < top; ++k) {
+  for (std::size_t k = 0; k < kBins; ++k) {
     power += std::norm(pulse_spectrum_[k]);
   }
-  while (power < threshold && low > 0) {
-    --low;
-    power += std::norm(pulse_spectrum_[low]) - std::norm(pulse_spectrum_[low + kBins]);
+  while (power >= threshold && low + kBins < top) {
+    power += std::norm(pulse_spectrum_[low + kBins]) - std::norm(pulse_spectrum_[low]);
+    ++low;
   }
   const double limit_Hz = (static_cast<double>(low) + kBins / 2.0) * bin_Hz;
   const double steps = std::ceil(kStepsPerOctave * std::log2(highest_Hz / limit_Hz));
   return highest_Hz * std::exp2(-std::max(0.0, steps) / kStepsPerOctave);
+}
+
+/// Power per bin in the highest octave, of what is noise there: the median, which a few lines do
+/// not move.
+double BandLimit::floor_below(std::size_t top) {
+  floor_.clear();
+  for (std::size_t k = top / 2; k < top; ++k) {
+    floor_.push_back(std::norm(pulse_spectrum_[k]));
+  }
+  const auto middle = floor_.begin() + static_cast<std::ptrdiff_t>(floor_.size() / 2);
+  std::nth_element(floor_.begin(), middle, floor_.end());
+  return *middle / std::numbers::ln2;  // noise's power is exponentially distributed
+}
+
+double BandLimit::loss(std::span<const double> pulse, double noise_rms, double limit_Hz) {
+  pulse_transform_.forward(pulse, pulse_spectrum_);
+  const double noise = noise_rms * noise_rms * static_cast<double>(pulse.size());
+  const double wc = corner_per_s(limit_Hz);
+  double all = 0.0;
+  double taken = 0.0;
+  for (std::size_t k = 0; k < pulse_spectrum_.size(); ++k) {
+    const double energy = std::norm(pulse_spectrum_[k]) - noise;
+    const double kept = std::exp(-std::pow(pulse_transform_.s(k).imag() / wc, 4));
+    all += energy;
+    taken += energy * (1.0 - kept * kept);
+  }
+  return all > 0.0 ? std::clamp(taken / all, 0.0, 1.0) : 0.0;
 }
 
 const std::vector<Complex>& BandLimit::filter(double limit_Hz) {

@@ -20,12 +20,17 @@ class BandLimit {
   /// @param pulse_samples  longest pulse that is judged
   BandLimit(const DampedTransform& transform, std::size_t pulse_samples);
 
-  /// The highest frequency [Hz] at which the pulse's power, averaged over neighbouring bins, is
+  /// The frequency [Hz] up to which the pulse's power, averaged over neighbouring bins, is above
   /// twice that of white noise, so that pulse and noise are alike; at most a fifth of the
-  /// sampling rate. Of a noiseless pulse: that fifth.
+  /// sampling rate. Of a noiseless pulse: that fifth. The noise is that before the pulse, or what
+  /// the octave below that fifth holds, if that is more: a converter of few bits makes none while
+  /// nothing moves.
   /// @param pulse      the samples that hold it, and little else; no more than `pulse_samples`
   /// @param noise_rms  of its samples
   [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms);
+
+  /// Share of a pulse's energy, less that of its noise, that the filter with this limit takes off.
+  [[nodiscard]] double loss(std::span<const double> pulse, double noise_rms, double limit_Hz);
 
   /// Multiplies a spectrum by the square root of the filter with this limit: a wave that is cut in
   /// time between two steps is filtered before and after, others twice.
@@ -38,12 +43,14 @@ class BandLimit {
   [[nodiscard]] static double smear_s(double limit_Hz);
 
  private:
+  [[nodiscard]] double floor_below(std::size_t top);
   const std::vector<Complex>& filter(double limit_Hz);
 
   std::vector<Complex> s_;
   double sampling_frequency_Hz_;
   DampedTransform pulse_transform_;
   std::vector<Complex> pulse_spectrum_;
+  std::vector<double> floor_;
   std::map<double, std::vector<Complex>> filters_;
 };
 

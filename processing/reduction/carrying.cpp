@@ -1,5 +1,7 @@
 #include "processing/reduction/carrying.hpp"
 
+#include <algorithm>
+
 namespace kolsky {
 
 namespace {
@@ -25,32 +27,33 @@ struct Stretches {
   }
 };
 
-void multiply(const std::vector<Complex>& kernel, const std::vector<Complex>& in,
+void multiply(const std::vector<Complex>& kernel, const std::vector<Complex>& in, std::size_t bins,
               std::vector<Complex>& out) {
-  for (std::size_t k = 0; k < out.size(); ++k) {
+  for (std::size_t k = 0; k < bins; ++k) {
     out[k] = kernel[k] * in[k];
   }
+  std::fill(out.begin() + static_cast<std::ptrdiff_t>(bins), out.end(), 0.0);
 }
 
 void multiply_add(const std::vector<Complex>& kernel, const std::vector<Complex>& in,
-                  std::vector<Complex>& out) {
-  for (std::size_t k = 0; k < out.size(); ++k) {
+                  std::size_t bins, std::vector<Complex>& out) {
+  for (std::size_t k = 0; k < bins; ++k) {
     out[k] += kernel[k] * in[k];
   }
 }
 
 }  // namespace
 
-CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWaves& input,
+CarryingKernels::CarryingKernels(std::span<const Complex> path, const BarWaves& input,
                                  const BarWaves& output, double specimen_length_m, double delay_s) {
-  const std::size_t bins = transform.bins();
+  const std::size_t bins = path.size();
   for (auto* kernel : {&to_impact_, &from_impact_, &force_of_incident_, &force_of_rest_,
                        &force_of_output_, &rate_of_incident_, &rate_of_rest_, &rate_of_output_,
                        &right_of_incident_, &right_of_rest_, &left_of_rest_, &right_of_output_}) {
     kernel->resize(bins);
   }
   for (std::size_t k = 0; k < bins; ++k) {
-    const Complex s = transform.s(k);
+    const Complex s = path[k];
     const Stretches a(input, input.modes[k], s);
     const Complex right_rest = -a.round_trip * a.separation * a.to_specimen;
     const Complex left_rest = a.separation / a.to_specimen;
@@ -82,40 +85,45 @@ CarryingKernels::CarryingKernels(const DampedTransform& transform, const BarWave
   }
 }
 
-void CarryingKernels::push_from_incident(std::vector<Complex>& wave) const {
-  multiply(to_impact_, wave, wave);
+void CarryingKernels::push_from_incident(std::vector<Complex>& wave, std::size_t bins) const {
+  multiply(to_impact_, wave, bins, wave);
 }
 
-void CarryingKernels::incident_from_push(std::vector<Complex>& wave) const {
-  multiply(from_impact_, wave, wave);
+void CarryingKernels::incident_from_push(std::vector<Complex>& wave, std::size_t bins) const {
+  multiply(from_impact_, wave, bins, wave);
 }
 
 void CarryingKernels::force_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(force_of_incident_, in.incident, out);
-  multiply_add(force_of_rest_, in.rest, out);
+  multiply(force_of_incident_, in.incident, in.bins, out);
+  multiply_add(force_of_rest_, in.rest, in.bins, out);
 }
 
 void CarryingKernels::force_back(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(force_of_output_, in.output, out);
+  multiply(force_of_output_, in.output, in.bins, out);
 }
 
 void CarryingKernels::strain_rate(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(rate_of_incident_, in.incident, out);
-  multiply_add(rate_of_rest_, in.rest, out);
-  multiply_add(rate_of_output_, in.output, out);
+  multiply(rate_of_incident_, in.incident, in.bins, out);
+  multiply_add(rate_of_rest_, in.rest, in.bins, out);
+  multiply_add(rate_of_output_, in.output, in.bins, out);
+}
+
+void CarryingKernels::rate_of_front(const Inputs& in, std::vector<Complex>& out) const {
+  multiply(rate_of_incident_, in.incident, in.bins, out);
+  multiply_add(rate_of_rest_, in.rest, in.bins, out);
 }
 
 void CarryingKernels::right_going_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(right_of_incident_, in.incident, out);
-  multiply_add(right_of_rest_, in.rest, out);
+  multiply(right_of_incident_, in.incident, in.bins, out);
+  multiply_add(right_of_rest_, in.rest, in.bins, out);
 }
 
 void CarryingKernels::left_going_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(left_of_rest_, in.rest, out);
+  multiply(left_of_rest_, in.rest, in.bins, out);
 }
 
 void CarryingKernels::right_going_back(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(right_of_output_, in.output, out);
+  multiply(right_of_output_, in.output, in.bins, out);
 }
 
 }  // namespace kolsky

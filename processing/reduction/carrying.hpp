@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "processing/base/shot.hpp"
@@ -38,29 +39,37 @@ struct BarWaves {
 /// first passages these are the paper's eqs (10) to (18) with their errata, bars unequal or not.
 class CarryingKernels {
  public:
+  CarryingKernels() = default;
+
+  /// @param path     the first places of a damped transform, as many as the bars' modes
   /// @param delay_s  by which every history comes out late; at least the longer of both fronts'
-  /// travel from gauge to
-  ///                 specimen, so that carrying back looks into no future and nothing wraps round
-  ///                 the record's start
-  CarryingKernels(const DampedTransform& transform, const BarWaves& input, const BarWaves& output,
+  ///   travel from gauge to specimen, so that carrying back looks into no future and nothing wraps
+  ///   round the record's start
+  CarryingKernels(std::span<const Complex> path, const BarWaves& input, const BarWaves& output,
                   double specimen_length_m, double delay_s);
 
+  [[nodiscard]] std::size_t bins() const { return to_impact_.size(); }
+
   /// Spectra of the histories, from those of the incident pulse I, the rest D of the input gauge,
-  /// and the output gauge E2. One Complex per bin each.
+  /// and the output gauge E2. One Complex per bin each; the kernels work on the first `bins` and
+  /// leave the rest, where the band limit has left nothing, at zero. @pre bins <= bins()
   struct Inputs {
     const std::vector<Complex>& incident;
     const std::vector<Complex>& rest;
     const std::vector<Complex>& output;
+    std::size_t bins;
   };
   /// The incident wave at the input gauge as the stress [Pa] of the striker's push, late by a
   /// front's travel from the impacted end to the gauge; and back. It is the stress that ends with
   /// the push: the strain of a viscoelastic end goes on recovering.
-  void push_from_incident(std::vector<Complex>& wave) const;
-  void incident_from_push(std::vector<Complex>& wave) const;
+  void push_from_incident(std::vector<Complex>& wave, std::size_t bins) const;
+  void incident_from_push(std::vector<Complex>& wave, std::size_t bins) const;
 
   void force_front(const Inputs& in, std::vector<Complex>& out) const;
   void force_back(const Inputs& in, std::vector<Complex>& out) const;
   void strain_rate(const Inputs& in, std::vector<Complex>& out) const;
+  /// Particle velocity of the input bar's end over the specimen's length.
+  void rate_of_front(const Inputs& in, std::vector<Complex>& out) const;
   void right_going_front(const Inputs& in, std::vector<Complex>& out) const;
   void left_going_front(const Inputs& in, std::vector<Complex>& out) const;
   void right_going_back(const Inputs& in, std::vector<Complex>& out) const;

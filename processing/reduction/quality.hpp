@@ -2,11 +2,16 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "processing/base/shot.hpp"
 #include "processing/reduction/reduction.hpp"
 
 namespace kolsky {
+
+/// Largest rms(front - back) over the mean force: rubber under a 170 us pulse has 4.5 to 5 % at
+/// 4 mm and 9 to 11 % at 6 mm; 7 % separates the paper's two findings.
+inline constexpr double kEquilibriumLimit = 0.07;
 
 /// Why a shot's samples cannot be reduced, whatever the bench: a gap in its window or clipped
 /// codes. Empty when they can.
@@ -24,12 +29,17 @@ struct QualityInputs {
   double returns_from_s = 0.0;
   bool may_shorten = true;        ///< nobody asked for a duration
   std::size_t quiet_samples = 0;  ///< before the pulse
+  /// Velocity of the front face over the specimen's length, as long as the histories.
+  std::vector<double> front_rate_per_s;
+  double specimen_length_m = 0.0;
+  double specimen_mass_kg = 0.0;  ///< 0 where its density is not filed
+  double band_loss = 0.0;         ///< share of the incident pulse's energy that the band limit took
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the
-/// lag between front and back, and whether the waves that come back from the far ends do so as the
-/// bench says. Where they do not, the histories are cut where those waves begin. Limits and their
-/// reasons: docs/quality.md.
+/// lag between front and back, energy, the band, and whether the waves that come back from the far
+/// ends do so as the bench says. Where they do not, the histories are cut where those waves begin.
+/// Limits and their reasons: docs/quality.md.
 void judge(const QualityInputs& inputs, Reduction& reduction);
 
 }  // namespace kolsky

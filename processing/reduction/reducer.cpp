@@ -51,30 +51,29 @@ std::string describe(const Bench& bench, const Material& viscoelastic, bool assu
   return text;
 }
 
-/// What decides the tables: two shots that agree in it are reduced with the same ones.
-struct TableKey {
-  std::size_t samples;
-  SampleRate rate;
-  std::string bench_toml;
-  WaveTheory theory;
-  std::vector<double> numbers;
-  bool operator==(const TableKey&) const = default;
-};
-
-TableKey key_of(const Shot& shot, const Material& m, WaveTheory theory, const Station& in,
-                const Station& out) {
-  const Bench& b = shot.bench;
-  return {shot.samples(),
-          shot.rate,
-          shot.bench_toml,
-          theory,
-          {m.E1_Pa, m.E2_Pa, m.eta2_Pa_s, b.input.area_m2(), b.input.density_kg_m3,
-           b.input.youngs_modulus_Pa.value_or(Measured{}), b.input.poisson_ratio,
-           b.input.dispersion_radius_m(), b.output->poisson_ratio, b.output->dispersion_radius_m(),
-           b.output->area_m2(), b.output->density_kg_m3,
-           b.output->youngs_modulus_Pa.value_or(Measured{}), in.gauge_to_specimen_m,
-           in.gauge_to_far_end_m, out.gauge_to_specimen_m, out.gauge_to_far_end_m,
-           static_cast<double>(b.output->far_end), b.specimen->length_m}};
+/// What decides the kernels: two shots that agree in it are reduced with the same ones.
+std::vector<double> numbers_of(const Bench& b, const Material& m, WaveTheory theory,
+                               const Station& in, const Station& out) {
+  return {static_cast<double>(theory),
+          m.E1_Pa,
+          m.E2_Pa,
+          m.eta2_Pa_s,
+          b.input.area_m2(),
+          b.input.density_kg_m3,
+          b.input.youngs_modulus_Pa.value_or(Measured{}),
+          b.input.poisson_ratio,
+          b.input.dispersion_radius_m(),
+          b.output->poisson_ratio,
+          b.output->dispersion_radius_m(),
+          b.output->area_m2(),
+          b.output->density_kg_m3,
+          b.output->youngs_modulus_Pa.value_or(Measured{}),
+          in.gauge_to_specimen_m,
+          in.gauge_to_far_end_m,
+          out.gauge_to_specimen_m,
+          out.gauge_to_far_end_m,
+          static_cast<double>(b.output->far_end),
+          b.specimen->length_m};
 }
 
 /// Seconds a front needs over a distance.
@@ -95,50 +94,101 @@ std::size_t longest_travel(const Shot& shot, const BarModel& input, const BarMod
   return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
 }
 
-/// Plans, kernels and work space for shots of one bench and length.
-struct Tables {
-  TableKey key;
-  BarModel input;
-  BarModel output;
+/// Rounded up, so that benches that differ a little share their plans.
+std::size_t rounded_up(std::size_t samples) {
+  constexpr std::size_t kStep = 32;
+  return (samples + kStep - 1) / kStep * kStep;
+}
+
+/// What decides the plans.
+struct PlanKey {
+  std::size_t samples;
+  SampleRate rate;
   std::size_t delay;  ///< samples by which histories come out late, so that nothing looks ahead
-  double highest_Hz = 0.0;  ///< where surface gauges go blind
+  std::size_t longest_pulse;
+  bool operator==(const PlanKey&) const = default;
+};
+
+/// Plans and work space for shots of one length.
+struct Plans {
+  PlanKey key;
   DampedTransform transform;
   BandLimit band;
-  CarryingKernels kernels;
+  std::vector<Complex> path;
   std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
-  Tables(TableKey k, const Shot& shot, const Material& m, const Station& in, const Station& out)
-      : key(std::move(k)),
-        input(shot.bench.input, in, m),
-        output(*shot.bench.output, out, m),
-        delay(longest_travel(shot, input, output)),
-        transform(shot.samples() + delay, shot.rate.period_s()),
-        band(transform, longest_pulse(shot, input)),
-        kernels(make_kernels(shot)),
-        input_strain(shot.samples()),
-        output_strain(shot.samples()),
-        incident_strain(shot.samples()),
-        history(shot.samples() + delay),
-        scratch(shot.samples() + delay),
+  explicit Plans(const PlanKey& k)
+      : key(k),
+        transform(k.samples + k.delay, k.rate.period_s()),
+        band(transform, k.longest_pulse),
+        path(transform.bins()),
+        input_strain(k.samples),
+        output_strain(k.samples),
+        incident_strain(k.samples),
+        history(k.samples + k.delay),
+        scratch(k.samples + k.delay),
         incident(transform.bins()),
         rest(transform.bins()),
         output_spectrum(transform.bins()),
-        work(transform.bins()) {}
-
- private:
-  CarryingKernels make_kernels(const Shot& shot) {
-    const Bench& bench = shot.bench;
-    std::vector<Complex> path(transform.bins());
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      path[k] = transform.s(k);
+        work(transform.bins()) {
+    for (std::size_t n = 0; n < path.size(); ++n) {
+      path[n] = transform.s(n);
     }
-    input.waves.modes = bar_modes(key.theory, bench.input, *input.compliance, path);
-    output.waves.modes = bar_modes(key.theory, *bench.output, *output.compliance, path);
-    highest_Hz =
-        std::min(blind_from_Hz(input.waves.modes, path), blind_from_Hz(output.waves.modes, path));
-    const double delay_s = static_cast<double>(delay) * shot.rate.period_s();
-    return {transform, input.waves, output.waves, bench.specimen->length_m, delay_s};
+  }
+
+  /// Bins in which a filter with this limit leaves more than 1e-18.
+  [[nodiscard]] std::size_t bins_within(double limit_Hz) const {
+    constexpr double kNothingFrom = 2.8;
+    const auto bins =
+        static_cast<std::size_t>(kNothingFrom * limit_Hz / transform.bin_width_Hz()) + 2;
+    return std::min(bins, path.size());
+  }
+};
+
+/// The bars of one bench, with what carries their waves as far up in frequency as was asked for.
+struct Tables {
+  std::vector<double> numbers;
+  PlanKey plan;
+  WaveTheory theory;
+  Bar input_bar;
+  Bar output_bar;
+  double specimen_length_m;
+  BarModel input;
+  BarModel output;
+  CarryingKernels kernels;
+
+  Tables(std::vector<double> n, const PlanKey& p, WaveTheory t, const Bench& bench,
+         const Material& m, const Station& in, const Station& out)
+      : numbers(std::move(n)),
+        plan(p),
+        theory(t),
+        input_bar(bench.input),
+        output_bar(*bench.output),
+        specimen_length_m(bench.specimen->length_m),
+        input(bench.input, in, m),
+        output(*bench.output, out, m) {}
+
+  void reach(const Plans& plans, std::size_t bins) {
+    if (kernels.bins() >= bins) {
+      return;
+    }
+    const std::vector<Complex> path(plans.path.begin(),
+                                    plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
+    input.waves.modes = bar_modes(theory, input_bar, *input.compliance, path);
+    output.waves.modes = bar_modes(theory, output_bar, *output.compliance, path);
+    const double delay_s = static_cast<double>(plan.delay) * plan.rate.period_s();
+    kernels = CarryingKernels(path, input.waves, output.waves, specimen_length_m, delay_s);
+  }
+
+  /// Where surface gauges go blind, if within so many bins.
+  [[nodiscard]] double highest_Hz(const Plans& plans, std::size_t bins) const {
+    const auto first = [bins](const auto& list) {
+      return std::vector(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(bins));
+    };
+    const auto path = first(plans.path);
+    return std::min(blind_from_Hz(first(input.waves.modes), path),
+                    blind_from_Hz(first(output.waves.modes), path));
   }
 };
 
@@ -173,12 +223,13 @@ double largest(std::span<const double> values) {
 class Pass {
  public:
   Pass(const Shot& shot, const Station& in, const Station& out, const ReductionOptions& options,
-       Tables& tables)
+       Plans& plans, Tables& tables)
       : shot_(shot),
         in_(in),
         out_(out),
         options_(options),
-        t_(tables),
+        t_(plans),
+        bars_(tables),
         rate_Hz_(shot.rate.Hz()),
         period_s_(shot.rate.period_s()) {}
 
@@ -198,13 +249,14 @@ class Pass {
     }
     fill_histories();
     judge_quality();
+    set_stress(options_.stress, options_.corrections, *shot_.bench.specimen, reduction_);
     return std::move(reduction_);
   }
 
  private:
   bool find_incident() {
     const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
-    const double round_trip_s = 2.0 * front_time_s(t_.input, in_.gauge_to_specimen_m);
+    const double round_trip_s = 2.0 * front_time_s(bars_.input, in_.gauge_to_specimen_m);
     const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
     read_raw_station(shot_, in_, t_.input_strain);
     const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
@@ -249,9 +301,7 @@ class Pass {
               t_.incident_strain.end(), 0.0);
     t_.transform.forward(t_.incident_strain, t_.incident);
     const auto pulse = std::span<const double>(t_.incident_strain).subspan(quiet_, split_ - quiet_);
-    reduction_.band_limit_Hz =
-        options_.band_limit_Hz ? *options_.band_limit_Hz
-                               : std::min(t_.band.from_noise(pulse, input_noise_), t_.highest_Hz);
+    choose_band(pulse);
     t_.transform.forward(t_.input_strain, t_.rest);
     t_.transform.forward(t_.output_strain, t_.output_spectrum);
     for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
@@ -264,11 +314,28 @@ class Pass {
     }
   }
 
+  void choose_band(std::span<const double> pulse) {
+    double limit_Hz = options_.band_limit_Hz.value_or(0.0);
+    if (!options_.band_limit_Hz) {
+      limit_Hz = std::min(t_.band.from_noise(pulse, input_noise_),
+                          options_.most_band_Hz.value_or(limit_Hz_of_rate()));
+    }
+    bins_ = t_.bins_within(limit_Hz);
+    bars_.reach(t_, bins_);
+    if (!options_.band_limit_Hz) {
+      limit_Hz = std::min(limit_Hz, bars_.highest_Hz(t_, bins_));
+    }
+    reduction_.band_limit_Hz = limit_Hz;
+    band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);
+  }
+
+  double limit_Hz_of_rate() const { return rate_Hz_ / 2.0; }
+
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there.
   void complete_incident() {
     t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
-    t_.kernels.push_from_incident(t_.incident);
+    bars_.kernels.push_from_incident(t_.incident, bins_);
     t_.transform.inverse(t_.incident, t_.history);
     const double known =
         static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
@@ -276,7 +343,7 @@ class Pass {
     judge_push(end);
     std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
     t_.transform.forward(t_.history, t_.incident);
-    t_.kernels.incident_from_push(t_.incident);
+    bars_.kernels.incident_from_push(t_.incident, bins_);
     t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
   }
 
@@ -294,10 +361,10 @@ class Pass {
 
   /// t = 0: the foot of the incident pulse after it has been carried to interface A.
   void locate_arrival() {
-    t_.kernels.right_going_front(inputs(), t_.work);
+    bars_.kernels.right_going_front(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
-    const double travel = front_time_s(t_.input, in_.gauge_to_specimen_m) * rate_Hz_;
-    const double late = travel + static_cast<double>(t_.delay);
+    const double travel = front_time_s(bars_.input, in_.gauge_to_specimen_m) * rate_Hz_;
+    const double late = travel + static_cast<double>(t_.key.delay);
     const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
     const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
     for (std::size_t n = 0; n < end; ++n) {
@@ -312,7 +379,7 @@ class Pass {
     }
     const double noise = input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz);
     Foot foot = foot_of(pulse, half, *peak, noise);
-    foot.index -= static_cast<double>(t_.delay);
+    foot.index -= static_cast<double>(t_.key.delay);
     if (options_.arrival_s) {
       foot.index = gauge_foot_ + travel;
       foot.sigma = 0.0;
@@ -327,12 +394,14 @@ class Pass {
     const Bench& bench = shot_.bench;
     const double arrival = reduction_.arrival_s * rate_Hz_;
     first_ = static_cast<std::size_t>(std::ceil(arrival));
-    const double first_return_s = 2.0 * std::min(front_time_s(t_.input, bench.input.length_m),
+    const double first_return_s = 2.0 * std::min(front_time_s(bars_.input, bench.input.length_m),
                                                  far_end_time_s(bench.output->length_m));
     const double duration_s = options_.duration_s.value_or(first_return_s);
     const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
-    const double last = std::min(arrival + duration_s * rate_Hz_,
-                                 static_cast<double>(shot_.samples() - t_.delay) - smear);
+    const double last = std::min(
+        arrival + duration_s * rate_Hz_,
+        static_cast<double>(shot_.samples() - longest_travel(shot_, bars_.input, bars_.output)) -
+            smear);
     constexpr double kFewestSamples = 8.0;
     if (last < arrival + kFewestSamples) {
       return false;
@@ -344,25 +413,27 @@ class Pass {
   /// Seconds a front needs over a stretch of the output bar that ends at its far end, if anything
   /// comes back from there.
   double far_end_time_s(double distance_m) const {
-    return t_.output.waves.far_end == FarEnd::free ? front_time_s(t_.output, distance_m)
-                                                   : std::numeric_limits<double>::infinity();
+    return bars_.output.waves.far_end == FarEnd::free ? front_time_s(bars_.output, distance_m)
+                                                      : std::numeric_limits<double>::infinity();
   }
 
-  CarryingKernels::Inputs inputs() const { return {t_.incident, t_.rest, t_.output_spectrum}; }
+  CarryingKernels::Inputs inputs() const {
+    return {t_.incident, t_.rest, t_.output_spectrum, bins_};
+  }
 
   using Kernel = void (CarryingKernels::*)(const CarryingKernels::Inputs&,
                                            std::vector<Complex>&) const;
 
   /// The history behind a kernel, cut to the window.
   std::vector<double> history(Kernel kernel) {
-    (t_.kernels.*kernel)(inputs(), t_.work);
+    (bars_.kernels.*kernel)(inputs(), t_.work);
     t_.transform.inverse(t_.work, t_.history);
     return window();
   }
 
   /// What t_.history holds, within the window.
   std::vector<double> window() const {
-    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.delay);
+    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.key.delay);
     return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
   }
 
@@ -373,17 +444,15 @@ class Pass {
     reduction_.force_back_N = history(&CarryingKernels::force_back);
     reduction_.reflected = history(&CarryingKernels::left_going_front);
     reduction_.transmitted = history(&CarryingKernels::right_going_back);
+    front_rate_per_s_ = history(&CarryingKernels::rate_of_front);
     reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
 
-    const double half_area_m2 = 2.0 * shot_.bench.specimen->area_m2();
     reduction_.time_s.resize(count_);
     reduction_.stress_Pa.resize(count_);
     reduction_.strain.resize(count_);
     double strain = strain_before_window();
     for (std::size_t n = 0; n < count_; ++n) {
       reduction_.time_s[n] = static_cast<double>(first_ + n) * period_s_ - reduction_.arrival_s;
-      reduction_.stress_Pa[n] =
-          (reduction_.force_front_N[n] + reduction_.force_back_N[n]) / half_area_m2;
       reduction_.strain[n] = strain;
       if (n + 1 < count_) {
         strain += period_s_ *
@@ -398,7 +467,7 @@ class Pass {
     const double lead = 2.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const auto begin = static_cast<std::size_t>(std::max(0.0, static_cast<double>(first_) - lead));
     double strain = 0.0;
-    for (std::size_t n = begin + t_.delay; n < first_ + t_.delay; ++n) {
+    for (std::size_t n = begin + t_.key.delay; n < first_ + t_.key.delay; ++n) {
       strain += period_s_ * (t_.history[n] + t_.history[n + 1]) / 2.0;
     }
     return strain;
@@ -410,8 +479,8 @@ class Pass {
     q.input_peak = largest(incident);
     q.input_noise_rms = input_noise_;
     const auto travel =
-        static_cast<std::size_t>((front_time_s(t_.input, in_.gauge_to_specimen_m) +
-                                  front_time_s(t_.output, out_.gauge_to_specimen_m)) *
+        static_cast<std::size_t>((front_time_s(bars_.input, in_.gauge_to_specimen_m) +
+                                  front_time_s(bars_.output, out_.gauge_to_specimen_m)) *
                                  rate_Hz_);
     const std::size_t begin =
         std::min(static_cast<std::size_t>(gauge_foot_) + travel, shot_.samples());
@@ -419,10 +488,17 @@ class Pass {
     q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
     q.output_noise_rms = output_noise_;
     q.push_left_share = push_left_share_;
-    q.returns_from_s = 2.0 * std::min(front_time_s(t_.input, in_.gauge_to_far_end_m),
+    q.returns_from_s = 2.0 * std::min(front_time_s(bars_.input, in_.gauge_to_far_end_m),
                                       far_end_time_s(out_.gauge_to_far_end_m));
     q.may_shorten = !options_.duration_s;
     q.quiet_samples = quiet_;
+    const Specimen& specimen = *shot_.bench.specimen;
+    q.front_rate_per_s = front_rate_per_s_;
+    q.specimen_length_m = specimen.length_m;
+    if (specimen.density_kg_m3) {
+      q.specimen_mass_kg = *specimen.density_kg_m3 * specimen.area_m2() * specimen.length_m;
+    }
+    q.band_loss = band_loss_;
     reduction_.quality.reducible = true;
     judge(q, reduction_);
   }
@@ -431,12 +507,16 @@ class Pass {
   const Station& in_;
   const Station& out_;
   const ReductionOptions& options_;
-  Tables& t_;
+  Plans& t_;
+  Tables& bars_;
+  std::size_t bins_ = 0;  ///< within the band
   double rate_Hz_;
   double period_s_;
   double sense_ = 1.0;
   double gauge_foot_ = 0.0;
   double push_left_share_ = 0.0;
+  double band_loss_ = 0.0;
+  std::vector<double> front_rate_per_s_;
   double input_noise_ = 0.0;
   double output_noise_ = 0.0;
   std::size_t quiet_ = 0;
@@ -450,14 +530,19 @@ class Pass {
 
 struct Reducer::State {
   ReductionOptions options;
+  std::unique_ptr<Plans> plans;
   std::unique_ptr<Tables> tables;
 };
 
 Reducer::Reducer(ReductionOptions options)
-    : state_(std::make_unique<State>(State{std::move(options), nullptr})) {}
+    : state_(std::make_unique<State>(State{std::move(options), nullptr, nullptr})) {}
 Reducer::~Reducer() = default;
 Reducer::Reducer(Reducer&&) noexcept = default;
 Reducer& Reducer::operator=(Reducer&&) noexcept = default;
+
+void Reducer::set_bar_model(const Material& material) {
+  state_->options.bar_model = material;
+}
 
 Reduction Reducer::reduce(const Shot& shot) {
   require_reducible_bench(shot);
@@ -472,11 +557,19 @@ Reduction Reducer::reduce(const Shot& shot) {
                                               : paper_pmma();
   const Station in = station_on(shot.bench, "input");
   const Station out = station_on(shot.bench, "output");
-  TableKey key = key_of(shot, material, options.theory, in, out);
-  if (!state_->tables || !(state_->tables->key == key)) {
-    state_->tables = std::make_unique<Tables>(std::move(key), shot, material, in, out);
+  std::vector<double> numbers = numbers_of(shot.bench, material, options.theory, in, out);
+  const BarModel input(shot.bench.input, in, material);
+  const BarModel output(*shot.bench.output, out, material);
+  const PlanKey plan{shot.samples(), shot.rate, rounded_up(longest_travel(shot, input, output)),
+                     rounded_up(longest_pulse(shot, input))};
+  if (!state_->plans || !(state_->plans->key == plan)) {
+    state_->plans = std::make_unique<Plans>(plan);
   }
-  Reduction reduction = Pass(shot, in, out, options, *state_->tables).run();
+  if (!state_->tables || state_->tables->numbers != numbers || !(state_->tables->plan == plan)) {
+    state_->tables = std::make_unique<Tables>(std::move(numbers), plan, options.theory, shot.bench,
+                                              material, in, out);
+  }
+  Reduction reduction = Pass(shot, in, out, options, *state_->plans, *state_->tables).run();
   reduction.bar_model = describe(shot.bench, material, assumed);
   return reduction;
 }

@@ -5,6 +5,7 @@
 
 #include "processing/base/material.hpp"
 #include "processing/base/shot.hpp"
+#include "processing/reduction/corrections.hpp"
 #include "processing/reduction/reduction.hpp"
 #include "processing/waves/bar_modes.hpp"
 
@@ -16,8 +17,12 @@ struct ReductionOptions {
   std::optional<double>
       arrival_s;  ///< manual override: incident foot at gauge 1, from the first sample
   std::optional<double>
-      band_limit_Hz;  ///< manual override of the limit that follows from the noise
+      band_limit_Hz;                   ///< manual override of the limit that follows from the noise
+  std::optional<double> most_band_Hz;  ///< of the limit that follows from the noise: as far as the
+                                       ///< bars are known
   WaveTheory theory = WaveTheory::elementary;
+  StressFrom stress = StressFrom::both_faces;
+  Corrections corrections;           ///< to the stress
   std::optional<double> duration_s;  ///< of the histories; else until the first wave comes back to
                                      ///< the specimen from a bar's far end, 2 length / front speed
 };
@@ -37,6 +42,9 @@ class Reducer {
   /// reason in `quality`.
   /// @throws InputError where the bench itself does not suit (no gauge on a bar, no modulus)
   [[nodiscard]] Reduction reduce(const Shot& shot);
+
+  /// Takes viscoelastic bars to be of another material from now on.
+  void set_bar_model(const Material& material);
 
  private:
   struct State;

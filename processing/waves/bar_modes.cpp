@@ -16,7 +16,7 @@ std::vector<BarMode> elementary_modes(const Bar& bar, const Compliance& complian
   const double rho = bar.density_kg_m3;
   for (const Complex s : path) {
     // J of a passive solid lies in the right half plane, so the principal root is the decaying one.
-    modes.push_back({s * std::sqrt(rho * compliance.at(s)), 1.0});
+    modes.push_back({s * std::sqrt(rho * compliance.at(s)), 1.0, 0.5});
   }
   return modes;
 }
@@ -28,7 +28,9 @@ std::vector<BarMode> love_modes(const Bar& bar, const Compliance& compliance,
   std::vector<BarMode> modes;
   modes.reserve(path.size());
   for (const Complex s : path) {
-    modes.push_back({s * std::sqrt(rho / (1.0 / compliance.at(s) + lateral * s * s)), 1.0});
+    const Complex stiffness = 1.0 / compliance.at(s);
+    const Complex hindered = stiffness + lateral * s * s;
+    modes.push_back({s * std::sqrt(rho / hindered), 1.0, 0.5 * stiffness / hindered});
   }
   return modes;
 }

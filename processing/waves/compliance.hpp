@@ -40,9 +40,9 @@ class ThreeElementSolid final : public Compliance {
   explicit ThreeElementSolid(const Material& m)
       : ThreeElementSolid(m.E1_Pa, m.E2_Pa, m.eta2_Pa_s) {}
 
-  [[nodiscard]] Complex at(Complex s) const override {
-    return 1.0 / E1_Pa_ + 1.0 / (E2_Pa_ + s * eta2_Pa_s_);
-  }
+  // Not inline: modules differ in how they divide complex numbers, and which of them a program's
+  // copy came from would show in the last bits.
+  [[nodiscard]] Complex at(Complex s) const override;
   [[nodiscard]] double instantaneous() const override { return 1.0 / E1_Pa_; }
 
  private:

@@ -10,6 +10,8 @@ namespace kolsky {
 struct BarMode {
   Complex gamma;              ///< propagation coefficient [1/m]; a wave in +x goes as exp(-gamma x)
   Complex mean_over_surface;  ///< axial strain, mean over the section by that at the surface
+  /// d log gamma / d log J at this s, so also by the density; 2 slope - 1 is that by the radius.
+  Complex slope = 0.5;
 };
 
 /// Exact longitudinal waves in a round bar (Pochhammer, Chree), first mode, for a linear solid of
@@ -18,7 +20,9 @@ struct BarMode {
 ///   p^2 = rho w^2 / (lambda + 2 mu) - xi^2,   q^2 = rho w^2 / mu - xi^2,
 ///   (2p/a)(q^2 + xi^2) J1(pa) J1(qa) - (q^2 - xi^2)^2 J0(pa) J1(qa) - 4 xi^2 p q J1(pa) J0(qa) =
 ///   0.
-/// Divided by q it depends on p^2, q^2 and xi^2 alone and is entire in them: no branches.
+/// Divided by q it depends on p^2, q^2 and xi^2 alone and is entire in them: no branches. It ties
+/// (gamma / gamma0)^2 to (gamma0 a)^2 (gamma0 elementary) by Poisson's ratio alone, whatever the
+/// material, which gives the slope as an implicit derivative.
 /// Mean stress over the section is rho s^2 / gamma^2 times mean strain.
 class PochhammerChree {
  public:
@@ -28,17 +32,12 @@ class PochhammerChree {
 
   /// The mode along a path of s that starts where the bar is thin beside the wavelength, |gamma a|
   /// < 0.5, and moves in steps small enough that each root is near what the ones before it
-  /// foretell. Beyond |gamma0 a| = 12 (gamma0 elementary), where surface waves have long taken
-  /// over, the last ratio to gamma0 is kept.
+  /// foretell. Beyond |gamma0 a| = 12, where surface waves have long taken over, the last ratio to
+  /// gamma0 is kept.
   /// @throws std::invalid_argument if the path starts too far out
   [[nodiscard]] std::vector<BarMode> along(const std::vector<Complex>& path) const;
 
  private:
-  struct Squares;  // (pa)^2, (qa)^2, (xi a)^2
-  [[nodiscard]] Squares squares(Complex s, Complex gamma_squared) const;
-  [[nodiscard]] Complex residual(Complex s, Complex elementary_squared, Complex ratio) const;
-  [[nodiscard]] Complex solve(Complex s, Complex elementary_squared, Complex guess) const;
-
   double density_kg_m3_;
   double poisson_ratio_;
   double radius_m_;

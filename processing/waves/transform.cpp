@@ -27,7 +27,13 @@ bool has_small_factors(std::size_t n) {
   return n == 1;
 }
 
-std::size_t transform_length(std::size_t samples) {
+struct FftwFree {
+  void operator()(void* memory) const { fftw_free(memory); }
+};
+
+}  // namespace
+
+std::size_t good_transform_length(std::size_t samples) {
   std::size_t n = std::max<std::size_t>(samples, 16);
   n += n % 2;
   while (!has_small_factors(n)) {
@@ -35,12 +41,6 @@ std::size_t transform_length(std::size_t samples) {
   }
   return n;
 }
-
-struct FftwFree {
-  void operator()(void* memory) const { fftw_free(memory); }
-};
-
-}  // namespace
 
 struct DampedTransform::State {
   std::size_t length;
@@ -54,7 +54,7 @@ struct DampedTransform::State {
   std::vector<double> undamping;  // exp(+eta t) / length
 
   State(std::size_t samples, double period_s, double wrap_damping)
-      : length(transform_length(samples)),
+      : length(good_transform_length(samples)),
         bin_width_Hz(1.0 / (static_cast<double>(length) * period_s)),
         eta_per_s(-std::log(wrap_damping) * bin_width_Hz),
         time(fftw_alloc_real(length)),
@@ -71,6 +71,9 @@ struct DampedTransform::State {
     }
     const std::scoped_lock lock(planner_lock());
     const int n = static_cast<int>(length);
+    // FFTW remembers parts of earlier plans, even estimated ones, and would build on them: the same
+    // transform would round differently in a program that has planned other lengths before.
+    fftw_forget_wisdom();
     to_frequency = fftw_plan_dft_r2c_1d(n, time.get(), frequency.get(), FFTW_ESTIMATE);
     to_time = fftw_plan_dft_c2r_1d(n, frequency.get(), time.get(), FFTW_ESTIMATE);
   }

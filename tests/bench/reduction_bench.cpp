@@ -4,9 +4,14 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 
 #include "processing/reduction/reducer.hpp"
+#include "processing/specimen/specimen_fit.hpp"
+#include "processing/uncertainty/monte_carlo.hpp"
 #include "tests/generators/elastic_shpb.hpp"
+#include "tests/generators/linear_shpb.hpp"
 
 namespace kolsky {
 namespace {
@@ -32,6 +37,68 @@ void reduce(benchmark::State& state) {
   }
 }
 BENCHMARK(reduce)->Unit(benchmark::kMicrosecond);
+
+/// A shot on viscoelastic bars with exact dispersion; `anew`: tables and all, as for a first shot.
+void reduce_exact(benchmark::State& state) {
+  const bool anew = state.range(0) != 0;
+  testing::LinearShpb model;
+  model.record_s = static_cast<double>(kSamples) * 1e-6;
+  const Shot shot = testing::digitise(model.bench(), model.solve(), 4e-6, 16, 0.005, 1);
+  ReductionOptions options;
+  options.theory = WaveTheory::exact;
+  Reducer reducer(options);
+  for (auto _ : state) {
+    if (anew) {
+      benchmark::DoNotOptimize(Reducer(options).reduce(shot));
+    } else {
+      benchmark::DoNotOptimize(reducer.reduce(shot));
+    }
+  }
+}
+BENCHMARK(reduce_exact)->ArgName("anew")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+/// 1000 draws on two threads, the budget included.
+void monte_carlo(benchmark::State& state) {
+  testing::LinearShpb model;
+  model.record_s = static_cast<double>(kSamples) * 1e-6;
+  Shot shot = testing::digitise(model.bench(), model.solve(), 4e-6, 16, 0.005, 1);
+  for (Gauge& gauge : shot.bench.gauges) {
+    gauge.position_m.sd = 0.2e-3;
+  }
+  shot.bench.input.diameter_m.sd = shot.bench.output->diameter_m.sd = 0.02e-3;
+  shot.bench.input.density_kg_m3.sd = 3.0;
+  shot.bench.specimen->length_m.sd = 0.01e-3;
+  shot.bench.temperature_K = Measured{296.0, 0.5};
+  const Reduction reduction = Reducer().reduce(shot);
+  const Executor two = [](std::size_t count, const std::function<void(std::size_t)>& task) {
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+      for (std::size_t i = next++; i < count; i = next++) {
+        task(i);
+      }
+    };
+    std::jthread other(work);
+    work();
+  };
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(propagate(shot, {}, reduction, {}, two));
+  }
+}
+BENCHMARK(monte_carlo)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+
+/// Ten shots of the paper's core, every set of assumptions tried.
+void identify_specimen(benchmark::State& state) {
+  testing::LinearShpb model;
+  const auto records = model.solve();
+  std::vector<Shot> shots;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    shots.push_back(testing::digitise(model.bench(), records, 4e-6, 16, 0.005, seed));
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(fit_specimen(shots, BarPrior(paper_pmma()), {}));
+  }
+}
+BENCHMARK(identify_specimen)->Unit(benchmark::kMillisecond);
 
 void bare_transforms(benchmark::State& state) {
   double* time = fftw_alloc_real(kSamples);

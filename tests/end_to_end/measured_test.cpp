@@ -147,7 +147,7 @@ TEST(MeasuredPairs, RepeatWithinThemselves) {
   for (const int first : {1, 3, 5}) {
     const double a = peak(replayed(steel(first)).published.stress_Pa);
     const double b = peak(replayed(steel(first + 1)).published.stress_Pa);
-    EXPECT_LT(std::abs(a - b) / (a + b) * 2.0, 0.05) << "shots " << first << " and " << first + 1;
+    EXPECT_LT(std::abs(a - b) / (a + b) * 2.0, 0.025) << "shots " << first << " and " << first + 1;
   }
 }
 

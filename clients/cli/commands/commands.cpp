@@ -3,7 +3,11 @@
 namespace kolsky::cli {
 
 Command import_csv_command();
+Command identify_bar_command();
+Command identify_specimen_command();
+Command plan_command();
 Command reduce_command();
+Command export_command();
 Command effects_command();
 Command model_new_command();
 Command model_add_command();
@@ -14,7 +18,7 @@ Command model_revert_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
-Command export_command();
+Command impact_command();
 Command verify_command();
 Command status_command();
 Command arm_command();
@@ -29,15 +33,40 @@ Command release_command();
 Command stop_command();
 
 std::vector<Command> all_commands() {
-  return {import_csv_command(),    reduce_command(),        effects_command(),
-          model_new_command(),     model_add_command(),     model_remove_command(),
-          model_show_command(),    model_history_command(), model_revert_command(),
-          fit_command(),           compare_command(),       diagnose_command(),
-          export_command(),        verify_command(),        status_command(),
-          arm_command(),           disarm_command(),        fire_command(),
-          force_trigger_command(), shots_command(),         get_command(),
-          watch_command(),         reload_command(),        release_command(),
-          stop_command()};
+  // One a line, so that a new one touches no other.
+  // clang-format off
+  return {
+      import_csv_command(),
+      identify_bar_command(),
+      identify_specimen_command(),
+      plan_command(),
+      reduce_command(),
+      export_command(),
+      effects_command(),
+      model_new_command(),
+      model_add_command(),
+      model_remove_command(),
+      model_show_command(),
+      model_history_command(),
+      model_revert_command(),
+      fit_command(),
+      compare_command(),
+      diagnose_command(),
+      impact_command(),
+      verify_command(),
+      status_command(),
+      arm_command(),
+      disarm_command(),
+      fire_command(),
+      force_trigger_command(),
+      shots_command(),
+      get_command(),
+      watch_command(),
+      reload_command(),
+      release_command(),
+      stop_command(),
+  };
+  // clang-format on
 }
 
 }  // namespace kolsky::cli

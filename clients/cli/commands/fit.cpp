@@ -23,7 +23,7 @@ struct Settings {
 
 int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  const Executor executor = all_cores();
+  const Workers executor = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
   Study study(campaign, settings.band_limit_Hz.value_or(0.0), executor);
   const Studied studied = study.fit(file.model);

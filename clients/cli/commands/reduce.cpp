@@ -1,12 +1,14 @@
 #include <memory>
 #include <ostream>
 
+#include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/thread_executor.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
+#include "drivers/files/capture.hpp"
 #include "drivers/files/export.hpp"
-#include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 
@@ -23,6 +25,14 @@ struct Settings {
   std::optional<double> band_limit_Hz;
   std::optional<double> duration_s;
   std::optional<std::string> dispersion;
+  std::optional<std::string> stress;
+  std::optional<std::string> inertia;
+  std::optional<double> friction;
+  bool uncertainty = false;
+  std::optional<std::uint64_t> draws;
+  std::optional<double> softening_per_K;
+  std::optional<std::string> bench;
+  std::optional<std::string> save;
   std::optional<std::string> svg;
   std::optional<std::string> csv;
 };
@@ -35,11 +45,53 @@ void refuse_not_positive(std::optional<double> number, const std::string& option
   }
 }
 
-ReductionOptions reduction_options(const Settings& settings) {
-  ReductionOptions options;
-  if (settings.bar_model.has_value()) {
-    options.bar_model = read_material(*settings.bar_model);
+Corrections corrections_of(const Settings& settings) {
+  Corrections corrections;
+  if (settings.inertia.has_value()) {
+    const std::string& kind = *settings.inertia;
+    if (kind != "axial" && kind != "radial" && kind != "both") {
+      throw InputError("kolsky reduce: --inertia", "\"" + kind + "\" is not one",
+                       "give axial, radial or both");
+    }
+    corrections.axial_inertia = kind != "radial";
+    corrections.radial_inertia = kind != "axial";
   }
+  if (settings.friction.has_value()) {
+    if (!(*settings.friction >= 0.0 && *settings.friction <= 1.0)) {
+      throw InputError("kolsky reduce: --friction", "is outside 0 to 1",
+                       "give the coefficient between specimen and bars, as 0.1");
+    }
+    corrections.friction = settings.friction;
+  }
+  return corrections;
+}
+
+std::vector<std::string> names_of(const Corrections& corrections) {
+  std::vector<std::string> names;
+  if (corrections.axial_inertia) {
+    names.emplace_back("axial inertia");
+  }
+  if (corrections.radial_inertia) {
+    names.emplace_back("radial inertia");
+  }
+  if (corrections.friction.has_value()) {
+    names.emplace_back("friction");
+  }
+  return names;
+}
+
+ReductionOptions reduction_options(const Settings& settings,
+                                   const std::optional<BarModelFile>& bars) {
+  ReductionOptions options;
+  if (bars.has_value()) {
+    options.bar_model = bars->prior.material;
+    options.most_band_Hz = bars->band_limit_Hz;
+    require_band(*bars, settings.band_limit_Hz);
+  }
+  if (settings.stress.has_value()) {
+    options.stress = stress_from(*settings.stress);
+  }
+  options.corrections = corrections_of(settings);
   refuse_not_positive(settings.band_limit_Hz, "--band-limit", "Hz");
   refuse_not_positive(settings.duration_s, "--duration", "s");
   options.duration_s = settings.duration_s;
@@ -51,7 +103,29 @@ ReductionOptions reduction_options(const Settings& settings) {
   return options;
 }
 
+UncertaintyOptions uncertainty_options(const Settings& settings,
+                                       const std::optional<BarModelFile>& bars, const Shot& shot) {
+  constexpr std::uint64_t kFewest = 20;
+  constexpr std::uint64_t kMost = 1'000'000;
+  UncertaintyOptions options;
+  options.draws = settings.draws.value_or(options.draws);
+  if (options.draws < kFewest || options.draws > kMost) {
+    throw InputError("kolsky reduce: --draws", "is outside 20 to 1000000",
+                     "1000 give the deviations to 2 %");
+  }
+  const BarPrior prior =
+      bars.has_value() ? bars->prior : BarPrior(shot.bar_model.value_or(paper_pmma()));
+  options.bars.covariance = prior.covariance;
+  options.bars.softening_per_K = settings.softening_per_K.value_or(options.bars.softening_per_K);
+  return options;
+}
+
 void write_files(const Settings& settings, const ReducedShot& reduced) {
+  if (settings.save.has_value()) {
+    Shot corrected = reduced.shot;
+    corrected.meta["corrected_from"] = reduced.capture;
+    write_capture(corrected, *settings.save);
+  }
   if (settings.svg.has_value()) {
     NewFile page(*settings.svg);
     page.write(render_svg(reduction_figure(reduced.reduction, reduced.shot.id)));
@@ -63,7 +137,22 @@ void write_files(const Settings& settings, const ReducedShot& reduced) {
 }
 
 int run(const Settings& settings, Context& context) {
-  const ReducedShot reduced = reduce_capture(settings.capture, reduction_options(settings));
+  std::optional<BarModelFile> bars;
+  if (settings.bar_model.has_value()) {
+    bars = read_bar_model(*settings.bar_model);
+  }
+  const ReductionOptions options = reduction_options(settings, bars);
+  ReducedShot reduced = reduce_capture(settings.capture, options, settings.bench);
+  if (bars.has_value()) {
+    require_temperature(*bars, reduced.shot);
+  }
+  reduced.stress = settings.stress.value_or(reduced.stress);
+  reduced.corrections = names_of(options.corrections);
+  if (settings.uncertainty || settings.draws.has_value()) {
+    reduced.uncertainty =
+        propagate(reduced.shot, options, reduced.reduction,
+                  uncertainty_options(settings, bars, reduced.shot), thread_executor());
+  }
   write_files(settings, reduced);
   context.out << (context.json ? to_text(describe(reduced, settings.with_true)) + "\n"
                                : report(reduced, context.terminal));
@@ -84,7 +173,9 @@ Command reduce_command() {
   command.examples =
       "  kolsky reduce shot.h5\n"
       "  kolsky reduce shot.h5 --json --true > shot.json\n"
-      "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n";
+      "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n"
+      "  kolsky reduce shot.h5 --bar-model pmma.toml --uncertainty\n"
+      "  kolsky reduce shot.h5 --bench corrected.toml --save corrected.h5\n";
   command.arguments = {
       needed("CAPTURE", "", "the capture to reduce", &s.capture),
       option("--bar-model", "M.toml",
@@ -103,6 +194,26 @@ Command reduce_command() {
       option("--dispersion", "THEORY",
              "how waves travel in the bars: elementary (the paper, default), love or exact",
              &s.dispersion),
+      option("--stress", "WAVES",
+             "three-wave (mean of both faces, default), one-wave (back) or two-wave (front)",
+             &s.stress),
+      option("--inertia", "KIND", "take the specimen's inertia off: axial, radial or both",
+             &s.inertia),
+      option("--friction", "MU", "take friction at the faces off: its coefficient", &s.friction),
+      flag("--uncertainty",
+           "propagate noise and every <key>_sd of bench and bar model: bands, intervals, budget",
+           &s.uncertainty),
+      option("--draws", "N", "how many draws the uncertainty is from; 1000 by default", &s.draws),
+      option(
+          "--softening", "PER_KELVIN",
+          "relative loss of viscoelastic bars' moduli per kelvin, for temperature_K_sd; 0.003 by "
+          "default",
+          &s.softening_per_K),
+      option("--bench", "BENCH.toml",
+             "a corrected bench file: a new result beside the one with the capture's own",
+             &s.bench),
+      option("--save", "CAPTURE.h5",
+             "a new capture to write: the same samples with the corrected bench", &s.save),
       option("--svg", "FILE", "a page of plots to write", &s.svg),
       option("--csv", "FILE", "a table of the histories to write, with the gauges beside it",
              &s.csv)};

@@ -7,7 +7,7 @@ namespace kolsky {
 
 /// Runs work(index, worker) for every index below `count`, worker below `workers`; returns when all
 /// are done. The caller of a pure function decides by it how many threads there are.
-struct Executor {
+struct Workers {
   std::size_t workers = 1;
   std::size_t first = 0;  ///< the worker that the caller itself is
   std::function<void(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work)>

@@ -1,0 +1,193 @@
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/bar_report.hpp"
+#include "clients/cli/command.hpp"
+#include "clients/report/svg.hpp"
+#include "drivers/files/capture.hpp"
+#include "drivers/files/material_file.hpp"
+#include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+constexpr mode_t kReadableByAll = 0644;
+
+struct Settings {
+  std::vector<std::string> captures;
+  std::optional<std::string> model_out;
+  std::optional<std::string> solid;
+  std::optional<std::string> dispersion;
+  std::optional<std::string> far_end;
+  std::optional<double> band_limit_Hz;
+  std::optional<std::string> svg;
+  bool waveforms = false;
+};
+
+std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
+  std::vector<Shot> shots;
+  for (const std::string& place : captures) {
+    for (const auto& path : captures_in(place)) {
+      shots.push_back(read_capture(path));
+      shots.back().id = path.string();
+    }
+  }
+  return shots;
+}
+
+BarIdentificationOptions options_from(const Settings& settings) {
+  BarIdentificationOptions options;
+  if (settings.dispersion && *settings.dispersion != "auto") {
+    options.theory = wave_theory(*settings.dispersion);
+  }
+  if (settings.solid) {
+    options.solid =
+        *settings.solid == "auto" ? std::nullopt : std::optional(solid_kind(*settings.solid));
+  }
+  if (settings.far_end && *settings.far_end != "auto") {
+    options.far_end = *settings.far_end == "free"   ? FarEndReturn::free
+                      : *settings.far_end == "none" ? FarEndReturn::none
+                                                    : FarEndReturn::partial;
+  }
+  if (settings.band_limit_Hz) {
+    if (!(*settings.band_limit_Hz > 0.0)) {
+      throw InputError("kolsky identify bar: --band-limit", "must be above 0 Hz",
+                       "give a positive number in Hz");
+    }
+    options.band_limit_Hz = *settings.band_limit_Hz;
+  }
+  return options;
+}
+
+/// Mean of the shots' temperatures, where all are known.
+std::optional<double> temperature_K(const std::vector<Shot>& shots) {
+  double sum = 0.0;
+  for (const Shot& shot : shots) {
+    const auto fact = shot.meta.find("temperature_K");
+    if (fact != shot.meta.end()) {
+      char* end = nullptr;
+      const double value = std::strtod(fact->second.c_str(), &end);
+      if (end == fact->second.c_str() || *end != '\0' || !std::isfinite(value)) {
+        throw InputError(shot.id + ": meta temperature_K",
+                         "\"" + fact->second + "\" is no temperature", "give kelvins, as 296.5");
+      }
+      sum += value;
+    } else if (shot.bench.temperature_K) {
+      sum += shot.bench.temperature_K->value;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return sum / static_cast<double>(shots.size());
+}
+
+void write_material(const std::string& path, const BarIdentification& result,
+                    const std::vector<Shot>& shots) {
+  const BarFit& fit = result.three_element;
+  const Bar& bar = shots.front().bench.input;
+  Material material;
+  material.density_kg_m3 = bar.density_kg_m3;
+  material.poisson_ratio = bar.poisson_ratio;
+  material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
+  material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
+  material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
+  material.source = "kolsky identify bar, " + std::to_string(shots.size()) + " shots";
+  try {
+    check(material);
+  } catch (const InputError& error) {
+    throw InputError("kolsky identify bar: --model-out",
+                     "cannot file this fit: " + error.place() + " " + error.problem(),
+                     "file an elastic bar by bars.*.youngs_modulus_Pa in the bench instead");
+  }
+  Identified identified;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      identified.covariance[3 * i + j] = fit.covariance[i][j];
+    }
+  }
+  identified.shots = shots.size();
+  identified.band_limit_Hz = fit.band_limit_Hz;
+  identified.dispersion = name_of(fit.theory);
+  identified.chi2_reduced = fit.chi2_reduced;
+  identified.temperature_K = temperature_K(shots);
+  NewFile file(path);
+  file.write(format_material(material, identified));
+  file.publish(kReadableByAll);
+}
+
+int run(const Settings& settings, Context& context) {
+  const BarIdentificationOptions options = options_from(settings);
+  const std::vector<Shot> shots = read_shots(settings.captures);
+  const BarIdentification result = identify_bar(shots, options);
+  std::vector<ForetoldShot> foretold;
+  if (settings.waveforms || settings.svg) {
+    foretold = foretell(shots, result.fit);
+  }
+  if (settings.model_out) {
+    write_material(*settings.model_out, result, shots);
+  }
+  if (settings.svg) {
+    NewFile page(*settings.svg);
+    page.write(render_svg(bar_figure(result, foretold.front())));
+    page.publish(kReadableByAll);
+  }
+  if (!settings.waveforms) {
+    foretold.clear();
+  }
+  context.out << (context.json ? to_text(describe(result, foretold)) + "\n" : report(result));
+  return kDone;
+}
+
+}  // namespace
+
+Command identify_bar_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "identify bar";
+  command.purpose =
+      "what a bar is made of, from shots on it alone: moduli, J, attenuation, with deviations\n"
+      "Whole records of two or more gauges, whatever the striker did; overlapping waves serve "
+      "too.\n"
+      "Wave theory and far end are chosen by the records; every alternative is listed.";
+  command.examples =
+      "  kolsky identify bar shot1.h5 shot2.h5 --model-out pmma.toml\n"
+      "  kolsky identify bar shots/ --json > bar.json\n"
+      "  kolsky identify bar shot.h5 --dispersion elementary --svg bar.svg\n";
+  command.arguments = {
+      needed("CAPTURE", "", "captures of shots on one bar, or folders of them", &s.captures),
+      option("--model-out", "M.toml",
+             "material file to write, for --bar-model: values, deviations, covariance",
+             &s.model_out),
+      Argument{"--solid",
+               "FAMILY",
+               "family of solids for the spectrum; the three-element parameters always come too",
+               &s.solid,
+               false,
+               {"three-element", "four-element-fluid", "two-kelvin", "fractional", "auto"}},
+      Argument{"--dispersion",
+               "THEORY",
+               "how waves travel in the bar; auto (default): what the records are evidence for",
+               &s.dispersion,
+               false,
+               {"elementary", "love", "exact", "auto"}},
+      Argument{"--far-end",
+               "RETURN",
+               "what comes back from the far end; auto (default): what the records show",
+               &s.far_end,
+               false,
+               {"free", "none", "partial", "auto"}},
+      option("--band-limit", "HZ", "upper end of the frequencies used; else what the noise allows",
+             &s.band_limit_Hz),
+      flag("--waveforms",
+           "in --json also what the first gauge foretells for the others, and what is left",
+           &s.waveforms),
+      option("--svg", "FILE", "a page of plots to write", &s.svg)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

@@ -1,0 +1,274 @@
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/impact_run.hpp"
+#include "drivers/files/bench_file.hpp"
+#include "drivers/files/material_file.hpp"
+#include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr mode_t kReadableByAll = 0644;
+constexpr double kTellEvery_s = 1.0;
+constexpr double kLogEvery_s = 15.0;
+
+struct Settings {
+  std::string bench;
+  std::string core;
+  std::string cover;
+  std::optional<double> speed;
+  std::optional<double> friction;
+  std::optional<std::string> target;
+  std::optional<std::string> reading;
+  std::optional<std::string> law;
+  std::optional<std::uint64_t> elements;
+  std::optional<double> core_nonlinearity;
+  std::optional<double> cover_nonlinearity;
+  std::optional<std::string> core_relaxation;
+  std::optional<std::string> cover_relaxation;
+  std::optional<double> sabot_mass;
+  std::optional<double> offset;
+  std::optional<double> time_step;
+  std::vector<std::string> fields;
+  std::optional<std::string> svg;
+  std::optional<std::string> figures;
+};
+
+constexpr const char* kPlace = "kolsky impact: ";
+
+double number_in(const std::string& text, const std::string& option_name) {
+  std::size_t used = 0;
+  double value = std::nan("");
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::logic_error&) {
+    used = 0;
+  }
+  if (used == 0 || used != text.size() || !std::isfinite(value)) {
+    throw InputError(kPlace + option_name, "\"" + text + "\" is not a number", "give a number");
+  }
+  return value;
+}
+
+// "D,TAU".
+impact::KelvinUnit kelvin_unit(const std::optional<std::string>& text,
+                               const std::string& option_name) {
+  if (!text.has_value()) {
+    return {};
+  }
+  const std::size_t comma = text->find(',');
+  if (comma == std::string::npos) {
+    throw InputError(kPlace + option_name, "\"" + *text + "\" lacks a comma",
+                     "give compliance and time, as 1e-9,1e-4");
+  }
+  return {number_in(text->substr(0, comma), option_name),
+          number_in(text->substr(comma + 1), option_name)};
+}
+
+impact::BallMaterial material(const std::string& file, const Settings& settings, bool core) {
+  impact::BallMaterial part;
+  part.material = read_material(file);
+  part.reading =
+      impact::reading_named(settings.reading.value_or("full"), std::string(kPlace) + "--reading");
+  part.law = impact::finite_strain_named(settings.law.value_or("kirchhoff"),
+                                         std::string(kPlace) + "--law");
+  part.nonlinearity =
+      (core ? settings.core_nonlinearity : settings.cover_nonlinearity).value_or(0.0);
+  part.second = core ? kelvin_unit(settings.core_relaxation, "--core-relaxation")
+                     : kelvin_unit(settings.cover_relaxation, "--cover-relaxation");
+  return part;
+}
+
+double speed_of(const Settings& settings) {
+  if (!settings.speed.has_value()) {
+    throw InputError(std::string(kPlace) + "--speed", "is missing",
+                     "give the ball's speed in m/s, or --figures for the paper's");
+  }
+  return *settings.speed;
+}
+
+// What the simulation names by its members, as the user gave it.
+std::string option_for(const std::string& member) {
+  const std::pair<const char*, const char*> options[] = {
+      {"speed_m_per_s", "--speed"}, {"friction", "--friction"}, {"sabot_mass_kg", "--sabot-mass"},
+      {"offset_m", "--offset"},     {"elements", "--elements"}, {"time_step_s", "--time-step"}};
+  for (const auto& [name, option_name] : options) {
+    if (member == name) {
+      return option_name;
+    }
+  }
+  return member;
+}
+
+void prepare(ImpactRun& run, const Settings& settings) {
+  const auto target =
+      impact::target_named(settings.target.value_or("dashpot"), std::string(kPlace) + "--target");
+  try {
+    run.mass =
+        impact::check_mass(run.bench.ball.value_or(Ball{}), run.core.material, run.cover.material);
+    run.model = impact_on(run.bench, run.core, run.cover, target, speed_of(settings));
+  } catch (const InputError& error) {
+    if (error.place().starts_with(kPlace)) {
+      throw;
+    }
+    const std::string file = error.place().starts_with("core")    ? settings.core
+                             : error.place().starts_with("cover") ? settings.cover
+                                                                  : settings.bench;
+    throw error.inside(file);
+  }
+  run.model.friction = settings.friction.value_or(run.model.friction);
+  run.model.sabot_mass_kg = settings.sabot_mass.value_or(0.0);
+  run.model.offset_m = settings.offset.value_or(0.0);
+  run.model.time_step_s = settings.time_step.value_or(0.0);
+  run.model.elements = settings.elements.value_or(run.model.elements);
+  for (const NamedProbe& probe : paper_probes()) {
+    if (std::hypot(probe.probe.radial_m, probe.probe.axial_m) <
+        0.5 * run.model.layers.back().outer_diameter_m) {
+      run.probe_names.push_back(probe.name);
+      run.model.probes.push_back(probe.probe);
+    }
+  }
+  for (const Gauge& gauge : run.bench.gauges) {
+    if (target == impact::TargetKind::bar) {
+      run.gauge_names.push_back(gauge.name);
+      run.model.gauge_positions_m.push_back(gauge.position_m);
+    }
+  }
+  for (const std::string& time : settings.fields) {
+    run.model.field_times_s.push_back(number_in(time, "--field"));
+  }
+  run.model.field_at_turn = settings.svg.has_value() && settings.fields.empty();
+}
+
+// A line on stderr once a run takes longer than a person likes to wait, and now and then in a log.
+class ProgressLine {
+ public:
+  explicit ProgressLine(Clock::time_point start)
+      : last_(start), every_s_(terminal_of(2).interactive ? kTellEvery_s : kLogEvery_s) {}
+
+  void show(const impact::Progress& progress) {
+    if (std::chrono::duration<double>(Clock::now() - last_).count() < every_s_) {
+      return;
+    }
+    last_ = Clock::now();
+    std::cerr << "kolsky impact: " << std::lround(1e6 * progress.time_s) << " us simulated, "
+              << std::lround(progress.force_N) << " N, " << progress.steps << " steps" << std::endl;
+  }
+
+ private:
+  Clock::time_point last_;
+  double every_s_;
+};
+
+void simulate(ImpactRun& run) {
+  const Clock::time_point start = Clock::now();
+  ProgressLine line(start);
+  try {
+    run.history = impact::simulate(
+        run.model, [&line](const impact::Progress& progress) { line.show(progress); });
+  } catch (const InputError& error) {
+    throw InputError(kPlace + option_for(error.place()), error.problem(), error.mend());
+  }
+  run.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+int run_command(const Settings& settings, Context& context) {
+  ImpactRun run;
+  run.bench = read_bench(settings.bench).bench;
+  if (!run.bench.ball) {
+    throw InputError(settings.bench + ": kind", "is not \"impact\"", "give a bench with a [ball]");
+  }
+  run.core = material(settings.core, settings, true);
+  run.cover = material(settings.cover, settings, false);
+  if (settings.figures.has_value()) {
+    const std::string text = write_paper_figures(run.bench, run.core, run.cover, *settings.figures);
+    if (context.json) {
+      context.out << to_text(JsonObject{{"folder", *settings.figures}, {"table", text}}) << "\n";
+    } else {
+      context.out << text;
+    }
+    return kDone;
+  }
+  prepare(run, settings);
+  simulate(run);
+  if (settings.svg.has_value()) {
+    NewFile file(*settings.svg);
+    file.write(page(run));
+    file.publish(kReadableByAll);
+  }
+  context.out << (context.json ? to_text(describe(run)) + "\n" : report(run, context.terminal));
+  return kDone;
+}
+
+}  // namespace
+
+std::vector<NamedProbe> paper_probes() {
+  return {{"1 front", {0.0, 0.010}}, {"2 centre", {0.0, 0.0}}, {"3 rear", {0.0, -0.010}}};
+}
+
+Command impact_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "impact";
+  command.purpose =
+      "a layered ball on the end of a bar: force and restitution from material models\n"
+      "Axisymmetric, finite deformation, explicit; compression positive, t = 0 at first touch.";
+  command.examples =
+      "  kolsky impact --bench impact.toml --core core.toml --cover cover.toml --speed 40.3\n"
+      "  kolsky impact --bench impact.toml --core core.toml --cover cover.toml --speed 51 \\\n"
+      "      --friction 0 --reading bulk-Einf --json > impact.json\n"
+      "  kolsky impact --bench impact.toml --core core.toml --cover cover.toml --speed 40.3 \\\n"
+      "      --svg ball.svg --field 1e-4 --field 2e-4\n"
+      "  kolsky impact --bench impact.toml --core core.toml --cover cover.toml --figures paper/\n";
+  command.arguments = {
+      needed("--bench", "B.toml", "bench file, kind \"impact\"", &s.bench),
+      needed("--core", "C.toml", "material file of the core", &s.core),
+      needed("--cover", "V.toml", "material file of the cover", &s.cover),
+      option("--speed", "V", "of the ball, in m/s", &s.speed),
+      option("--friction", "MU", "coefficient between ball and target, 0.3 unless given",
+             &s.friction),
+      option("--target", "TARGET",
+             "rigid: a plane at rest; dashpot (default): one with the bar's impedance; bar: the "
+             "bar meshed, with strain at the bench's gauges",
+             &s.target),
+      option("--reading", "READING",
+             "the uniaxial law in three dimensions: full (default: G and K relax), bulk-E1, "
+             "bulk-Einf (K elastic), exact (K elastic, uniaxial law kept)",
+             &s.reading),
+      option("--law", "STRESS",
+             "what the law gives from Hencky's strain: kirchhoff (default) or cauchy stress; at "
+             "51 m/s they part by a hundredth of the peak",
+             &s.law),
+      option("--elements", "N", "of the ball, about; 2048 unless given", &s.elements),
+      option("--core-nonlinearity", "B",
+             "instantaneous deviatoric stress x (1 + B equivalent strain)", &s.core_nonlinearity),
+      option("--cover-nonlinearity", "B", "the same in the cover", &s.cover_nonlinearity),
+      option("--core-relaxation", "D,TAU", "a second relaxation: compliance in 1/Pa and time in s",
+             &s.core_relaxation),
+      option("--cover-relaxation", "D,TAU", "the same in the cover", &s.cover_relaxation),
+      option("--sabot-mass", "KG", "a rigid mass that follows and touches the rear pole",
+             &s.sabot_mass),
+      option("--offset", "M", "ball's axis off the bar's, in m: what overhangs carries no load",
+             &s.offset),
+      option("--time-step", "S", "largest step in s; else what is stable", &s.time_step),
+      option("--field", "S",
+             "a time at which the picture shows the ball; else that of the largest deformation",
+             &s.fields),
+      option("--svg", "FILE", "a page to write: deformed ball with axial stress, and histories",
+             &s.svg),
+      option("--figures", "FOLDER", "the paper's figures 11 to 15 and their tables to write",
+             &s.figures)};
+  command.run = [settings](Context& context) { return run_command(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

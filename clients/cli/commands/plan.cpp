@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/command.hpp"
+#include "clients/cli/reduced_shot.hpp"
+#include "clients/figure/layout.hpp"
+#include "drivers/files/bench_file.hpp"
+#include "drivers/files/material_file.hpp"
+#include "processing/base/error.hpp"
+#include "processing/planning/shot_plan.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+struct Settings {
+  std::string bench;
+  std::string specimen;
+  std::optional<std::string> bar_model;
+  std::optional<double> striker_speed;
+  std::optional<double> pulse_strain;
+  std::optional<double> pulse_duration_s;
+  std::optional<double> rise_s;
+  std::optional<double> noise_microstrain;
+};
+
+void refuse_not_positive(std::optional<double> number, const std::string& name) {
+  if (number && !(*number > 0.0)) {
+    throw InputError("kolsky plan: " + name, "must be above 0", "give a positive number");
+  }
+}
+
+PlannedPulse pulse_of(const Settings& s, const Bench& bench, const Material& bars) {
+  refuse_not_positive(s.striker_speed, "--striker-speed");
+  refuse_not_positive(s.pulse_strain, "--pulse-strain");
+  refuse_not_positive(s.pulse_duration_s, "--pulse-duration");
+  refuse_not_positive(s.rise_s, "--rise");
+  const double rise_s = s.rise_s.value_or(0.0);
+  if (s.pulse_strain && s.pulse_duration_s && !s.striker_speed) {
+    return pulse_of_strain(bench, bars, *s.pulse_strain, *s.pulse_duration_s, rise_s);
+  }
+  std::optional<double> speed = s.striker_speed;
+  if (!speed && bench.striker && bench.striker->speed_m_per_s) {
+    speed = bench.striker->speed_m_per_s->value;
+  }
+  if (!speed || s.pulse_strain || s.pulse_duration_s) {
+    throw InputError("kolsky plan", "does not know the pulse",
+                     "give --striker-speed, or both --pulse-strain and --pulse-duration");
+  }
+  return pulse_of_striker(bench, bars, *speed, rise_s);
+}
+
+JsonValue describe(const ShotPlan& plan) {
+  JsonList gauges;
+  for (const GaugeForecast& gauge : plan.gauges) {
+    gauges.push_back(JsonObject{{"name", gauge.name},
+                                {"highest_strain", gauge.highest_strain},
+                                {"lowest_strain", gauge.lowest_strain},
+                                {"unit", gauge.unit},
+                                {"highest_reading", gauge.highest_reading}});
+  }
+  const Reduction& r = plan.reduction;
+  JsonObject checks;
+  for (const Check& check : r.quality.checks) {
+    checks.push_back({check.name, JsonObject{{"value", check.value},
+                                             {"limit", check.limit},
+                                             {"verdict", verdict_name(check.verdict)},
+                                             {"text", check.text}}});
+  }
+  return JsonObject{
+      {"pulse", JsonObject{{"peak_force_N", plan.pulse.step_force_N.front()},
+                           {"duration_s", plan.pulse.duration_s() + plan.pulse.rise_s},
+                           {"rise_s", plan.pulse.rise_s}}},
+      {"peak_strain", plan.summary.peak_strain},
+      {"peak_stress_Pa", plan.summary.peak_stress_Pa},
+      {"mean_strain_rate_per_s", plan.summary.mean_strain_rate_per_s},
+      {"loading_s", plan.summary.loading_s},
+      {"equilibrium_from_s", plan.quotable.any ? JsonValue(plan.quotable.from_s) : nullptr},
+      {"equilibrium_from_strain",
+       plan.quotable.any ? JsonValue(plan.quotable.from_strain) : nullptr},
+      {"specimen_transit_s", plan.specimen_transit_s},
+      {"window_s", plan.window_s},
+      {"returns_s", plan.returns_s},
+      {"gauges", std::move(gauges)},
+      {"quality", JsonObject{{"reducible", r.quality.reducible},
+                             {"reason", r.quality.reason},
+                             {"verdict", verdict_name(r.quality.verdict())},
+                             {"checks", std::move(checks)}}},
+      {"time_s", r.time_s},
+      {"stress_Pa", r.stress_Pa},
+      {"strain", r.strain},
+      {"strain_rate_per_s", r.strain_rate_per_s}};
+}
+
+std::string line(const std::string& name, const std::string& text) {
+  return fmt::format("  {:<18}{}\n", name, text);
+}
+
+std::string report(const ShotPlan& plan) {
+  const double pulse_s = plan.pulse.duration_s() + plan.pulse.rise_s;
+  std::string text =
+      line("pulse", fmt::format("{} for {}", with_unit(plan.pulse.step_force_N.front(), "N"),
+                                with_unit(pulse_s, "s")));
+  if (!plan.reduction.quality.reducible) {
+    return text + line("result", "none: " + plan.reduction.quality.reason);
+  }
+  text += line("largest strain", with_unit(plan.summary.peak_strain, "strain"));
+  text += line("peak stress", with_unit(plan.summary.peak_stress_Pa, "Pa"));
+  text +=
+      line("mean strain rate", fmt::format("{} over {} of loading",
+                                           with_unit(plan.summary.mean_strain_rate_per_s, "1/s"),
+                                           with_unit(plan.summary.loading_s, "s")));
+  text += line("may be quoted", plan.quotable.text);
+  text +=
+      line("window", fmt::format("{} of incident pulse alone at the first gauge, which lasts {}",
+                                 with_unit(plan.window_s, "s"), with_unit(pulse_s, "s")));
+  text += line("", fmt::format("a far end answers at the specimen {} after arrival",
+                               with_unit(plan.returns_s, "s")));
+  text += line("specimen transit", with_unit(plan.specimen_transit_s, "s"));
+  for (const GaugeForecast& gauge : plan.gauges) {
+    text += line(
+        "gauge " + gauge.name,
+        fmt::format("{:+.0f} to {:+.0f} microstrain{}", 1e6 * gauge.lowest_strain,
+                    1e6 * gauge.highest_strain,
+                    gauge.unit == "V" ? ", up to " + with_unit(gauge.highest_reading, "V") : ""));
+  }
+  text += line("verdict", verdict_name(plan.reduction.quality.verdict()));
+  for (const Check& check : plan.reduction.quality.checks) {
+    if (check.verdict != Verdict::pass) {
+      text += line("  " + check.name, check.text);
+    }
+  }
+  return text;
+}
+
+int run(const Settings& settings, Context& context) {
+  const Bench bench = read_bench(settings.bench).bench;
+  const Material bars =
+      settings.bar_model ? read_bar_model(*settings.bar_model).prior.material : paper_pmma();
+  const Material specimen = read_material(settings.specimen);
+  refuse_not_positive(settings.noise_microstrain, "--noise");
+  PlanOptions options;
+  options.noise_strain = 1e-6 * settings.noise_microstrain.value_or(1e6 * options.noise_strain);
+  try {
+    const ShotPlan plan =
+        plan_shot(bench, bars, specimen, pulse_of(settings, bench, bars), options);
+    context.out << (context.json ? to_text(describe(plan)) + "\n" : report(plan));
+  } catch (const InputError& error) {
+    throw error.inside(settings.bench);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command plan_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "plan";
+  command.purpose =
+      "what a shot will give before it is fired\n"
+      "Strain, rate, time to equilibrium, windows and gauge ranges, from a striker's speed or a\n"
+      "pulse, for a linear specimen.";
+  command.examples =
+      "  kolsky plan --bench bench.toml --specimen core.toml --pulse-strain 1e-3 --pulse-duration "
+      "170e-6 --rise 40e-6\n"
+      "  kolsky plan --bench bench.toml --specimen core.toml --striker-speed 12\n";
+  command.arguments = {
+      needed("--bench", "BENCH.toml", "the bench file: bars, gauges, specimen, striker", &s.bench),
+      needed("--specimen", "S.toml", "material file of the specimen", &s.specimen),
+      option("--bar-model", "M.toml", "material file of viscoelastic bars; else the paper's PMMA",
+             &s.bar_model),
+      option("--striker-speed", "V", "in m/s; else the bench's own", &s.striker_speed),
+      option("--pulse-strain", "STRAIN", "of the incident pulse, instead of a speed",
+             &s.pulse_strain),
+      option("--pulse-duration", "S", "of the incident pulse in s", &s.pulse_duration_s),
+      option("--rise", "S", "of the pulse in s; else what a wave needs along the bar's diameter",
+             &s.rise_s),
+      option("--noise", "MICROSTRAIN", "rms at the gauges; 5 by default", &s.noise_microstrain)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

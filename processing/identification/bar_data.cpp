@@ -1,0 +1,254 @@
+#include "processing/identification/bar_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
+#include "processing/reduction/band_limit.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Beyond this multiple of the low-pass's limit exp(-(w/wc)^4) is below 1e-12.
+constexpr double kFilteredFrom = 2.5;
+/// Zeros before and after each record, in time: the filter reaches to both sides, and what it
+/// smears before the first sample would come round to the end of the transform, where undamping
+/// raises it.
+constexpr double kLead_s = 100e-6;
+/// The filter passes half at this multiple of the highest frequency that is judged, and nearly all
+/// below it.
+constexpr double kFilterOverBand = 1.6;
+/// What the filter smears over the cut ends of a record reaches this many of its 1/wc into it.
+constexpr double kEdge = 16.0;
+constexpr std::size_t kFewestJudged = 64;
+/// In c / a. From about 0.3 on surface gauges see next to nothing of the first mode, and higher
+/// modes propagate soon after.
+constexpr double kFirstModeAlone = 0.25;
+
+std::size_t longest(const std::vector<Shot>& shots) {
+  std::size_t samples = 0;
+  for (const Shot& shot : shots) {
+    samples = std::max(samples, shot.samples());
+  }
+  return samples;
+}
+
+std::vector<BarRecords> read_all(const std::vector<Shot>& shots) {
+  std::vector<BarRecords> records;
+  for (const Shot& shot : shots) {
+    if (shot.rate != shots.front().rate || shot.bench_toml != shots.front().bench_toml) {
+      throw InputError("capture " + shot.id, "is of another bench or rate than " + shots.front().id,
+                       "identify a bar from shots on one bench");
+    }
+    try {
+      records.push_back(read_bar_records(shot));
+    } catch (const InputError& error) {
+      throw error.inside("capture " + shot.id);
+    }
+  }
+  return records;
+}
+
+/// Speed of the first pulse from the first gauge to the last.
+double rough_speed_m_per_s(const BarRecords& records) {
+  const double span_m = records.position_m.back() - records.position_m.front();
+  const double time_s = records.rise_s.back() - records.rise_s.front();
+  return time_s > 0.0 ? span_m / time_s : 0.0;
+}
+
+}  // namespace
+
+BarData::BarData(const std::vector<Shot>& shots, double band_limit_Hz)
+    : bench_(shots.front().bench),
+      records_(read_all(shots)),
+      lead_(static_cast<std::size_t>(std::ceil(kLead_s * shots.front().rate.Hz()))),
+      transform_(longest(shots) + 2 * lead_, shots.front().rate.period_s()) {
+  choose_band(band_limit_Hz);
+  choose_judged_part();
+  prepare_noise();
+  prepare_spectra();
+}
+
+void BarData::choose_band(double asked_Hz) {
+  BandLimit band(transform_, transform_.length());
+  const double nyquist_Hz = 0.5 / records_.front().period_s;
+  if (asked_Hz > nyquist_Hz / kFilterOverBand) {
+    throw InputError("band limit",
+                     "of " + in_words(asked_Hz, "Hz") + " is too near to half the sampling rate",
+                     "give at most " + in_words(nyquist_Hz / kFilterOverBand, "Hz"));
+  }
+  band_limit_Hz_ = asked_Hz;
+  if (asked_Hz <= 0.0) {
+    for (const BarRecords& records : records_) {
+      band_limit_Hz_ = std::max(band_limit_Hz_,
+                                band.from_noise(records.strain.front(), records.noise_rms.front()));
+    }
+    const double speed = rough_speed_m_per_s(records_.front());
+    if (speed > 0.0) {
+      band_limit_Hz_ =
+          std::min(band_limit_Hz_, kFirstModeAlone * speed / bench_.input.dispersion_radius_m());
+    }
+  }
+  filter_limit_Hz_ = kFilterOverBand * band_limit_Hz_;
+  const auto carried =
+      static_cast<std::size_t>(kFilteredFrom * filter_limit_Hz_ / transform_.bin_width_Hz()) + 1;
+  for (std::size_t k = 0; k < std::min(carried, transform_.bins()); ++k) {
+    path_.push_back(transform_.s(k));
+  }
+}
+
+/// Away from the records' cut ends, by as many samples of the lower rate as make a good transform.
+void BarData::choose_judged_part() {
+  const double period_s = records_.front().period_s;
+  const double duration_s = static_cast<double>(transform_.length()) * period_s;
+  const std::size_t slow_length =
+      std::min(good_transform_length(2 * path_.size()), transform_.length());
+  slow_.emplace(slow_length, duration_s / static_cast<double>(slow_length));
+  slow_spectrum_.resize(slow_->bins());
+  slow_record_.resize(slow_->length());
+  std::size_t shortest = transform_.length();
+  for (const BarRecords& records : records_) {
+    shortest = std::min(shortest, records.strain.front().size());
+  }
+  const double per_sample = static_cast<double>(slow_length) /
+                            static_cast<double>(transform_.length());  // of the lower rate
+  const double edge = kEdge / 2.0 * BandLimit::smear_s(filter_limit_Hz_) / period_s;
+  const auto lead = static_cast<double>(lead_);
+  places_.samples_per_place = 1.0 / per_sample;
+  places_.records_begin = lead * per_sample;
+  places_.quiet_end = (lead + static_cast<double>(records_.front().quiet_samples)) * per_sample;
+  places_.records_end = (lead + static_cast<double>(shortest)) * per_sample;
+  const double begin = lead + std::max(edge, quiet_to_skip(edge));
+  places_.judged_begin = static_cast<std::size_t>(std::ceil(begin * per_sample));
+  const double last = (lead + static_cast<double>(shortest) - 1.0 - edge) * per_sample;
+  const double room = last - static_cast<double>(places_.judged_begin);
+  if (room < static_cast<double>(kFewestJudged)) {
+    throw InputError("samples", "are too few for a band of " + in_words(band_limit_Hz_, "Hz"),
+                     "give longer records");
+  }
+  auto judged = static_cast<std::size_t>(room) / 2 * 2;
+  while (good_transform_length(judged) != judged) {
+    judged -= 2;
+  }
+  places_.judged_end = places_.judged_begin + judged;
+  plain_.emplace(judged, duration_s / static_cast<double>(slow_length), 1.0);
+  plain_spectrum_.resize(plain_->bins());
+  const auto bins = std::min(plain_->bins() - 1,
+                             static_cast<std::size_t>(band_limit_Hz_ / plain_->bin_width_Hz()));
+  if (bins < 2) {
+    throw InputError("band limit", "of " + in_words(band_limit_Hz_, "Hz") + " leaves no frequency",
+                     "give a wider band or a longer record");
+  }
+  for (std::size_t k = 1; k <= bins; ++k) {
+    judged_path_.push_back(plain_->s(k));
+  }
+}
+
+/// Noise of the first gauge reaches the others by way of the model only after a wave's travel: what
+/// is judged begins after that, as far as the pulse allows, so that the noise judged is steady.
+double BarData::quiet_to_skip(double edge) const {
+  double skip = 1e300;
+  for (const BarRecords& records : records_) {
+    const double travel_s = 1.1 * (records.rise_s.back() - records.rise_s.front());
+    const double latest = (records.foot_s / records.period_s) - edge;
+    skip = std::min({skip, travel_s / records.period_s + edge, latest});
+  }
+  return skip;
+}
+
+double BarData::judged_s() const {
+  return 1.0 / plain_->bin_width_Hz();
+}
+
+/// Each gauge's noise from the quiet part of all shots together; never less than that of its codes.
+void BarData::prepare_noise() {
+  const double period_s = records_.front().period_s;
+  const double rate_share =
+      static_cast<double>(slow_->length()) / static_cast<double>(transform_.length());
+  for (std::size_t j = 0; j < gauges(); ++j) {
+    std::vector<std::span<const double>> quiet;
+    double floor = 0.0;
+    for (const BarRecords& records : records_) {
+      quiet.emplace_back(records.strain[j].data(), records.quiet_samples);
+      floor = std::max(floor, records.step[j] * records.step[j] / 12.0);
+    }
+    const NoiseSpectrum noise(quiet);
+    std::vector<double> power;
+    for (const Complex s : judged_path_) {
+      const double cycles = s.imag() / (2.0 * std::numbers::pi) * period_s;
+      power.push_back(std::max(noise.power(cycles), floor) * static_cast<double>(plain_->length()) *
+                      rate_share);
+    }
+    noise_power_.push_back(std::move(power));
+    slow_noise_.push_back(noise.slow_parts());
+    auto& of_mean = variance_of_baseline_.emplace_back();
+    for (const BarRecords& records : records_) {
+      const auto quiet_samples = static_cast<double>(records.quiet_samples);
+      of_mean.push_back(
+          std::max(noise.variance_of_mean(records.quiet_samples), floor / quiet_samples));
+    }
+  }
+}
+
+double BarData::baseline_sd(std::size_t shot, std::size_t gauge) const {
+  return std::sqrt(variance_of_baseline_[gauge][shot]);
+}
+
+void BarData::prepare_spectra() {
+  BandLimit band(transform_, 16);
+  Spectrum filter(transform_.bins(), 1.0);
+  band.apply_half(filter_limit_Hz_, filter);
+  Spectrum whole(transform_.bins());
+  std::vector<double> padded(transform_.length());
+  const auto filtered = [&](std::span<const double> record) {
+    std::fill(padded.begin(), padded.end(), 0.0);
+    std::copy(record.begin(), record.end(), padded.begin() + static_cast<std::ptrdiff_t>(lead_));
+    transform_.forward(padded, whole);
+    Spectrum spectrum(path_.size());
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+      spectrum[k] = whole[k] * filter[k] * filter[k];
+    }
+    return spectrum;
+  };
+  BandLimit plain_band(*plain_, 16);
+  Spectrum ones(plain_->bins(), 1.0);
+  plain_band.apply_half(filter_limit_Hz_, ones);
+  for (std::size_t k = 0; k < judged_path_.size(); ++k) {
+    undo_filter_.push_back(1.0 / std::norm(ones[k + 1]));
+  }
+  for (const BarRecords& records : records_) {
+    auto& of_shot = spectra_.emplace_back();
+    auto& judged_of_shot = judged_.emplace_back();
+    for (const auto& strain : records.strain) {
+      of_shot.push_back(filtered(strain));
+      judge(of_shot.back(), judged_of_shot.emplace_back(judged_path_.size()));
+    }
+  }
+  unit_offset_ = filtered(std::vector<double>(records_.front().strain.front().size(), 1.0));
+  unit_impulse_ = filtered(std::vector<double>{1.0});
+}
+
+std::span<const double> BarData::in_time(std::span<const Complex> damped) {
+  const double scale = 1.0 / places_.samples_per_place;
+  const std::size_t carried = std::min(damped.size(), slow_spectrum_.size());
+  for (std::size_t k = 0; k < carried; ++k) {
+    slow_spectrum_[k] = damped[k] * scale;
+  }
+  std::fill(slow_spectrum_.begin() + static_cast<std::ptrdiff_t>(carried), slow_spectrum_.end(),
+            0.0);
+  const std::span<double> record(slow_record_.data(), places_.judged_end);
+  slow_->inverse(slow_spectrum_, record);
+  return record;
+}
+
+void BarData::judge(std::span<const Complex> damped, std::span<Complex> judged) {
+  plain_->forward(in_time(damped).subspan(places_.judged_begin), plain_spectrum_);
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    judged[k] = plain_spectrum_[k + 1] * undo_filter_[k];
+  }
+}
+
+}  // namespace kolsky

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "processing/base/shot.hpp"
+#include "processing/identification/bar_records.hpp"
+#include "processing/identification/noise_spectrum.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// Records of one bar's shots as a fit needs them: damped spectra, low-passed and cut off where the
+/// low-pass has left nothing, and the way back to the part of the record that is judged.
+///
+/// A filter that is causal along the bar is applied to the damped spectra. What comes out is looked
+/// at in time at a lower rate, its ends (where the low-pass smears the record's cut ends) are left
+/// away, and the rest goes to the imaginary axis: so a record that ends while waves ring costs
+/// nothing. Offsets live in the bin at zero, which is left out.
+///
+/// Holds work space: one thread at a time.
+class BarData {
+ public:
+  using Spectrum = std::vector<Complex>;
+
+  /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where waves of the
+  ///   first mode end to be all there is
+  /// @throws InputError where the shots are of different benches or cannot serve (see
+  ///   read_bar_records)
+  BarData(const std::vector<Shot>& shots, double band_limit_Hz);
+
+  [[nodiscard]] const Bench& bench() const { return bench_; }
+  [[nodiscard]] const std::vector<BarRecords>& records() const { return records_; }
+  [[nodiscard]] std::size_t shots() const { return records_.size(); }
+  [[nodiscard]] std::size_t gauges() const { return records_.front().position_m.size(); }
+  [[nodiscard]] double band_limit_Hz() const { return band_limit_Hz_; }
+  /// What is judged of each record, from the first judged sample to the last.
+  [[nodiscard]] double judged_s() const;
+
+  /// Where the damped spectra are, and those on the imaginary axis.
+  [[nodiscard]] const std::vector<Complex>& path() const { return path_; }
+  [[nodiscard]] const std::vector<Complex>& judged_path() const { return judged_path_; }
+
+  [[nodiscard]] const Spectrum& spectrum(std::size_t shot, std::size_t gauge) const {
+    return spectra_[shot][gauge];
+  }
+  /// The same of a record that is 1 throughout.
+  [[nodiscard]] const Spectrum& unit_offset() const { return unit_offset_; }
+  /// The same of a record that is 1 in its first sample and 0 after it.
+  [[nodiscard]] const Spectrum& unit_impulse() const { return unit_impulse_; }
+  /// A damped spectrum in time, at the lower rate, from the first sample before which it is zero.
+  [[nodiscard]] std::span<const double> in_time(std::span<const Complex> damped);
+  /// Places at the lower rate: where records begin, are no longer quiet and end, and
+  /// what is judged of them.
+  struct Places {
+    double records_begin = 0.0;
+    double quiet_end = 0.0;
+    double records_end = 0.0;
+    std::size_t judged_begin = 0;
+    std::size_t judged_end = 0;
+    double samples_per_place = 1.0;  ///< of the records
+  };
+  [[nodiscard]] const Places& places() const { return places_; }
+  /// Standard deviation of a shot's baseline at a gauge.
+  [[nodiscard]] double baseline_sd(std::size_t shot, std::size_t gauge) const;
+
+  /// The judged part of a damped spectrum, on the imaginary axis, the low-pass undone.
+  void judge(std::span<const Complex> damped, std::span<Complex> judged);
+  [[nodiscard]] const Spectrum& judged(std::size_t shot, std::size_t gauge) const {
+    return judged_[shot][gauge];
+  }
+  /// What `judge` multiplies a bin of the transform by.
+  [[nodiscard]] double undo_filter(std::size_t bin) const { return undo_filter_[bin]; }
+  /// The parts of a gauge's noise that are slower than a sample, in its samples.
+  [[nodiscard]] const std::vector<NoiseSpectrum::SlowPart>& slow_noise(std::size_t gauge) const {
+    return slow_noise_[gauge];
+  }
+  /// Power of a gauge's noise in each judged bin.
+  [[nodiscard]] const std::vector<double>& noise_power(std::size_t gauge) const {
+    return noise_power_[gauge];
+  }
+
+ private:
+  void choose_band(double asked_Hz);
+  void choose_judged_part();
+  [[nodiscard]] double quiet_to_skip(double edge) const;
+  void prepare_noise();
+  void prepare_spectra();
+
+  Bench bench_;
+  std::vector<BarRecords> records_;
+  std::size_t lead_;  ///< zeros before and after each record
+  DampedTransform transform_;
+  std::optional<DampedTransform> slow_;   ///< the same stretch of time at the lower rate
+  std::optional<DampedTransform> plain_;  ///< of what is judged, undamped
+  double band_limit_Hz_ = 0.0;
+  double filter_limit_Hz_ = 0.0;
+  Places places_;
+  std::vector<Complex> path_;
+  std::vector<Complex> judged_path_;
+  std::vector<double> undo_filter_;
+  std::vector<std::vector<Spectrum>> spectra_;
+  std::vector<std::vector<Spectrum>> judged_;
+  Spectrum unit_offset_;
+  Spectrum unit_impulse_;
+  std::vector<std::vector<double>> noise_power_;
+  std::vector<std::vector<double>> variance_of_baseline_;  ///< by gauge and shot
+  std::vector<std::vector<NoiseSpectrum::SlowPart>> slow_noise_;
+  Spectrum slow_spectrum_;
+  Spectrum plain_spectrum_;
+  std::vector<double> slow_record_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,406 @@
+#include "processing/identification/bar_identification.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kToldApart = 5.0;  // odds of 150 to 1
+constexpr double kPartialAhead = 10.0;
+constexpr double kPaperBand_Hz = 15e3;
+
+/// Fits made so far, so that none is made twice.
+class Explanations {
+ public:
+  explicit Explanations(BarData& data) : data_(data) {}
+
+  /// Null where it cannot be fitted.
+  const BarFit* at(const BarTheory& theory, const BarFit* near = nullptr) {
+    for (const auto& known : fits_) {
+      if (known->alternative.theory == theory) {
+        return known->fit ? &*known->fit : nullptr;
+      }
+    }
+    Entry entry;
+    entry.alternative.theory = theory;
+    try {
+      const bool same_parameters = near != nullptr && near->solid == theory.solid &&
+                                   theory.far_end != FarEndReturn::partial &&
+                                   near->far_end != FarEndReturn::partial;
+      entry.fit = fitted(theory, same_parameters ? near->at : std::vector<double>{});
+      entry.alternative.log_evidence = entry.fit->log_evidence;
+      entry.alternative.chi2_reduced = entry.fit->chi2_reduced;
+    } catch (const InputError& error) {
+      entry.alternative.failed = error.problem();
+    }
+    fits_.push_back(std::make_unique<Entry>(std::move(entry)));
+    return fits_.back()->fit ? &*fits_.back()->fit : nullptr;
+  }
+
+  /// Where a bar shows no loss, its retardation can be anything and a search may not end; it does
+  /// from the elastic fit.
+  BarFit fitted(const BarTheory& theory, const std::vector<double>& start) {
+    try {
+      return fit_bar(data_, theory, start);
+    } catch (const InputError&) {
+      if (theory.solid != SolidKind::three_element || theory.lossless) {
+        throw;
+      }
+    }
+    BarTheory elastic = theory;
+    elastic.lossless = true;
+    return fit_bar(data_, theory, fit_bar(data_, elastic).at);
+  }
+
+  [[nodiscard]] std::vector<Alternative> alternatives() const {
+    std::vector<Alternative> list;
+    for (const auto& entry : fits_) {
+      list.push_back(entry->alternative);
+    }
+    std::stable_sort(list.begin(), list.end(), [](const Alternative& a, const Alternative& b) {
+      return a.failed.empty() != b.failed.empty() ? a.failed.empty()
+                                                  : a.log_evidence > b.log_evidence;
+    });
+    return list;
+  }
+
+ private:
+  struct Entry {
+    Alternative alternative;
+    std::optional<BarFit> fit;
+  };
+  BarData& data_;
+  std::vector<std::unique_ptr<Entry>> fits_;
+};
+
+/// The best of some fits, and by how much it is ahead of the next.
+struct Best {
+  const BarFit* fit = nullptr;
+  Choice choice;
+};
+
+Best best_of(const std::vector<const BarFit*>& fits) {
+  Best best;
+  double second = 0.0;
+  bool has_second = false;
+  for (const BarFit* fit : fits) {
+    if (fit == nullptr) {
+      continue;
+    }
+    if (best.fit == nullptr || fit->log_evidence > best.fit->log_evidence) {
+      if (best.fit != nullptr) {
+        second = best.fit->log_evidence;
+        has_second = true;
+      }
+      best.fit = fit;
+    } else if (!has_second || fit->log_evidence > second) {
+      second = fit->log_evidence;
+      has_second = true;
+    }
+  }
+  best.choice.ahead = has_second ? best.fit->log_evidence - second : 0.0;
+  best.choice.told_apart = has_second && best.choice.ahead > kToldApart;
+  return best;
+}
+
+/// Adds to a fit's covariance how far others that explain the records nearly as well lie from it,
+/// by their odds.
+void take_in(const std::vector<const BarFit*>& others, BarFit& fit) {
+  double odds = 1.0;
+  for (const BarFit* other : others) {
+    odds += other != nullptr ? std::exp(other->log_evidence - fit.log_evidence) : 0.0;
+  }
+  for (const BarFit* other : others) {
+    if (other == nullptr) {
+      continue;
+    }
+    const double share = std::exp(other->log_evidence - fit.log_evidence) / odds;
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+      const double di = other->parameters[i].value - fit.parameters[i].value;
+      for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
+        const double dj = other->parameters[j].value - fit.parameters[j].value;
+        fit.covariance[i][j] += share * (other->covariance[i][j] - fit.covariance[i][j] + di * dj);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    fit.parameters[i].sd = std::sqrt(fit.covariance[i][i]);
+  }
+}
+
+std::vector<FittedNumber> over_shots(const BarFit& fit) {
+  std::vector<FittedNumber> numbers = fit.parameters;
+  const auto count = static_cast<double>(fit.shots.size());
+  for (std::size_t m = 0; m < numbers.size(); ++m) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const ShotEstimate& shot : fit.shots) {
+      sum += shot.parameters[m].value;
+    }
+    for (const ShotEstimate& shot : fit.shots) {
+      squares += std::pow(shot.parameters[m].value - sum / count, 2);
+    }
+    numbers[m].value = sum / count;
+    numbers[m].sd = count > 1.0 ? std::sqrt(squares / (count - 1.0)) : numbers[m].sd;
+  }
+  return numbers;
+}
+
+std::string rounded(double value) {
+  return in_words(value, "");
+}
+
+void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warnings) {
+  const BarFit& three = result.three_element;
+  if (three.chi2_reduced > 1.3) {
+    warnings.push_back("the three-element solid leaves more than noise: reduced chi2 " +
+                       rounded(three.chi2_reduced) +
+                       "; deviations are widened by its root, which does not cover what the model "
+                       "lacks");
+  }
+  const FittedNumber& E2 = three.parameters[1];
+  if (three.lossless || E2.sd > 0.3 * E2.value) {
+    warnings.push_back(
+        "next to no loss stands out of the noise: E2 and eta2 are not determined; the bar is as "
+        "good as elastic with E1");
+    return;
+  }
+  for (std::size_t i = 0; i < three.parameters.size(); ++i) {
+    double scatter = 0.0;
+    for (const ShotEstimate& shot : three.shots) {
+      scatter += std::pow(
+          (shot.parameters[i].value - result.over_shots[i].value) / shot.parameters[i].sd, 2);
+    }
+    const auto freedom = static_cast<double>(three.shots.size()) - 1.0;
+    if (freedom > 0.0 && scatter > freedom + 4.0 * std::sqrt(2.0 * freedom) + 4.0) {
+      warnings.push_back("shots differ in " + three.parameters[i].name +
+                         " by more than their noise: temperature, amplitude or mounting changed "
+                         "between them");
+    }
+  }
+}
+
+void warn_of_choices(const BarIdentification& result, std::vector<std::string>& warnings) {
+  if (!result.wave_theory.asked && !result.wave_theory.told_apart) {
+    warnings.push_back(
+        "the records do not tell the wave theories apart; deviations take in how far they lie from "
+        "each other");
+  }
+  if (!result.far_end.asked && !result.far_end.told_apart) {
+    warnings.push_back("the records do not show what the far end returns");
+  }
+  if (result.fit.far_end == FarEndReturn::none && result.far_end.told_apart) {
+    warnings.push_back("nothing comes back from the far end, though the bench's bar ends there");
+  }
+  if (result.fit.far_end == FarEndReturn::partial) {
+    warnings.push_back("the far end is neither free nor silent: it returns " +
+                       rounded(result.fit.reflection->value) + " of the stress");
+  }
+  for (const Alternative& other : result.alternatives) {
+    if (other.failed.empty() && other.theory.solid != SolidKind::three_element &&
+        other.theory.waves == result.three_element.theory &&
+        other.theory.far_end == result.three_element.far_end &&
+        other.log_evidence > result.three_element.log_evidence + kPartialAhead) {
+      warnings.push_back("a " + name_of(other.theory.solid) +
+                         " solid explains the records better than three elements, by a log "
+                         "evidence of " +
+                         rounded(other.log_evidence - result.three_element.log_evidence));
+    }
+  }
+}
+
+void warn_of_bench(const BarData& data, const BarFit& fit, std::vector<std::string>& warnings) {
+  const auto unknowns = known_unknowns(data.bench(), data.records().front());
+  for (std::size_t i = 0; i < fit.bench.size(); ++i) {
+    const double moves = fit.bench[i].value / unknowns[i].sd;
+    if (std::abs(moves) > 3.0) {
+      warnings.push_back(fit.bench[i].name + " would have to be off by " + rounded(moves) +
+                         " of its filed deviations");
+    }
+  }
+}
+
+/// Loss must not be negative: J2 averaged over a band, by its noise.
+void warn_of_gain(const BarSpectrum& spectrum, std::vector<std::string>& warnings) {
+  constexpr double kSignificant = 4.0;
+  double weights = 0.0;
+  double sum = 0.0;
+  std::size_t below = 0;
+  for (std::size_t k = 0; k < spectrum.frequency_Hz.size(); ++k) {
+    const double weight = 1.0 / std::pow(spectrum.J2_per_Pa.sd_of_mean[k], 2);
+    weights += weight;
+    sum += weight * spectrum.J2_per_Pa.mean[k];
+    below += spectrum.J2_per_Pa.mean[k] < -kSignificant * spectrum.J2_per_Pa.sd_of_mean[k] ? 1 : 0;
+  }
+  if (weights > 0.0 && sum < -kSignificant * std::sqrt(weights)) {
+    warnings.push_back(
+        "not passive: J2 is negative on average over the band; waves would grow on their way. "
+        "Check "
+        "the gauge factors and the order of the gauges");
+  } else if (below > 0) {
+    warnings.push_back("not passive: J2 is negative beyond four deviations at " +
+                       std::to_string(below) + " frequencies");
+  }
+}
+
+}  // namespace
+
+std::string name_of(WaveTheory theory) {
+  switch (theory) {
+    case WaveTheory::elementary:
+      return "elementary";
+    case WaveTheory::love:
+      return "love";
+    case WaveTheory::exact:
+      break;
+  }
+  return "exact";
+}
+
+BarIdentification identify_bar(const std::vector<Shot>& shots,
+                               const BarIdentificationOptions& options) {
+  if (shots.empty()) {
+    throw InputError("captures", "are none", "give at least one shot on the bar");
+  }
+  BarData data(shots, options.band_limit_Hz);
+  Explanations explanations(data);
+  const SolidKind three = SolidKind::three_element;
+  const std::vector<FarEndReturn> ends = options.far_end
+                                             ? std::vector{*options.far_end}
+                                             : std::vector{FarEndReturn::free, FarEndReturn::none};
+  const std::vector<WaveTheory> theories =
+      options.theory ? std::vector{*options.theory}
+                     : std::vector{WaveTheory::exact, WaveTheory::love, WaveTheory::elementary};
+
+  const auto over_ends = [&](WaveTheory waves, const BarFit* near) {
+    std::vector<const BarFit*> fits;
+    for (const FarEndReturn end : ends) {
+      fits.push_back(explanations.at({waves, three, end}, near));
+    }
+    return fits;
+  };
+  Best end = best_of(over_ends(theories.front(), nullptr));
+  std::vector<const BarFit*> over_theories;
+  for (const WaveTheory waves : theories) {
+    const FarEndReturn likely = end.fit != nullptr ? end.fit->far_end : ends.front();
+    over_theories.push_back(explanations.at({waves, three, likely}, end.fit));
+  }
+  Best theory = best_of(over_theories);
+  if (theory.fit == nullptr) {
+    // Says why.
+    (void)fit_bar(data, {theories.front(), three, ends.front()});
+  }
+  // What comes back, again, under the theory that was chosen.
+  end = best_of(over_ends(theory.fit->theory, theory.fit));
+  const BarFit* three_element = end.fit;
+  if (!options.far_end && end.choice.told_apart) {
+    const BarFit* partial = explanations.at({three_element->theory, three, FarEndReturn::partial});
+    if (partial != nullptr && partial->log_evidence > three_element->log_evidence + kPartialAhead) {
+      three_element = partial;
+    }
+  }
+
+  BarTheory elastic{three_element->theory, three, three_element->far_end, true};
+  if (const BarFit* lossless = explanations.at(elastic);
+      lossless != nullptr && lossless->log_evidence > three_element->log_evidence) {
+    three_element = lossless;
+  }
+
+  BarIdentification result;
+  result.three_element = *three_element;
+  if (three_element->lossless) {
+    for (std::size_t i = 1; i < result.three_element.parameters.size(); ++i) {
+      result.three_element.parameters[i].sd = result.three_element.parameters[i].value;
+    }
+  }
+  result.wave_theory = theory.choice;
+  result.wave_theory.asked = options.theory.has_value();
+  result.far_end = end.choice;
+  result.far_end.asked = options.far_end.has_value();
+  const BarFit* chosen = three_element;
+  const auto with_solid = [&](SolidKind solid) {
+    return explanations.at({three_element->theory, solid, three_element->far_end}, three_element);
+  };
+  if (options.solid && *options.solid != three) {
+    chosen = with_solid(*options.solid);
+    if (chosen == nullptr) {
+      (void)fit_bar(data, {three_element->theory, *options.solid, three_element->far_end});
+    }
+    result.solid.asked = true;
+  }
+  if ((options.compare_solids || !options.solid) && !three_element->lossless) {
+    std::vector<const BarFit*> over_solids = {three_element};
+    for (const SolidKind solid :
+         {SolidKind::four_element_fluid, SolidKind::two_kelvin, SolidKind::fractional}) {
+      over_solids.push_back(with_solid(solid));
+    }
+    const Best solid = best_of(over_solids);
+    const bool asked = result.solid.asked;
+    result.solid = solid.choice;
+    result.solid.asked = asked || options.solid.has_value();
+    if (!options.solid) {
+      chosen = solid.fit;
+    }
+  }
+  result.fit = *chosen;
+  result.alternatives = explanations.alternatives();
+  result.over_shots = over_shots(result.three_element);
+  result.spectrum = likely_spectrum(data, result.fit);
+  result.straight_lines = straight_line_spectrum(data, result.fit);
+  result.paper = three_elements_through(result.straight_lines, kPaperBand_Hz);
+  if (!options.theory && !result.wave_theory.told_apart) {
+    std::vector<const BarFit*> others;
+    for (const BarFit* other : over_theories) {
+      if (other != nullptr && other->theory != result.three_element.theory &&
+          other->far_end == result.three_element.far_end) {
+        others.push_back(other);
+      }
+    }
+    take_in(others, result.three_element);
+  }
+  for (const Shot& shot : shots) {
+    result.shot_ids.push_back(shot.id);
+  }
+  warn_of_fit(result, result.warnings);
+  warn_of_choices(result, result.warnings);
+  warn_of_bench(data, result.three_element, result.warnings);
+  warn_of_gain(result.spectrum, result.warnings);
+  return result;
+}
+
+std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit) {
+  BarData data(shots, fit.band_limit_Hz);
+  const BarModel model(data.bench(), data.records().front(), {fit.theory, fit.solid, fit.far_end});
+  const auto transfers = model.transfers(fit.at, data.path(), false);
+  const BarData::Places& places = data.places();
+  const double period_s = data.records().front().period_s * places.samples_per_place;
+  std::vector<ForetoldShot> list;
+  BarData::Spectrum product(data.path().size());
+  const auto judged = [&](const BarData::Spectrum& spectrum) {
+    const auto record = data.in_time(spectrum).subspan(places.judged_begin);
+    return std::vector<double>(record.begin(), record.end());
+  };
+  for (std::size_t i = 0; i < data.shots(); ++i) {
+    ForetoldShot& shot = list.emplace_back();
+    shot.id = shots[i].id;
+    for (std::size_t n = places.judged_begin; n < places.judged_end; ++n) {
+      shot.time_s.push_back((static_cast<double>(n) - places.records_begin) * period_s);
+    }
+    for (std::size_t j = 1; j < data.gauges(); ++j) {
+      for (std::size_t k = 0; k < product.size(); ++k) {
+        product[k] = transfers[j - 1].g[k] * data.spectrum(i, 0)[k];
+      }
+      shot.gauges.push_back({data.bench().gauges[data.records()[i].channel[j]].name,
+                             judged(data.spectrum(i, j)), judged(product)});
+    }
+  }
+  return list;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/identification/bar_fit.hpp"
+#include "processing/identification/bar_spectrum.hpp"
+
+namespace kolsky {
+
+struct BarIdentificationOptions {
+  std::optional<WaveTheory> theory{};  ///< none: the one the records are evidence for
+  std::optional<SolidKind> solid =
+      SolidKind::three_element;           ///< none: the one the records are evidence for
+  std::optional<FarEndReturn> far_end{};  ///< none: the one the records are evidence for
+  bool compare_solids = true;             ///< fit the other families too, for the table
+  double band_limit_Hz = 0.0;             ///< 0: where the pulses fall below the noise
+};
+
+/// One way to explain the records.
+struct Alternative {
+  BarTheory theory;
+  double log_evidence = 0.0;
+  double chi2_reduced = 0.0;
+  std::string failed;  ///< why there is no fit; empty where there is one
+};
+
+/// What the records say of the choice between explanations that differ in one respect.
+struct Choice {
+  bool told_apart = false;  ///< the best is ahead by a log evidence of 5
+  double ahead = 0.0;       ///< by how much; 0 where there was nothing to choose
+  bool asked = false;       ///< the caller chose
+};
+
+struct BarIdentification {
+  BarFit fit;            ///< of the solid that was asked for, or that the evidence chose
+  BarFit three_element;  ///< under the same wave theory and far end
+  Choice wave_theory, far_end, solid;
+  std::vector<Alternative> alternatives;  ///< every fit made, best first
+  std::vector<FittedNumber> over_shots;   ///< three-element: mean of the shots' own, sd over them
+  BarSpectrum spectrum;
+  BarSpectrum straight_lines;       ///< the paper's analysis, where it applies
+  std::vector<FittedNumber> paper;  ///< three-element solid through it up to 15 kHz
+  std::vector<std::string> shot_ids;
+  std::vector<std::string> warnings;
+};
+
+/// The whole identification of a bar from its shots: which waves travel in it, what comes back from
+/// its far end, what it is made of. Where theories cannot be told apart, the deviations of the
+/// three-element parameters take in how far these lie from each other, by their odds.
+/// @throws InputError as BarData, and where no explanation can be fitted
+[[nodiscard]] BarIdentification identify_bar(const std::vector<Shot>& shots,
+                                             const BarIdentificationOptions& options);
+
+/// What gauge 0 of a shot foretells for the others, by a fit (paper, Fig. 21).
+struct ForetoldGauge {
+  std::string name;
+  std::vector<double> measured, foretold;  ///< strain, low-passed alike
+};
+struct ForetoldShot {
+  std::string id;
+  std::vector<double> time_s;  ///< from the first sample
+  std::vector<ForetoldGauge> gauges;
+};
+[[nodiscard]] std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit);
+
+[[nodiscard]] std::string name_of(WaveTheory theory);
+
+}  // namespace kolsky

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "processing/identification/known_unknowns.hpp"
+#include "processing/identification/solids.hpp"
+#include "processing/waves/bar_modes.hpp"
+
+namespace kolsky {
+
+/// What comes back from a bar's far end: the wave inverted (free), nothing (a momentum trap, or the
+/// record ends before), or a share of it that is fitted.
+enum class FarEndReturn { free, none, partial };
+
+[[nodiscard]] std::string name_of(FarEndReturn far_end);
+
+/// What is assumed of a bar: waves, solid, far end.
+struct BarTheory {
+  WaveTheory waves = WaveTheory::exact;
+  SolidKind solid = SolidKind::three_element;
+  FarEndReturn far_end = FarEndReturn::free;
+  bool lossless = false;  ///< three elements of which E2 is too stiff to be seen: elastic
+  friend bool operator==(const BarTheory&, const BarTheory&) = default;
+};
+
+/// How a bar's gauges follow its first one. With a_j a gauge's gain, l_j its length and R what the
+/// far end returns of a stress (-1: free),
+///   h_j = a_j sinhc(gamma l_j / 2) (exp(-gamma x_j) + R exp(-gamma (2 L - x_j))),
+///   g_j = h_j / h_0, j = 1 .. gauges - 1: causal.
+///
+/// Parameters, in order: logarithms of the solid's, R where it is fitted, the bench's known
+/// unknowns in their standard deviations.
+class BarModel {
+ public:
+  using Spectrum = std::vector<Complex>;
+
+  BarModel(const Bench& bench, const BarRecords& records, const BarTheory& theory);
+
+  [[nodiscard]] const BarTheory& theory() const { return theory_; }
+  [[nodiscard]] std::size_t parameters() const;
+  [[nodiscard]] std::size_t solid_parameters() const { return parameters_of(theory_.solid).size(); }
+  [[nodiscard]] std::optional<std::size_t> reflection_at() const;
+  [[nodiscard]] std::size_t first_unknown() const;
+  [[nodiscard]] const std::vector<KnownUnknown>& unknowns() const { return unknowns_; }
+
+  [[nodiscard]] std::unique_ptr<const Compliance> solid(std::span<const double> at) const;
+  [[nodiscard]] MovedBench moved(std::span<const double> at) const;
+  [[nodiscard]] double reflection(std::span<const double> at) const;
+  /// A bar of another density: to waves the same as another J by that factor at every frequency.
+  void scale_density(double factor) { bar_.density_kg_m3.value *= factor; }
+
+  /// How g_j follows one parameter. Gains change g_j in proportion.
+  struct Derivative {
+    std::size_t parameter = 0;
+    std::optional<double> proportion;  ///< dg_j = proportion g_j, else
+    Spectrum of_g;
+  };
+  struct Transfer {
+    Spectrum g;
+    std::vector<Derivative> derivatives;  ///< only of parameters that move this g_j
+  };
+  /// One per gauge but the first, along a path as `bar_modes` takes it.
+  [[nodiscard]] std::vector<Transfer> transfers(std::span<const double> at,
+                                                const std::vector<Complex>& path,
+                                                bool with_derivatives) const;
+
+  /// First passages alone (R = 0): what noise of the first gauge becomes at once.
+  [[nodiscard]] std::vector<Transfer> first_passages(std::span<const double> at,
+                                                     const std::vector<Complex>& path,
+                                                     bool with_derivatives) const;
+
+  /// exp(-2 gamma (L - x)) of each gauge: what a wave that has passed it meets before it is back.
+  [[nodiscard]] std::vector<Spectrum> returns(std::span<const double> at,
+                                              const std::vector<Complex>& path) const;
+
+ private:
+  struct Place;
+  [[nodiscard]] std::vector<Transfer> transfers_with(std::span<const double> at, double reflection,
+                                                     const std::vector<Complex>& path,
+                                                     bool with_derivatives) const;
+  void differentiate(const Place& place, Transfer& transfer) const;
+
+  Bar bar_;
+  const BarRecords* records_;
+  BarTheory theory_;
+  std::vector<KnownUnknown> unknowns_;
+  std::vector<double> gauge_length_m_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+
+namespace kolsky::impact {
+
+inline constexpr int kMostBranches = 6;
+inline constexpr std::size_t kMostLanes = 8;  ///< of any kernel; arrays are padded to it
+
+/// Arrays of one element, each `pitch` long, in this order: for each of the four points the inverse
+/// of the reference Jacobian (dxi/dR, dxi/dZ, deta/dR, deta/dZ), its share of the element's volume
+/// and 1/R; then the element's reference volume over the full circle.
+inline constexpr std::size_t kGeometryPerPoint = 6;
+inline constexpr std::size_t kGeometryArrays = 4 * kGeometryPerPoint + 1;
+
+/// Contributions to the internal forces: radial, then axial, of the element's four nodes.
+inline constexpr std::size_t kForceArrays = 8;
+
+/// State of one branch: three deviatoric numbers in each of four points, and the volume's.
+inline constexpr std::size_t kStatePerBranch = 13;
+
+/// One Maxwell arm over a step. With strain linear in time over each step, its dashpot's strain is
+/// a = kept + weight_now x; kept' = decay a + weight_next x.
+struct BranchStep {
+  double shear_Pa = 0.0;  ///< 2 G of the arm
+  double bulk_Pa = 0.0;   ///< K of the arm
+  double rate_per_s = 0.0;
+  double weight_now = 0.0;
+  double decay = 0.0;
+  double weight_next = 0.0;
+};
+
+/// Elements of one material that follow one another in a structured block. Element e of the range
+/// has the nodes e, e + 1, e + stride and e + stride + 1 of the block; the last of each row is an
+/// empty one (volume 0), so that the range is one flat loop.
+struct ElementRange {
+  std::size_t count = 0;
+  std::size_t stride = 0;
+  std::size_t pitch = 0;           ///< of geometry and state; a multiple of kMostLanes
+  std::size_t force_pitch = 0;     ///< of the force arrays
+  const double* radial = nullptr;  ///< displacements, at the range's first node
+  const double* axial = nullptr;
+  const double* geometry = nullptr;
+  double* state = nullptr;
+  double* force = nullptr;  ///< the arrays begin at the range's first element
+
+  double shear_Pa = 0.0;  ///< 2 G, fully relaxed
+  double bulk_Pa = 0.0;   ///< K, fully relaxed
+  double nonlinearity = 0.0;
+  double cauchy = 0.0;  ///< 1: the law's stress is per deformed area, 0: per undeformed
+  int branches = 0;
+  BranchStep branch[kMostBranches];
+};
+
+/// Sums over a range. The second half is filled by `survey` alone.
+struct ElementSums {
+  double dissipated_W = 0.0;
+  double least_area_ratio = 1.0;  ///< least determinant of the in-plane deformation
+  double stored_J = 0.0;
+  double steepest_per_m2 = 0.0;  ///< largest squared gradient of an element's own coordinates
+};
+
+/// Internal forces of axisymmetric four-node quadrilaterals, 2 x 2 points, dilatation averaged over
+/// the element, for stress that is linear viscoelastic in Hencky's strain (docs/impact.md).
+struct ElementKernel {
+  const char* name;
+  int lanes;
+  void (*advance)(const ElementRange&, ElementSums&);
+  void (*survey)(const ElementRange&, ElementSums&);  ///< the same, and what the ledger asks for
+};
+
+/// The fastest kernel that this processor runs.
+[[nodiscard]] const ElementKernel& element_kernel();
+
+/// Every kernel that this processor runs, slowest first: tests compare them.
+[[nodiscard]] const ElementKernel* const* runnable_kernels(std::size_t& count);
+
+}  // namespace kolsky::impact

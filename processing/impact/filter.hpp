@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace kolsky::impact {
+
+/// Low-pass without delay: Gaussian weights, -3 dB at `cutoff_Hz`, renormalised at the ends.
+[[nodiscard]] std::vector<double> low_passed(std::span<const double> values, double interval_s,
+                                             double cutoff_Hz);
+
+/// Time derivative of the mean over a sliding window: [f(t + w/2) - f(t - w/2)]/w, that is the rate
+/// averaged over `window_s`. Shorter windows at the ends.
+[[nodiscard]] std::vector<double> mean_rate(std::span<const double> values, double interval_s,
+                                            double window_s);
+
+}  // namespace kolsky::impact

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/base/shot.hpp"
+#include "processing/planning/planned_pulse.hpp"
+#include "processing/reduction/loop_summary.hpp"
+#include "processing/reduction/reduction.hpp"
+#include "processing/reduction/validity.hpp"
+
+namespace kolsky {
+
+struct PlanOptions {
+  double noise_strain = 5e-6;  ///< rms at the gauges
+};
+
+/// What one gauge will show.
+struct GaugeForecast {
+  std::string name;
+  std::string unit;  ///< of the readings
+  double highest_strain = 0.0;
+  double lowest_strain = 0.0;
+  double highest_reading = 0.0;  ///< largest magnitude, for the amplifier's range
+};
+
+/// A shot before it is fired.
+struct ShotPlan {
+  PlannedPulse pulse;
+  double window_s = 0.0;   ///< at the first gauge: the incident pulse alone
+  double returns_s = 0.0;  ///< from arrival at the specimen until a far end answers there
+  double specimen_transit_s = 0.0;
+  std::vector<GaugeForecast> gauges;
+  Shot shot;            ///< as it would be recorded
+  Reduction reduction;  ///< as it would come out
+  LoopSummary summary;
+  Quotable quotable;
+};
+
+/// Foretells a shot on a linear specimen: its gauge records, from the waves of the paper's model,
+/// the specimen's mass included where its density is filed; and what the reduction makes of them.
+/// @throws InputError where the bench has no specimen or no gauges
+[[nodiscard]] ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& specimen,
+                                 const PlannedPulse& pulse, const PlanOptions& options);
+
+}  // namespace kolsky

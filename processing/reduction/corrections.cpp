@@ -1,0 +1,97 @@
+#include "processing/reduction/corrections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// d/dt by central differences.
+std::vector<double> slope_of(const std::vector<double>& history,
+                             const std::vector<double>& time_s) {
+  const std::size_t count = history.size();
+  std::vector<double> slope(count, 0.0);
+  for (std::size_t n = 0; n < count && count > 1; ++n) {
+    const std::size_t before = n > 0 ? n - 1 : 0;
+    const std::size_t after = std::min(n + 1, count - 1);
+    slope[n] = (history[after] - history[before]) / (time_s[after] - time_s[before]);
+  }
+  return slope;
+}
+
+/// Of rho h^2 (e' - e^2).
+double axial_share(StressFrom from) {
+  switch (from) {
+    case StressFrom::back:
+      return -1.0 / 6.0;
+    case StressFrom::front:
+      return 1.0 / 3.0;
+    case StressFrom::both_faces:
+      break;
+  }
+  return 1.0 / 12.0;
+}
+
+void take_off_inertia(StressFrom from, const Corrections& corrections, const Specimen& specimen,
+                      Reduction& r) {
+  if (!specimen.density_kg_m3) {
+    throw InputError("specimen.density_kg_m3", "is missing, so its inertia is not known",
+                     "file it, or leave the inertia corrections out");
+  }
+  const double rho = *specimen.density_kg_m3;
+  const double a2 = std::pow(specimen.diameter_m / 2.0, 2);
+  const double h2 = std::pow(specimen.length_m, 2);
+  const std::vector<double> growth = slope_of(r.strain_rate_per_s, r.time_s);
+  for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
+    const double square = std::pow(r.strain_rate_per_s[n], 2);
+    if (corrections.radial_inertia) {
+      r.stress_Pa[n] -= rho * a2 * (growth[n] / 8.0 + square / 16.0);
+    }
+    if (corrections.axial_inertia) {
+      r.stress_Pa[n] -= axial_share(from) * rho * h2 * (growth[n] - square);
+    }
+  }
+}
+
+}  // namespace
+
+StressFrom stress_from(const std::string& name) {
+  if (name == "three-wave") {
+    return StressFrom::both_faces;
+  }
+  if (name == "one-wave") {
+    return StressFrom::back;
+  }
+  if (name == "two-wave") {
+    return StressFrom::front;
+  }
+  throw InputError("stress", "\"" + name + "\" is not a way to take it",
+                   "give three-wave, one-wave or two-wave");
+}
+
+void set_stress(StressFrom from, const Corrections& corrections, const Specimen& specimen,
+                Reduction& r) {
+  const double area_m2 = specimen.area_m2();
+  for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
+    const double front = r.force_front_N[n];
+    const double back = r.force_back_N[n];
+    r.stress_Pa[n] = from == StressFrom::back    ? back / area_m2
+                     : from == StressFrom::front ? front / area_m2
+                                                 : (front + back) / (2.0 * area_m2);
+  }
+  if (corrections.axial_inertia || corrections.radial_inertia) {
+    take_off_inertia(from, corrections, specimen, r);
+  }
+  if (corrections.friction) {
+    const double slender = specimen.diameter_m / (3.0 * specimen.length_m);
+    for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
+      const double left = std::max(1e-3, 1.0 - r.strain[n]);
+      r.stress_Pa[n] /= 1.0 + *corrections.friction * slender * std::pow(left, -1.5);
+    }
+  }
+}
+
+}  // namespace kolsky

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+
+#include "processing/base/bench.hpp"
+#include "processing/reduction/reduction.hpp"
+
+namespace kolsky {
+
+/// Which forces the specimen's stress is taken from: three-wave, the mean of both faces; one-wave,
+/// the transmitted wave's, at the back; two-wave, that of incident and reflected, at the front.
+enum class StressFrom { both_faces, back, front };
+
+/// @throws InputError for any other name than three-wave, one-wave, two-wave
+[[nodiscard]] StressFrom stress_from(const std::string& name);
+
+/// What is taken off the stress besides. All off unless asked for.
+struct Corrections {
+  bool axial_inertia = false;
+  bool radial_inertia = false;
+  std::optional<double> friction;  ///< coefficient between specimen and bars
+
+  [[nodiscard]] bool any() const { return axial_inertia || radial_inertia || friction; }
+};
+
+/// Sets a reduction's stress from its forces, engineering. With rho the specimen's density, a its
+/// radius, h its length, e the compressive strain's rate and e' that rate's:
+///   radial  rho a^2 (e'/8 + e^2/16) is taken off (an incompressible cylinder),
+///   axial   rho h^2 (e' - e^2)/12 off the mean of both faces; off the back face -1/6, off the
+///           front face +1/3 of rho h^2 (e' - e^2) (a back face at rest; Davies and Hunter's form),
+///   friction  the stress is divided by 1 + mu d / (3 h), d and h as they are at that strain.
+/// @throws InputError where inertia is asked for and the specimen's density is not filed
+void set_stress(StressFrom from, const Corrections& corrections, const Specimen& specimen,
+                Reduction& reduction);
+
+}  // namespace kolsky

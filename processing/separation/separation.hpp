@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "processing/base/bench.hpp"
+#include "processing/waves/bar_modes.hpp"
+
+namespace kolsky {
+
+/// A record of one gauge on a bar.
+struct SeparationGauge {
+  double position_m = 0.0;         ///< from the bar's start
+  std::span<const double> strain;  ///< at the surface, compression positive, baseline taken off
+  double noise_rms = 0.0;          ///< 0 where all gauges are as good
+};
+
+/// What is known of a bar's ends: a free end returns every wave inverted, at all times of the
+/// record.
+struct FreeEnds {
+  bool start = false;
+  bool end = false;
+};
+
+/// A bar over time at one place. Compression positive; motion from start to end.
+struct SeparatedWaves {
+  std::vector<double> right_going;  ///< surface strain
+  std::vector<double> left_going;
+  std::vector<double> stress_Pa;         ///< mean over the section
+  std::vector<double> velocity_m_per_s;  ///< mean over the section
+};
+
+/// Frequencies at which the gauges together tell next to nothing of one of the waves.
+struct BlindFrequency {
+  double frequency_Hz = 0.0;
+  double noise_gain = 0.0;  ///< of the worse known wave, over that of two independent gauges
+};
+
+/// Left- and right-going waves in a bar from two or more gauges, or from one and a free end, by
+/// maximum likelihood. With P the right-going wave at the start and Q the left-going one at the
+/// end,
+///   e_j = P exp(-gamma x_j) + Q exp(-gamma (L - x_j)) + noise,
+/// and P = -Q exp(-gamma L) where the start is free, Q = -P exp(-gamma L) where the end is. Solved
+/// at each s = eta + i w by least squares weighted with the noise: with damping (see
+/// DampedTransform) overlapping passes and a record that is cut between them cost nothing, and
+/// blind frequencies amplify noise but never divide by zero.
+class WaveSeparation {
+ public:
+  /// @param compliance  of the bar
+  /// @throws InputError where the gauges do not suffice, lie off the bar or differ in length
+  WaveSeparation(const Bar& bar, const Compliance& compliance, WaveTheory theory,
+                 const std::vector<SeparationGauge>& gauges, const FreeEnds& ends, double period_s,
+                 double band_limit_Hz);
+
+  /// The waves at a place, over the records' time.
+  [[nodiscard]] SeparatedWaves at(double position_m) const;
+
+  [[nodiscard]] const std::vector<BlindFrequency>& blind() const { return blind_; }
+
+ private:
+  double length_m_;
+  double density_kg_m3_;
+  double period_s_;
+  double band_limit_Hz_;
+  std::size_t samples_;
+  std::size_t lead_;
+  std::vector<Complex> path_;
+  std::vector<BarMode> modes_;
+  std::vector<Complex> right_;  ///< at the start
+  std::vector<Complex> left_;   ///< at the end
+  std::vector<BlindFrequency> blind_;
+};
+
+}  // namespace kolsky

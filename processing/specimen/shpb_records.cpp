@@ -1,0 +1,175 @@
+#include "processing/specimen/shpb_records.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/bridge/bridge.hpp"
+#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/quality.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kShortestPulse_s = 5e-6;
+constexpr double kPulseReach_s = 500e-6;
+constexpr double kFootClearance_s = 10e-6;
+constexpr double kLongestQuiet_s = 500e-6;
+constexpr std::size_t kFewestQuiet = 32;
+
+/// Where a shot's pulse begins at the first station.
+struct Start {
+  double foot = 0.0;      ///< in samples
+  std::size_t quiet = 0;  ///< samples before the pulse
+};
+
+std::vector<double> readings_of(const Shot& shot, const ShpbStation& station) {
+  std::vector<double> readings(shot.samples(), 0.0);
+  for (const std::size_t index : station.channels) {
+    const ChannelRecord& channel = shot.channels[index];
+    for (std::size_t n = 0; n < readings.size(); ++n) {
+      readings[n] += channel.value(channel.codes[n]) / static_cast<double>(station.channels.size());
+    }
+  }
+  return readings;
+}
+
+void require_serving(const Shot& shot, const Shot& first) {
+  const std::string place = "capture " + shot.id;
+  if (shot.bench.kind != BenchKind::shpb || !shot.bench.output || !shot.bench.specimen) {
+    throw InputError(place, "is not of a bench of kind \"shpb\" with a specimen",
+                     "identify a specimen from shots with bars.output and specimen filed");
+  }
+  if (shot.channels.size() != shot.bench.gauges.size()) {
+    throw InputError(place,
+                     "has " + std::to_string(shot.channels.size()) + " channels for " +
+                         std::to_string(shot.bench.gauges.size()) + " gauges",
+                     "file one gauge per channel, in their order");
+  }
+  if (shot.rate != first.rate || shot.bench_toml != first.bench_toml) {
+    throw InputError(place, "is of another bench or rate than " + first.id,
+                     "identify a specimen from shots on one bench");
+  }
+  const std::string unusable = unusable_because(shot);
+  if (!unusable.empty()) {
+    throw InputError(place, unusable, "repeat the shot, or leave this capture out");
+  }
+}
+
+Start start_of(const Shot& shot, const ShpbStation& station) {
+  const double rate_Hz = shot.rate.Hz();
+  const std::vector<double> readings = readings_of(shot, station);
+  const std::string gauge = shot.bench.gauges[station.channels.front()].name;
+  const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz));
+  const auto reach = static_cast<std::size_t>(kPulseReach_s * rate_Hz);
+  const auto rise = find_first_pulse(readings, std::max<std::size_t>(3, width), reach);
+  if (!rise) {
+    throw InputError("capture " + shot.id,
+                     "holds no pulse that stands out of the noise of " + gauge,
+                     "give the shot's whole record, from before the impact");
+  }
+  const double baseline =
+      quiet_before(readings, std::min<std::size_t>(rise->index, kFewestQuiet)).baseline;
+  std::vector<double> shifted(std::min(readings.size(), rise->index + reach));
+  for (std::size_t n = 0; n < shifted.size(); ++n) {
+    shifted[n] = rise->sense * (readings[n] - baseline);
+  }
+  const auto half = static_cast<std::ptrdiff_t>(rise->index);
+  const double peak = *std::max_element(shifted.begin() + half, shifted.end());
+  Start start;
+  start.foot = foot_of(shifted, rise->index, peak, 0.0).index;
+  start.quiet = static_cast<std::size_t>(std::max(0.0, start.foot - kFootClearance_s * rate_Hz));
+  if (start.quiet < kFewestQuiet) {
+    throw InputError("capture " + shot.id,
+                     "has " + std::to_string(start.quiet) + " quiet samples before the pulse",
+                     "record at least " + std::to_string(kFewestQuiet));
+  }
+  return start;
+}
+
+std::vector<double> strain_of(const Shot& shot, const ShpbStation& station, std::size_t first,
+                              std::size_t quiet) {
+  const std::size_t count = shot.samples() - first;
+  std::vector<double> strain(count, 0.0);
+  std::vector<double> readings(count);
+  std::vector<double> own(count);
+  for (const std::size_t index : station.channels) {
+    const ChannelRecord& channel = shot.channels[index];
+    const Gauge& gauge = shot.bench.gauges[index];
+    for (std::size_t n = 0; n < count; ++n) {
+      readings[n] = channel.value(channel.codes[first + n]);
+    }
+    const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
+    bridge.convert(readings, quiet_before(readings, quiet).baseline, own);
+    for (std::size_t n = 0; n < count; ++n) {
+      strain[n] += own[n] / static_cast<double>(station.channels.size());
+    }
+  }
+  return strain;
+}
+
+}  // namespace
+
+std::vector<ShpbStation> shpb_stations(const Bench& bench) {
+  std::vector<ShpbStation> stations;
+  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
+    const Gauge& gauge = bench.gauges[i];
+    const bool on_input = gauge.bar == "input";
+    const double distance_m = bench.distance_to_specimen_m(gauge);
+    const auto same = std::find_if(stations.begin(), stations.end(), [&](const ShpbStation& s) {
+      const double first_m = bench.distance_to_specimen_m(bench.gauges[s.channels.front()]);
+      return s.on_input == on_input &&
+             std::abs(first_m - distance_m) <= bench.bar_of(gauge).diameter_m;
+    });
+    ShpbStation& station = same != stations.end() ? *same : stations.emplace_back();
+    station.on_input = on_input;
+    station.channels.push_back(i);
+    station.to_specimen_m += distance_m;
+  }
+  bool has_output = false;
+  bool has_input = false;
+  for (ShpbStation& station : stations) {
+    station.to_specimen_m /= static_cast<double>(station.channels.size());
+    (station.on_input ? has_input : has_output) = true;
+  }
+  if (!has_input || !has_output) {
+    const std::string bar = has_input ? "output" : "input";
+    throw InputError("gauges", "none is on the " + bar + " bar",
+                     "add one with bar = \"" + bar + "\"");
+  }
+  std::stable_sort(
+      stations.begin(), stations.end(), [](const ShpbStation& a, const ShpbStation& b) {
+        if (a.on_input != b.on_input) {
+          return a.on_input;
+        }
+        return a.on_input ? a.to_specimen_m > b.to_specimen_m : a.to_specimen_m < b.to_specimen_m;
+      });
+  return stations;
+}
+
+std::vector<ShpbRecords> read_shpb_records(const std::vector<Shot>& shots,
+                                           const std::vector<ShpbStation>& stations) {
+  std::vector<Start> starts;
+  const double rate_Hz = shots.front().rate.Hz();
+  auto quiet = static_cast<std::size_t>(kLongestQuiet_s * rate_Hz);
+  for (const Shot& shot : shots) {
+    require_serving(shot, shots.front());
+    starts.push_back(start_of(shot, stations.front()));
+    quiet = std::min(quiet, starts.back().quiet);
+  }
+  std::vector<ShpbRecords> list;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    const std::size_t first = starts[i].quiet - quiet;
+    ShpbRecords records;
+    records.quiet_samples = quiet;
+    records.foot_s = (starts[i].foot - static_cast<double>(first)) / rate_Hz;
+    for (const ShpbStation& station : stations) {
+      records.strain.push_back(strain_of(shots[i], station, first, quiet));
+    }
+    list.push_back(std::move(records));
+  }
+  return list;
+}
+
+}  // namespace kolsky

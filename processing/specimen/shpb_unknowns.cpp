@@ -1,0 +1,175 @@
+#include "processing/specimen/shpb_unknowns.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace kolsky {
+
+namespace {
+
+using Of = ShpbUnknown::Of;
+
+double relative_sd(const Measured& number) {
+  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
+}
+
+/// Relative standard deviation of what turns a gauge's reading into strain.
+double gain_sd(const Gauge& gauge) {
+  if (gauge.strain_per_V) {
+    return relative_sd(*gauge.strain_per_V);
+  }
+  if (gauge.bridge) {
+    return std::hypot(relative_sd(gauge.bridge->gauge_factor),
+                      relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
+  }
+  return 0.0;
+}
+
+/// Square root of the covariance: its columns are the directions the moduli may move in.
+Eigen::Matrix3d directions(const BarPrior& prior) {
+  Eigen::Matrix3d covariance;
+  const std::array<double, 3> scale = {prior.material.E1_Pa, prior.material.E2_Pa,
+                                       prior.material.eta2_Pa_s};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const auto a = static_cast<std::size_t>(i);
+      const auto b = static_cast<std::size_t>(j);
+      covariance(i, j) = prior.covariance[a][b] / (scale[a] * scale[b]);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  Eigen::Matrix3d root = solver.eigenvectors();
+  for (int j = 0; j < 3; ++j) {
+    root.col(j) *= std::sqrt(std::max(0.0, solver.eigenvalues()[j]));
+  }
+  return root;
+}
+
+void add(std::vector<ShpbUnknown>& list, std::string name, Of of, std::size_t index, double sd) {
+  if (sd > 0.0) {
+    list.push_back({std::move(name), of, index, sd});
+  }
+}
+
+void add_bar(std::vector<ShpbUnknown>& list, const Bar& bar, std::size_t index) {
+  const std::string name = index == 0 ? ":input" : ":output";
+  add(list, "bar-length" + name, Of::bar_length, index, bar.length_m.sd);
+  add(list, "density" + name, Of::bar_density, index, relative_sd(bar.density_kg_m3));
+  add(list, "bar-diameter" + name, Of::bar_diameter, index, relative_sd(bar.diameter_m));
+  add(list, "poisson-ratio" + name, Of::bar_poisson, index, relative_sd(bar.poisson_ratio));
+  if (bar.youngs_modulus_Pa) {
+    add(list, "youngs-modulus" + name, Of::bar_modulus, index, relative_sd(*bar.youngs_modulus_Pa));
+  }
+}
+
+void scale(Measured& number, double move) {
+  number.value *= 1.0 + move;
+}
+
+}  // namespace
+
+BarPrior::BarPrior(const Material& m) : material(m) {
+  covariance[0][0] = m.E1_Pa.sd * m.E1_Pa.sd;
+  covariance[1][1] = m.E2_Pa.sd * m.E2_Pa.sd;
+  covariance[2][2] = m.eta2_Pa_s.sd * m.eta2_Pa_s.sd;
+}
+
+std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<ShpbStation>& stations,
+                                       const BarPrior& bars) {
+  std::vector<ShpbUnknown> list;
+  for (std::size_t j = 0; j < stations.size(); ++j) {
+    const auto& channels = stations[j].channels;
+    double gains = 0.0;
+    double positions = 0.0;
+    for (const std::size_t channel : channels) {
+      gains += std::pow(gain_sd(bench.gauges[channel]), 2);
+      positions += std::pow(bench.gauges[channel].position_m.sd, 2);
+    }
+    const auto count = static_cast<double>(channels.size());
+    const std::string& name = bench.gauges[channels.front()].name;
+    add(list, "gauge-factor:" + name, Of::gain, j, std::sqrt(gains) / count);
+    add(list, "gauge-position:" + name, Of::position, j, std::sqrt(positions) / count);
+  }
+  add_bar(list, bench.input, 0);
+  add_bar(list, *bench.output, 1);
+  if (!bench.input.youngs_modulus_Pa || !bench.output->youngs_modulus_Pa) {
+    const Eigen::Matrix3d root = directions(bars);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const bool moves = root.col(static_cast<int>(i)).norm() > 0.0;
+      add(list, "bar-model:" + std::to_string(i + 1), Of::bar_material, i, moves ? 1.0 : 0.0);
+    }
+  }
+  const Specimen& specimen = *bench.specimen;
+  add(list, "specimen-length", Of::specimen_length, 0, relative_sd(specimen.length_m));
+  add(list, "specimen-diameter", Of::specimen_diameter, 0, relative_sd(specimen.diameter_m));
+  if (specimen.density_kg_m3) {
+    add(list, "specimen-density", Of::specimen_density, 0, relative_sd(*specimen.density_kg_m3));
+  }
+  return list;
+}
+
+MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& stations,
+                     const BarPrior& prior, const std::vector<ShpbUnknown>& unknowns,
+                     std::span<const double> moves)
+    : bars{filed.input, *filed.output},
+      material(prior.material),
+      specimen(*filed.specimen),
+      gain(stations.size(), 1.0) {
+  std::vector<double> shift_m(stations.size(), 0.0);
+  Eigen::Vector3d relative = Eigen::Vector3d::Zero();
+  const Eigen::Matrix3d root = directions(prior);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const ShpbUnknown& u = unknowns[i];
+    const double move = moves[i] * u.sd;
+    switch (u.of) {
+      case Of::gain:
+        gain[u.index] *= 1.0 + move;
+        break;
+      case Of::position:
+        shift_m[u.index] += move;
+        break;
+      case Of::bar_length:
+        bars[u.index].length_m.value += move;
+        break;
+      case Of::bar_density:
+        scale(bars[u.index].density_kg_m3, move);
+        break;
+      case Of::bar_diameter:
+        scale(bars[u.index].diameter_m, move);
+        if (bars[u.index].side_m) {
+          scale(*bars[u.index].side_m, move);
+        }
+        break;
+      case Of::bar_poisson:
+        scale(bars[u.index].poisson_ratio, move);
+        break;
+      case Of::bar_modulus:
+        scale(*bars[u.index].youngs_modulus_Pa, move);
+        break;
+      case Of::bar_material:
+        relative += root.col(static_cast<int>(u.index)) * move;
+        break;
+      case Of::specimen_length:
+        scale(specimen.length_m, move);
+        break;
+      case Of::specimen_diameter:
+        scale(specimen.diameter_m, move);
+        break;
+      case Of::specimen_density:
+        scale(*specimen.density_kg_m3, move);
+        break;
+    }
+  }
+  scale(material.E1_Pa, relative[0]);
+  scale(material.E2_Pa, relative[1]);
+  scale(material.eta2_Pa_s, relative[2]);
+  for (std::size_t j = 0; j < stations.size(); ++j) {
+    // Positions on the input bar count from the impacted end: the specimen is at its length.
+    const double filed_m = stations[j].to_specimen_m;
+    to_specimen_m.push_back(stations[j].on_input
+                                ? filed_m - shift_m[j] + bars[0].length_m - filed.input.length_m
+                                : filed_m + shift_m[j]);
+  }
+}
+
+}  // namespace kolsky

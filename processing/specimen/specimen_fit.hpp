@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/identification/bar_fit.hpp"
+#include "processing/specimen/shpb_model.hpp"
+
+namespace kolsky {
+
+struct SpecimenFitOptions {
+  SolidKind solid = SolidKind::three_element;
+  std::optional<WaveTheory> bars;         ///< else elementary, unless the data speak for exact
+  std::optional<SpecimenWaves> specimen;  ///< else massless, unless the data speak for its mass
+  double band_limit_Hz = 0.0;             ///< 0: where the pulses fall below the noise
+  std::optional<double> most_band_Hz;     ///< in which the bars are known
+  /// Judged after the pulse's foot at the first station. None: until a far end answers, and on to
+  /// the record's end where the same model holds there too.
+  std::optional<double> after_foot_s;
+};
+
+/// A set of assumptions that was tried, and how far it leaves more than noise.
+struct TriedTheory {
+  ShpbTheory theory;
+  double chi2 = 0.0;
+};
+
+/// One frequency of the specimen's compliance J = J1 - i J2.
+struct CompliancePoint {
+  double frequency_Hz = 0.0;
+  double J1_per_Pa = 0.0;
+  double J2_per_Pa = 0.0;
+  double J1_sd = 0.0;  ///< of one shot; what all shots share (bench, bars) is in it too
+  double J2_sd = 0.0;
+  double J1_mean_sd = 0.0;  ///< of the mean over the shots
+  double J2_mean_sd = 0.0;
+};
+
+/// The maximum-likelihood fit of a specimen's compliance to whole gauge records of all shots.
+struct SpecimenFit {
+  SolidKind solid = SolidKind::three_element;
+  std::vector<FittedNumber> parameters;         ///< of the solid, in its order
+  std::vector<std::vector<double>> covariance;  ///< of the solid's parameters
+  std::vector<FittedNumber> bench;  ///< moves of the known unknowns: relative, or in metres
+  ShpbTheory theory;
+  std::vector<TriedTheory> tried;
+  double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
+  std::size_t degrees_of_freedom = 0;
+  double band_limit_Hz = 0.0;
+  double judged_s = 0.0;    ///< of each record
+  bool to_the_end = false;  ///< judged past the far ends' first answers
+  std::vector<CompliancePoint> spectrum;
+  std::vector<std::string> warnings;  ///< what keeps the result from being taken at its word
+};
+
+/// Fits one specimen material to any number of shots at once, sources free. The deviations include
+/// those of the bench's known unknowns and of the bars' moduli; where chi2_reduced exceeds 1 they
+/// are widened by its square root.
+/// @throws InputError as SpecimenLikelihood, and where the search does not converge
+[[nodiscard]] SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
+                                       const SpecimenFitOptions& options);
+
+}  // namespace kolsky

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "processing/base/shot.hpp"
+#include "processing/identification/bar_fit.hpp"
+#include "processing/specimen/specimen_fit.hpp"
+
+namespace kolsky {
+
+/// The specimen's compliance as strain over stress of the reduced histories (paper, eq. 25).
+struct SpectralEstimate {
+  std::vector<CompliancePoint> spectrum;  ///< mean and scatter over the shots; bench exact
+  std::vector<FittedNumber> parameters;   ///< a three-element solid through it
+  double band_limit_Hz = 0.0;
+  double window_s = 0.0;  ///< of the histories that every shot has
+};
+
+struct SpectralOptions {
+  WaveTheory bars = WaveTheory::elementary;
+  double band_limit_Hz = 15e3;  ///< of the fit and of what is listed
+};
+
+/// Strain and stress are transformed along s = eta + i w: on the axis itself a history that is cut
+/// before it has decayed leaks into every frequency (erratum 9). The solid is fitted there, weighed
+/// by the stress's spectrum; what is listed is moved to the axis by what the fit changes on the
+/// way. Deviations are the scatter over the shots: of the parameters by leaving one shot out in
+/// turn, from three shots on; with fewer, from how far the points lie off the fit. Neither the
+/// bench's nor the bars' deviations are in them, nor that the stress at both ends of the specimen
+/// differs: the direct fit has those.
+/// @throws InputError where a shot cannot be reduced or the histories are too short
+[[nodiscard]] SpectralEstimate estimate_spectrum(const std::vector<Shot>& shots,
+                                                 const Material& bars,
+                                                 const SpectralOptions& options);
+
+}  // namespace kolsky

@@ -1,0 +1,363 @@
+#include "processing/uncertainty/monte_carlo.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "processing/reduction/loop_summary.hpp"
+#include "processing/uncertainty/noise.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr std::size_t kChunk = 64;          // draws by one worker, whatever the executor's threads
+constexpr std::size_t kNoiseOnlyShare = 5;  // one draw in so many more, for the budget
+constexpr std::size_t kHistories = 5;
+
+using Histories = std::array<std::vector<double>, kHistories>;
+
+struct FigureKind {
+  const char* name;
+  double LoopSummary::*member;
+};
+constexpr std::array kFigures{
+    FigureKind{"peak_stress_Pa", &LoopSummary::peak_stress_Pa},
+    FigureKind{"strain_at_peak", &LoopSummary::strain_at_peak},
+    FigureKind{"peak_strain", &LoopSummary::peak_strain},
+    FigureKind{"mean_strain_rate_per_s", &LoopSummary::mean_strain_rate_per_s}};
+
+using Figures = std::array<double, kFigures.size()>;
+
+Figures figures_of(const Reduction& reduction) {
+  const LoopSummary summary = summarise(reduction);
+  Figures figures{};
+  for (std::size_t i = 0; i < kFigures.size(); ++i) {
+    figures[i] = summary.*kFigures[i].member;
+  }
+  return figures;
+}
+
+std::array<const std::vector<double>*, kHistories> histories_of(const Reduction& r) {
+  return {&r.stress_Pa, &r.strain, &r.strain_rate_per_s, &r.force_front_N, &r.force_back_N};
+}
+
+/// What came of one draw, on the times of the shot's own reduction.
+struct Draw {
+  bool good = false;
+  Figures figures{};
+  Histories histories;
+};
+
+/// Linear between the draw's own times: its t = 0 is its own arrival.
+std::vector<double> at_times(const std::vector<double>& times, const Reduction& draw,
+                             const std::vector<double>& history) {
+  const double start = draw.time_s.front();
+  const double step = draw.time_s[1] - draw.time_s[0];
+  const auto last = static_cast<double>(history.size() - 1);
+  std::vector<double> values(times.size());
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const double index = std::clamp((times[n] - start) / step, 0.0, last);
+    const auto i = std::min(static_cast<std::size_t>(index), history.size() - 2);
+    const double share = index - static_cast<double>(i);
+    values[n] = history[i] * (1.0 - share) + history[i + 1] * share;
+  }
+  return values;
+}
+
+/// How far a channel's codes can be divided, at most 64 times, with room for noise.
+std::int32_t division(const ChannelRecord& channel) {
+  std::int64_t most = 1;
+  for (const std::int32_t code : channel.codes) {
+    most = std::max(most, std::abs(static_cast<std::int64_t>(code)));
+  }
+  std::int32_t parts = 64;
+  while (parts > 1 && most * parts > std::numeric_limits<std::int32_t>::max() / 2) {
+    parts /= 2;
+  }
+  return parts;
+}
+
+/// The shot with codes fine enough for noise below one of its own to be added.
+Shot finer(const Shot& shot) {
+  Shot fine = shot;
+  for (ChannelRecord& channel : fine.channels) {
+    const std::int32_t parts = division(channel);
+    channel.scale /= parts;
+    channel.offset *= parts;
+    channel.code_min = std::numeric_limits<std::int32_t>::min();
+    channel.code_max = std::numeric_limits<std::int32_t>::max();
+    for (std::int32_t& code : channel.codes) {
+      code *= parts;
+    }
+  }
+  return fine;
+}
+
+std::size_t quiet_samples(const Reduction& reduction) {
+  for (const Check& check : reduction.quality.checks) {
+    if (check.name == "quiet_start") {
+      return static_cast<std::size_t>(check.value);
+    }
+  }
+  return 0;
+}
+
+/// The band and the histories' length are the shot's.
+ReductionOptions held(ReductionOptions options, const Reduction& nominal) {
+  options.band_limit_Hz = nominal.band_limit_Hz;
+  options.duration_s = nominal.time_s.back();
+  return options;
+}
+
+/// Reduces moved copies of a shot; one per thread.
+class Worker {
+ public:
+  Worker(const Shot& shot, const ReductionOptions& options, const Reduction& nominal,
+         const std::vector<UncertaintySource>& sources)
+      : shot_(shot),
+        moved_(finer(shot)),
+        fine_(moved_.channels),
+        options_(held(options, nominal)),
+        nominal_(nominal),
+        sources_(sources),
+        noise_(shot.samples()) {
+    const std::size_t quiet = quiet_samples(nominal);
+    for (const ChannelRecord& channel : fine_) {
+      const std::vector<double> codes(channel.codes.begin(),
+                                      channel.codes.begin() + static_cast<std::ptrdiff_t>(quiet));
+      makers_.emplace_back(codes, shot.samples());
+    }
+  }
+
+  /// @param moves  one per source
+  /// @param random draws the noise; none: the samples as they are
+  Draw draw(const std::vector<double>& moves, RandomStream* random) {
+    Bench bench = shot_.bench;
+    Material bars = *options_.bar_model;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      sources_[i].move(bench, bars, moves[i]);
+    }
+    moved_.bench = std::move(bench);
+    for (std::size_t c = 0; c < fine_.size(); ++c) {
+      add_noise(c, random);
+    }
+    reducer_.set_bar_model(bars);
+    const Reduction reduction = reducer_.reduce(moved_);
+    Draw result;
+    result.good = reduction.quality.reducible && reduction.time_s.size() > 1;
+    if (result.good) {
+      result.figures = figures_of(reduction);
+      const auto histories = histories_of(reduction);
+      for (std::size_t h = 0; h < kHistories; ++h) {
+        result.histories[h] = at_times(nominal_.time_s, reduction, *histories[h]);
+      }
+    }
+    return result;
+  }
+
+ private:
+  void add_noise(std::size_t c, RandomStream* random) {
+    auto& codes = moved_.channels[c].codes;
+    if (random == nullptr) {
+      codes = fine_[c].codes;
+      return;
+    }
+    makers_[c].make(*random, noise_);
+    for (std::size_t n = 0; n < codes.size(); ++n) {
+      codes[n] = fine_[c].codes[n] + static_cast<std::int32_t>(std::lrint(noise_[n]));
+    }
+  }
+
+  const Shot& shot_;
+  Shot moved_;
+  const std::vector<ChannelRecord> fine_;
+  ReductionOptions options_;
+  const Reduction& nominal_;
+  const std::vector<UncertaintySource>& sources_;
+  std::vector<NoiseMaker> makers_;
+  std::vector<double> noise_;
+  Reducer reducer_{options_};
+};
+
+/// The p-quantile of values, which it reorders.
+double quantile(std::vector<double>& values, double p) {
+  const double index = p * static_cast<double>(values.size() - 1);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::lround(index));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double sd_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double value : values) {
+    mean += value / static_cast<double>(values.size());
+  }
+  double squares = 0.0;
+  for (const double value : values) {
+    squares += (value - mean) * (value - mean);
+  }
+  return values.size() > 1 ? std::sqrt(squares / static_cast<double>(values.size() - 1)) : 0.0;
+}
+
+constexpr double kLow = 0.025;
+constexpr double kHigh = 0.975;
+
+Band band_of(const std::vector<Draw>& draws, std::size_t history, std::size_t samples) {
+  Band band;
+  std::vector<double> values;
+  for (std::size_t n = 0; n < samples; ++n) {
+    values.clear();
+    for (const Draw& draw : draws) {
+      if (draw.good) {
+        values.push_back(draw.histories[history][n]);
+      }
+    }
+    band.sd.push_back(sd_of(values));
+    band.low.push_back(quantile(values, kLow));
+    band.high.push_back(quantile(values, kHigh));
+  }
+  return band;
+}
+
+std::vector<double> figure_values(const std::vector<Draw>& draws, std::size_t figure) {
+  std::vector<double> values;
+  for (const Draw& draw : draws) {
+    if (draw.good) {
+      values.push_back(draw.figures[figure]);
+    }
+  }
+  return values;
+}
+
+/// All work as numbered draws: the joint ones, those with noise alone, and two per source.
+class Campaign {
+ public:
+  Campaign(std::size_t joint, std::size_t sources)
+      : joint_(joint),
+        noise_only_(std::max<std::size_t>(2, joint / kNoiseOnlyShare)),
+        sources_(sources) {}
+
+  [[nodiscard]] std::size_t count() const { return joint_ + noise_only_ + 2 * sources_; }
+
+  void run(std::size_t number, std::uint64_t seed, Worker& worker, Draw& draw) const {
+    RandomStream random(seed, number);
+    std::vector<double> moves(sources_, 0.0);
+    if (number < joint_) {
+      std::generate(moves.begin(), moves.end(), [&] { return random.normal(); });
+      draw = worker.draw(moves, &random);
+    } else if (number < joint_ + noise_only_) {
+      draw = worker.draw(moves, &random);
+    } else {
+      const std::size_t of_source = number - joint_ - noise_only_;
+      moves[of_source / 2] = of_source % 2 == 0 ? 1.0 : -1.0;
+      draw = worker.draw(moves, nullptr);
+    }
+  }
+
+  [[nodiscard]] std::span<const Draw> noise_only(const std::vector<Draw>& draws) const {
+    return std::span(draws).subspan(joint_, noise_only_);
+  }
+  [[nodiscard]] const Draw& moved(const std::vector<Draw>& draws, std::size_t source,
+                                  bool up) const {
+    return draws[joint_ + noise_only_ + 2 * source + (up ? 0 : 1)];
+  }
+
+ private:
+  std::size_t joint_;
+  std::size_t noise_only_;
+  std::size_t sources_;
+};
+
+std::vector<BudgetLine> budget_of(const Campaign& campaign, const std::vector<Draw>& draws,
+                                  const std::vector<UncertaintySource>& sources) {
+  std::map<std::string, Figures> variances;
+  const auto noise = campaign.noise_only(draws);
+  const std::vector<Draw> noise_draws(noise.begin(), noise.end());
+  for (std::size_t f = 0; f < kFigures.size(); ++f) {
+    variances["noise"][f] = std::pow(sd_of(figure_values(noise_draws, f)), 2);
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const Draw& up = campaign.moved(draws, i, true);
+    const Draw& down = campaign.moved(draws, i, false);
+    Figures& line = variances[sources[i].group];
+    for (std::size_t f = 0; f < kFigures.size() && up.good && down.good; ++f) {
+      line[f] += std::pow((up.figures[f] - down.figures[f]) / 2.0, 2);
+    }
+  }
+  Figures sums{};
+  for (const auto& [group, line] : variances) {
+    for (std::size_t f = 0; f < kFigures.size(); ++f) {
+      sums[f] += line[f];
+    }
+  }
+  std::vector<BudgetLine> budget;
+  for (const auto& [group, line] : variances) {
+    BudgetLine entry{group, {}, {}};
+    for (std::size_t f = 0; f < kFigures.size(); ++f) {
+      entry.sd.push_back(std::sqrt(line[f]));
+      entry.share.push_back(sums[f] > 0.0 ? line[f] / sums[f] : 0.0);
+    }
+    budget.push_back(std::move(entry));
+  }
+  std::stable_sort(budget.begin(), budget.end(), [](const BudgetLine& a, const BudgetLine& b) {
+    return a.sd.front() > b.sd.front();
+  });
+  return budget;
+}
+
+}  // namespace
+
+void run_in_order(std::size_t count, const std::function<void(std::size_t)>& task) {
+  for (std::size_t i = 0; i < count; ++i) {
+    task(i);
+  }
+}
+
+Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const Reduction& reduction,
+                      const UncertaintyOptions& wanted, const Executor& executor) {
+  Uncertainty result;
+  if (!reduction.quality.reducible || reduction.time_s.size() < 2 || wanted.draws < 2) {
+    return result;
+  }
+  ReductionOptions told = options;
+  if (!told.bar_model) {
+    told.bar_model = shot.bar_model.value_or(paper_pmma());
+  }
+  result.sources = uncertainty_sources(shot.bench, *told.bar_model, wanted.bars);
+  const Campaign campaign(wanted.draws, result.sources.size());
+  std::vector<Draw> draws(campaign.count());
+  executor((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    Worker worker(shot, told, reduction, result.sources);
+    const std::size_t end = std::min(draws.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      campaign.run(i, wanted.seed, worker, draws[i]);
+    }
+  });
+
+  const std::vector<Draw> joint(draws.begin(),
+                                draws.begin() + static_cast<std::ptrdiff_t>(wanted.draws));
+  for (const Draw& draw : joint) {
+    (draw.good ? result.draws : result.failed) += 1;
+  }
+  if (result.draws < 2) {
+    return result;
+  }
+  const std::array<Band*, kHistories> bands = {&result.stress_Pa, &result.strain,
+                                               &result.strain_rate_per_s, &result.force_front_N,
+                                               &result.force_back_N};
+  executor(kHistories,
+           [&](std::size_t h) { *bands[h] = band_of(joint, h, reduction.time_s.size()); });
+  const Figures nominal = figures_of(reduction);
+  for (std::size_t f = 0; f < kFigures.size(); ++f) {
+    std::vector<double> values = figure_values(joint, f);
+    result.figures.push_back({kFigures[f].name, nominal[f], sd_of(values), quantile(values, kLow),
+                              quantile(values, kHigh)});
+  }
+  result.budget = budget_of(campaign, draws, result.sources);
+  return result;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "processing/reduction/reducer.hpp"
+#include "processing/uncertainty/executor.hpp"
+#include "processing/uncertainty/sources.hpp"
+
+namespace kolsky {
+
+struct UncertaintyOptions {
+  std::size_t draws = 1000;
+  std::uint64_t seed = 1;
+  BarModelUncertainty bars;
+};
+
+/// A history's standard deviation and 95 % interval, at each of its times.
+struct Band {
+  std::vector<double> sd;
+  std::vector<double> low;
+  std::vector<double> high;
+};
+
+/// One number read off the curve.
+struct UncertainFigure {
+  std::string name;  ///< with its unit: "peak_stress_Pa"
+  double value = 0.0;
+  double sd = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// What one source contributes to each figure, in the figures' order: the figure's standard
+/// deviation if nothing else were uncertain.
+struct BudgetLine {
+  std::string source;
+  std::vector<double> sd;
+  std::vector<double> share;  ///< of the sum of all lines' variances
+};
+
+struct Uncertainty {
+  std::size_t draws = 0;   ///< that gave a result
+  std::size_t failed = 0;  ///< that could not be reduced
+  Band stress_Pa;
+  Band strain;
+  Band strain_rate_per_s;
+  Band force_front_N;
+  Band force_back_N;
+  std::vector<UncertainFigure> figures;
+  std::vector<BudgetLine> budget;  ///< the largest contribution to the first figure first
+  std::vector<UncertaintySource> sources;
+};
+
+/// Propagates what is filed with a deviation, and the gauges' noise as it is before the pulse,
+/// through the reduction itself (GUM supplement 1): each draw moves every source by a normal
+/// number, adds noise of the measured spectrum to the samples and is reduced like the shot, its own
+/// arrival found anew. The band limit and the histories' length are the shot's. The budget moves
+/// one source at a time by one deviation to either side. The same seed gives the same numbers,
+/// however the executor spreads the work.
+/// @param reduction  of this shot with these options; where it is not reducible nothing is drawn
+[[nodiscard]] Uncertainty propagate(const Shot& shot, const ReductionOptions& options,
+                                    const Reduction& reduction,
+                                    const UncertaintyOptions& uncertainty,
+                                    const Executor& executor);
+
+}  // namespace kolsky

@@ -1,0 +1,83 @@
+// What identifying a bar costs, beside the transforms that reading the records takes alone.
+#include <benchmark/benchmark.h>
+
+#include <random>
+
+#include "processing/identification/bar_fit.hpp"
+#include "processing/identification/bar_identification.hpp"
+#include "processing/waves/bar_modes.hpp"
+#include "processing/waves/transform.hpp"
+#include "tests/generators/bar_shots.hpp"
+#include "tests/generators/table4.hpp"
+
+namespace {
+
+using namespace kolsky;
+
+const std::vector<Shot>& ten_shots() {
+  static const std::vector<Shot> shots = [] {
+    testing::BarShots::Setup setup;
+    setup.material = testing::kTable4[0].material;
+    const testing::BarShots generator(setup);
+    std::mt19937_64 random(1);
+    testing::BarShots::Recording recording;
+    recording.gain_sd = 0.01;
+    recording.position_sd_m = 0.2e-3;
+    return generator.draw(10, recording, random);
+  }();
+  return shots;
+}
+
+void fit_ten_shots(benchmark::State& state, WaveTheory theory) {
+  const auto& shots = ten_shots();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(fit_bar(shots, {.theory = theory}));
+  }
+}
+BENCHMARK_CAPTURE(fit_ten_shots, elementary, WaveTheory::elementary)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fit_ten_shots, exact, WaveTheory::exact)->Unit(benchmark::kMillisecond);
+
+void identify_ten_shots(benchmark::State& state) {
+  const auto& shots = ten_shots();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(identify_bar(shots, {}));
+  }
+}
+BENCHMARK(identify_ten_shots)->Unit(benchmark::kMillisecond);
+
+void transforms_of_ten_shots(benchmark::State& state) {
+  const auto& shots = ten_shots();
+  DampedTransform transform(shots.front().samples(), 1e-6);
+  std::vector<Complex> spectrum(transform.bins());
+  std::vector<double> record(shots.front().samples(), 1e-3);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < 40; ++i) {
+      transform.forward(record, spectrum);
+      benchmark::DoNotOptimize(spectrum.data());
+    }
+  }
+}
+BENCHMARK(transforms_of_ten_shots)->Unit(benchmark::kMillisecond);
+
+void exact_dispersion_to_60_kHz(benchmark::State& state) {
+  Bar bar;
+  bar.length_m = {2.0};
+  bar.diameter_m = {0.020};
+  bar.density_kg_m3 = {1180.0};
+  bar.poisson_ratio = {0.36};
+  const ThreeElementSolid pmma(5.66e9, 37.0e9, 1.81e6);
+  const DampedTransform transform(4096, 1e-6);
+  std::vector<Complex> path;
+  for (std::size_t k = 0; static_cast<double>(k) * transform.bin_width_Hz() <= 60e3; ++k) {
+    path.push_back(transform.s(k));
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(bar_modes(WaveTheory::exact, bar, pmma, path));
+  }
+  state.counters["frequencies"] = static_cast<double>(path.size());
+}
+BENCHMARK(exact_dispersion_to_60_kHz)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,70 @@
+// How often the stated 95 % intervals of a specimen's parameters hold the truth, over many repeats
+// of one experiment: specimen_coverage [REPEATS [core|cover|elastic [SHOTS [NOISE_MICROSTRAIN
+// [exact_bench]]]]]
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "tests/generators/specimen_repeats.hpp"
+
+namespace {
+
+using namespace kolsky;
+
+constexpr double kCovered = 1.959964;
+
+testing::LinearShpb model_of(const std::string& name) {
+  testing::LinearShpb model;
+  if (name == "cover") {
+    model.specimen = {960.0, 987e6, 452e6, 6020.0};
+  }
+  if (name == "elastic") {
+    model.input = {4430.0, 113e9, 0.0, 0.0};
+    model.output = model.input;
+    model.input_length_m = model.output_length_m = 1.2;
+    model.gauge_in_m = 0.6;
+    model.gauge_out_m = 0.3;
+  }
+  return model;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const unsigned repeats = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 2000;
+  const std::string name = argc > 2 ? argv[2] : "core";
+  const auto shots = static_cast<std::size_t>(argc > 3 ? std::atoi(argv[3]) : 10);
+  const double noise = argc > 4 ? std::atof(argv[4]) * 1e-6 : 4e-6;
+  testing::SpecimenRepeats::Filed filed;
+  if (argc > 5) {
+    filed = {0.0, 0.0, 0.0, {0.0, 0.0, 0.0}};
+  }
+  const testing::SpecimenRepeats experiment(model_of(name), filed, shots, noise);
+  SpecimenFitOptions options;
+  options.bars = WaveTheory::elementary;
+  options.specimen = SpecimenWaves::massless;
+  std::array<double, 3> sum{}, squares{}, stated{};
+  std::array<unsigned, 3> inside{};
+  double chi2 = 0.0;
+  for (unsigned repeat = 0; repeat < repeats; ++repeat) {
+    const SpecimenFit fit = experiment.fit(repeat, options);
+    const auto off = experiment.deviations(fit);
+    chi2 += fit.chi2_reduced / repeats;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum[i] += off[i] / repeats;
+      squares[i] += off[i] * off[i] / repeats;
+      stated[i] += fit.parameters[i].sd / fit.parameters[i].value / repeats;
+      inside[i] += std::abs(off[i]) < kCovered ? 1U : 0U;
+    }
+  }
+  std::printf("%s, %zu shots, %.1f microstrain, %u repeats: chi2 per degree of freedom %.4f\n",
+              name.c_str(), shots, 1e6 * noise, repeats, chi2);
+  const char* names[] = {"E1", "E2", "eta2"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::printf(
+        "%-5s stated sd %.3f %%  mean %+.3f sd  rms %.3f sd  in the 95 %% interval %.2f %%\n",
+        names[i], 100 * stated[i], sum[i], std::sqrt(squares[i]), 100.0 * inside[i] / repeats);
+  }
+  return 0;
+}

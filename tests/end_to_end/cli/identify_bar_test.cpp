@@ -1,0 +1,103 @@
+// A bar identified from tables, as a person does it.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "drivers/files/material_file.hpp"
+#include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/end_to_end/process.hpp"
+#include "tests/generators/bar_shots.hpp"
+
+namespace kolsky {
+namespace {
+
+using nlohmann::json;
+using scene::json_of;
+using scene::refused;
+
+class IdentifyBar : public ::testing::Test {
+ protected:
+  static constexpr RodMaterial kTruth{1180.0, 5.66e9, 37.0e9, 1.81e6};
+
+  IdentifyBar() {
+    std::string bench =
+        "kind = \"bar\"\nsampling_frequency_Hz = 1e6\npositive = \"compression\"\n"
+        "temperature_K = 296.0\n[bars.input]\nlength_m = 2.0\ndiameter_m = 0.02\n"
+        "density_kg_m3 = 1180.0\npoisson_ratio = 0.36\n";
+    for (int j = 0; j < 4; ++j) {
+      bench += fmt::format(
+          "[[gauges]]\nname = \"g{}\"\nbar = \"input\"\nposition_m = {}\nposition_m_sd = 0.0002\n"
+          "unit = \"V\"\nstrain_per_V = 0.001\nstrain_per_V_sd = 0.00001\n",
+          j + 1, 0.1 + 0.2 * j);
+    }
+    folder_.write("bench.toml", bench);
+    testing::BarShots::Setup setup;
+    setup.material = kTruth;
+    testing::BarShots::Recording recording;
+    recording.gain_sd = 0.01;
+    recording.position_sd_m = 0.2e-3;
+    std::mt19937_64 random(3);
+    int number = 0;
+    for (const Shot& shot : testing::BarShots(setup).draw(3, recording, random)) {
+      std::string table = "time_s,g1,g2,g3,g4\n";
+      for (std::size_t n = 0; n < shot.samples(); ++n) {
+        table += fmt::format("{:.7f}", static_cast<double>(n) * 1e-6);
+        for (const ChannelRecord& channel : shot.channels) {
+          table += fmt::format(",{:.7e}", channel.value(channel.codes[n]));
+        }
+        table += "\n";
+      }
+      const std::string name = fmt::format("shot{}", ++number);
+      folder_.write(name + ".csv", table);
+      captures_.push_back((folder_ / (name + ".h5")).string());
+      (void)json_of(scene::kolsky({"import", "csv", (folder_ / (name + ".csv")).string(), "--bench",
+                                   folder_ / "bench.toml", "-o", captures_.back(), "--json"}));
+    }
+  }
+
+  scene::Folder folder_;
+  std::vector<std::string> captures_;
+};
+
+TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
+  std::vector<std::string> words = {"identify", "bar"};
+  words.insert(words.end(), captures_.begin(), captures_.end());
+  const std::string model = (folder_ / "pmma.toml").string();
+  words.insert(words.end(), {"--model-out", model, "--json", "--waveforms"});
+  const json result = json_of(scene::kolsky(words));
+  const double truth[3] = {kTruth.E1_Pa, kTruth.E2_Pa, kTruth.eta2_Pa_s};
+  const char* const names[3] = {"E1_Pa", "E2_Pa", "eta2_Pa_s"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& p = result["parameters"][names[i]];
+    EXPECT_NEAR(p["value"].get<double>(), truth[i], 4.0 * p["sd"].get<double>()) << names[i];
+    EXPECT_LT(p["sd"].get<double>(), 2e-3 * truth[i]);
+  }
+  EXPECT_EQ(result["dispersion"], "elementary");
+  EXPECT_EQ(result["far_end"], "free");
+  EXPECT_GE(result["alternatives"].size(), 5U);
+  const std::size_t bins = result["spectrum"]["frequency_Hz"].size();
+  for (const char* name :
+       {"J1_per_Pa", "J1_sd", "J2_per_Pa", "J2_sd", "alpha_per_m", "wavenumber_per_m"}) {
+    EXPECT_EQ(result["spectrum"][name].size(), bins) << name;
+  }
+  EXPECT_EQ(result["waveforms"].size(), 3U);
+  EXPECT_EQ(result["waveforms"][0]["gauges"].size(), 3U);
+
+  const Material filed = read_material(model);
+  EXPECT_EQ(filed.E1_Pa.value, result["parameters"]["E1_Pa"]["value"].get<double>());
+  EXPECT_EQ(filed.E1_Pa.sd, result["parameters"]["E1_Pa"]["sd"].get<double>());
+}
+
+TEST_F(IdentifyBar, RefusesWhatCannotServe) {
+  EXPECT_TRUE(
+      refused(scene::kolsky({"identify", "bar", captures_[0], "--solid", "rubber"}), {"rubber"}));
+  EXPECT_TRUE(refused(scene::kolsky({"identify", "bar", captures_[0], "--band-limit", "-3"}),
+                      {"--band-limit"}));
+  EXPECT_TRUE(
+      refused(scene::kolsky({"identify", "bar", (folder_ / "none.h5").string()}), {"none.h5"}));
+}
+
+}  // namespace
+}  // namespace kolsky

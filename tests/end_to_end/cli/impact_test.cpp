@@ -1,0 +1,154 @@
+// kolsky impact as a person or a script runs it.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/end_to_end/cli/kolsky.hpp"
+
+namespace kolsky {
+namespace {
+
+using scene::Answer;
+using scene::Folder;
+using scene::refused;
+
+const std::string kBenches = std::string(KOLSKY_SOURCE_DIR) + "/docs/benches/";
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> impact(const std::vector<std::string>& more) {
+  std::vector<std::string> words = {"impact",
+                                    "--bench",
+                                    kBenches + "paper-impact.toml",
+                                    "--core",
+                                    kBenches + "impact-core.toml",
+                                    "--cover",
+                                    kBenches + "impact-cover.toml"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(Impact, JsonHoldsWhatTheInterfaceSays) {
+  const Answer answer = scene::kolsky(impact({"--speed", "40.3", "--elements", "512", "--json"}));
+  const nlohmann::json json = scene::json_of(answer);
+  ASSERT_EQ(json.at("time_s").size(), json.at("force_N").size());
+  EXPECT_GT(json.at("time_s").size(), 300U);
+  EXPECT_NEAR(json.at("peak_force_N").get<double>(), 12.7e3, 0.2e3);
+  EXPECT_NEAR(json.at("restitution").get<double>(), 0.81, 0.01);
+  EXPECT_NEAR(json.at("contact_time_s").get<double>(), 425e-6, 10e-6);
+  EXPECT_NEAR(json.at("mass_kg").get<double>(), 0.0434, 1e-5);
+  const nlohmann::json& energy = json.at("energy");
+  double sum = 0.0;
+  for (const char* part : {"kinetic_J", "stored_J", "dissipated_J", "radiated_J", "friction_J",
+                           "contact_J", "sabot_J"}) {
+    sum += energy.at(part).get<double>();
+  }
+  EXPECT_NEAR(sum, energy.at("initial_J").get<double>(), 2e-3 * sum);
+  EXPECT_NEAR(sum / energy.at("initial_J").get<double>() - 1.0, energy.at("closure").get<double>(),
+              1e-9);
+  EXPECT_EQ(json.at("probes").size(), 3U);
+  EXPECT_EQ(json.at("target"), "dashpot");
+  EXPECT_EQ(json.at("reading"), "full");
+}
+
+TEST(Impact, MeshedBarGivesTheBenchsGauges) {
+  const nlohmann::json json = scene::json_of(
+      scene::kolsky(impact({"--speed", "31.1", "--elements", "300", "--target", "bar", "--json"})));
+  ASSERT_EQ(json.at("gauges").size(), 1U);
+  EXPECT_EQ(json.at("gauges")[0].at("name"), "g1");
+  double largest = 0.0;
+  for (const double strain : json.at("gauges")[0].at("strain")) {
+    largest = std::max(largest, strain);
+  }
+  // 64.7 N per microstrain.
+  EXPECT_NEAR(largest, json.at("peak_force_N").get<double>() / 64.7e6, 0.02 * largest);
+}
+
+TEST(Impact, ReportTellsAPerson) {
+  const Answer answer =
+      scene::kolsky(impact({"--speed", "51", "--elements", "300", "--reading", "bulk-Einf"}));
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  for (const char* words : {"restitution", "781.2 MPa at once", "filed E1 987 MPa",
+                            "of layer 1 is beyond", "closes to", "contact force"}) {
+    EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
+  }
+}
+
+TEST(Impact, SvgShowsTheBallAndItsScale) {
+  const Folder folder;
+  const std::string file = folder / "ball.svg";
+  const Answer answer = scene::kolsky(impact({"--speed", "40.3", "--elements", "300", "--svg", file,
+                                              "--field", "1e-4", "--field", "2e-4"}));
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const std::string svg = text_of(file);
+  EXPECT_EQ(svg.rfind("<?xml", 0), 0U);
+  EXPECT_NE(svg.find("axial stress [MPa]"), std::string::npos);
+  EXPECT_NE(svg.find("t = 100"), std::string::npos);
+  EXPECT_NE(svg.find("t = 200"), std::string::npos);
+  std::size_t polygons = 0;
+  for (std::size_t at = svg.find("<polygon"); at != std::string::npos;
+       at = svg.find("<polygon", at + 1)) {
+    ++polygons;
+  }
+  EXPECT_GT(polygons, 4U * 250U);  // two times, two halves
+}
+
+TEST(Impact, DensitiesAreScaledOnlyWhenTheBenchSaysSo) {
+  const Folder folder;
+  std::string bench = text_of(kBenches + "paper-impact.toml");
+  bench.replace(bench.find("0.03565"), 7, "0.03800");
+  folder.write("thin.toml", bench);
+  folder.write("scaled.toml", bench + "scale_density = true\n");
+  const auto words = [&](const std::string& file) {
+    std::vector<std::string> all = impact({"--speed", "40.3", "--elements", "300", "--json"});
+    all[2] = folder / file;
+    return all;
+  };
+  EXPECT_TRUE(refused(scene::kolsky(words("thin.toml")),
+                      {"thin.toml", "ball.mass_kg", "44.3055 g", "scale_density = true"}));
+  const nlohmann::json json = scene::json_of(scene::kolsky(words("scaled.toml")));
+  EXPECT_NEAR(json.at("density_scale").get<double>(), 0.9795, 5e-4);
+  EXPECT_NEAR(json.at("mass_kg").get<double>(), 0.0434, 1e-5);
+}
+
+TEST(Impact, RefusesWhatCannotBe) {
+  const Folder folder;
+  std::string core = text_of(kBenches + "impact-core.toml");
+  folder.write("active.toml", core.replace(core.find("143e6"), 5, "-14e6"));
+  const auto with_core = [&](const std::string& file) {
+    std::vector<std::string> words = impact({"--speed", "40.3"});
+    words[4] = file;
+    return words;
+  };
+  const auto refuses = [](const std::vector<std::string>& words,
+                          const std::vector<std::string>& named) {
+    EXPECT_TRUE(refused(scene::kolsky(words), named)) << named.front();
+  };
+  refuses(with_core(folder / "active.toml"), {"active.toml", "E2_Pa"});
+  refuses(with_core(folder / "none.toml"), {"none.toml"});
+  refuses(impact({}), {"--speed", "is missing"});
+  refuses(impact({"--speed", "0"}), {"--speed", "0 m/s"});
+  refuses(impact({"--speed", "-40"}), {"--speed"});
+  refuses(impact({"--speed", "4e4"}), {"--speed", "at most 500"});
+  refuses(impact({"--speed", "40", "--friction", "-0.1"}), {"--friction"});
+  refuses(impact({"--speed", "40", "--target", "wall"}), {"--target", "wall", "dashpot"});
+  refuses(impact({"--speed", "40", "--reading", "half"}), {"--reading", "half", "bulk-E1"});
+  refuses(impact({"--speed", "40", "--law", "green"}), {"--law", "green", "cauchy"});
+  refuses(impact({"--speed", "40", "--elements", "10"}), {"--elements", "10"});
+  refuses(impact({"--speed", "40", "--time-step", "1e-5"}), {"--time-step", "stability"});
+  refuses(impact({"--speed", "40", "--core-relaxation", "1e-9"}), {"--core-relaxation", "comma"});
+  refuses(impact({"--speed", "40", "--core-relaxation", "-1e-9,1e-4"}), {"compliance"});
+  refuses(impact({"--speed", "40", "--offset", "0.02"}), {"--offset", "edge"});
+  refuses(impact({"--speed", "51", "--core-nonlinearity", "-2"}), {"element", "turned inside out"});
+  std::vector<std::string> shpb = impact({"--speed", "40"});
+  shpb[2] = kBenches + "paper-shpb.toml";
+  refuses(shpb, {"paper-shpb.toml", "kind", "impact"});
+}
+
+}  // namespace
+}  // namespace kolsky

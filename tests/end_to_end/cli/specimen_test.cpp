@@ -1,0 +1,239 @@
+// Identifying specimens, their uncertainty, corrected benches and plans, as a person runs them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/generators/linear_shpb.hpp"
+
+namespace kolsky {
+namespace {
+
+using nlohmann::json;
+using scene::json_of;
+using scene::kolsky;
+using scene::refused;
+
+constexpr const char* kBench = R"(kind = "shpb"
+sampling_frequency_Hz = 1.0e6
+positive = "compression"
+temperature_K = 296.0
+temperature_K_sd = 0.3
+[bars.input]
+length_m = 0.700
+diameter_m = 0.015
+diameter_m_sd = 0.00002
+density_kg_m3 = 1180.0
+poisson_ratio = 0.36
+[bars.output]
+length_m = 0.700
+diameter_m = 0.015
+density_kg_m3 = 1180.0
+poisson_ratio = 0.36
+[[gauges]]
+name = "g1"
+bar = "input"
+position_m = 0.400
+unit = "strain"
+[[gauges]]
+name = "g2"
+bar = "output"
+position_m = 0.050
+position_m_sd = 0.0001
+unit = "strain"
+[specimen]
+length_m = 0.004
+diameter_m = 0.012
+density_kg_m3 = 1140.0
+poisson_ratio = 0.376
+)";
+
+constexpr const char* kPmma = R"(density_kg_m3 = 1180.0
+poisson_ratio = 0.36
+E1_Pa = 5.66e9
+E1_Pa_sd = 3e5
+E2_Pa = 37.0e9
+E2_Pa_sd = 4e7
+eta2_Pa_s = 1.81e6
+eta2_Pa_s_sd = 2e3
+covariance = [9e10, -6e12, 0, -6e12, 1.6e15, 0, 0, 0, 4e6]
+[identified]
+shots = 10
+band_limit_Hz = 40e3
+temperature_K = 296.5
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  return text.replace(text.find(what), what.size(), with);
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Shots on the paper's core between PMMA bars, as tables and captures.
+class SpecimenFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("bench.toml", kBench);
+    folder_.write("pmma.toml", kPmma);
+    const auto records = model_.solve();
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0.0, 5e-6);
+    for (int i = 0; i < 3; ++i) {
+      const std::string name = "shot" + std::to_string(i);
+      std::ofstream table(folder_ / (name + ".csv"));
+      table.precision(10);
+      table << "time_s,g1,g2\n";
+      for (std::size_t n = 0; n < records[0].size(); ++n) {
+        table << 1e-6 * static_cast<double>(n) << ',' << records[0][n] + noise(random) << ','
+              << records[1][n] + noise(random) << '\n';
+      }
+      table.close();
+      captures_.push_back(folder_ / (name + ".h5"));
+      ASSERT_EQ(kolsky({"import", "csv", folder_ / (name + ".csv"), "--bench",
+                        folder_ / "bench.toml", "-o", captures_.back()})
+                    .code,
+                0);
+    }
+  }
+
+  std::vector<std::string> identify(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"identify", "specimen"};
+    words.insert(words.end(), captures_.begin(), captures_.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  scene::Folder folder_;
+  testing::LinearShpb model_;
+  std::vector<std::string> captures_;
+};
+
+TEST_F(SpecimenFiles, AreIdentifiedWithBothEstimatorsAndAFileToGoOnWith) {
+  const std::string file = folder_ / "core.toml";
+  const json told = json_of(
+      kolsky(identify({"--bar-model", folder_ / "pmma.toml", "--model-out", file, "--json"})));
+  const std::pair<const char*, double> truths[] = {
+      {"E1_Pa", 121e6}, {"E2_Pa", 143e6}, {"eta2_Pa_s", 2860.0}};
+  for (const auto& [name, truth] : truths) {
+    const double value = told["parameters"][name]["value"];
+    const double sd = told["parameters"][name]["sd"];
+    EXPECT_NEAR(value, truth, 4.0 * sd) << name;
+    EXPECT_LT(sd, 0.1 * truth);
+    EXPECT_NEAR(told["spectral"]["parameters"][name]["value"].get<double>(), truth, 0.2 * truth);
+  }
+  const std::size_t count = told["spectrum"]["frequency_Hz"].size();
+  EXPECT_GT(count, 10U);
+  for (const char* name : {"J1_per_Pa", "J1_sd", "J2_per_Pa", "J2_sd"}) {
+    EXPECT_EQ(told["spectrum"][name].size(), count) << name;
+  }
+  EXPECT_LE(told["band_limit_Hz"].get<double>(), 40e3) << "the bars are not known beyond";
+  EXPECT_EQ(told["bar_model_assumed"], false);
+  EXPECT_EQ(told["shots"], 3);
+
+  const json plan = json_of(
+      kolsky({"plan", "--bench", folder_ / "bench.toml", "--specimen", file, "--pulse-strain",
+              "1e-3", "--pulse-duration", "170e-6", "--rise", "40e-6", "--json"}));
+  const json reduced = json_of(kolsky({"reduce", captures_.front(), "--json"}));
+  EXPECT_NEAR(plan["peak_strain"].get<double>(), reduced["summary"]["peak_strain"].get<double>(),
+              0.03 * plan["peak_strain"].get<double>());
+  EXPECT_TRUE(refused(kolsky(identify({"--model-out", file})), {"core.toml", "exists"}));
+}
+
+TEST_F(SpecimenFiles, GiveANewResultWithACorrectedBenchBesideTheOldOne) {
+  folder_.write("corrected.toml", replaced(kBench, "length_m = 0.004", "length_m = 0.005"));
+  const std::string& capture = captures_.front();
+  const std::string before = bytes_of(capture);
+  const std::string saved = folder_ / "corrected.h5";
+  const json both = json_of(kolsky(
+      {"reduce", capture, "--bench", folder_ / "corrected.toml", "--save", saved, "--json"}));
+  const json old = json_of(kolsky({"reduce", capture, "--json"}));
+  EXPECT_EQ(bytes_of(capture), before);
+  EXPECT_EQ(both["as_filed"]["summary"], old["summary"]);
+  EXPECT_EQ(both["as_filed"]["strain"], old["strain"]);
+  EXPECT_NEAR(both["summary"]["peak_strain"].get<double>(),
+              0.8 * old["summary"]["peak_strain"].get<double>(), 1e-9);
+  const json again = json_of(kolsky({"reduce", saved, "--json"}));
+  EXPECT_EQ(again["strain"], both["strain"]);
+  EXPECT_EQ(again["meta"]["corrected_from"], both["capture"]);
+}
+
+TEST_F(SpecimenFiles, SayHowFarTheyCanBeTrusted) {
+  const json told = json_of(kolsky({"reduce", captures_.front(), "--bar-model",
+                                    folder_ / "pmma.toml", "--draws", "60", "--json"}));
+  const std::size_t count = told["time_s"].size();
+  for (const char* name : {"stress_sd_Pa", "stress_low_Pa", "stress_high_Pa", "strain_sd",
+                           "strain_rate_sd_per_s", "force_front_sd_N", "force_back_sd_N"}) {
+    ASSERT_EQ(told[name].size(), count) << name;
+  }
+  EXPECT_EQ(told["uncertainty"]["draws"], 60);
+  EXPECT_EQ(told["uncertainty"]["sources"].size(), 6U);  // diameter, position, temperature, moduli
+  double share = 0.0;
+  for (const json& line : told["budget"]) {
+    share += line["peak_stress_Pa"]["share"].get<double>();
+  }
+  EXPECT_NEAR(share, 1.0, 1e-9);
+  EXPECT_EQ(told["quality"]["equilibrium"].size(), count);
+  EXPECT_EQ(told["quality"]["quotable"]["any"], true);
+  EXPECT_GT(told["quality"]["useful_band_Hz"].get<double>(), 5e3);
+}
+
+TEST_F(SpecimenFiles, StressFromOneTwoOrThreeWavesAndCorrected) {
+  const auto peak = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"reduce", captures_.front(), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json_of(kolsky(words))["summary"]["peak_stress_Pa"].get<double>();
+  };
+  const double both = peak({});
+  EXPECT_NE(peak({"--stress", "one-wave"}), both);
+  EXPECT_NE(peak({"--stress", "two-wave"}), both);
+  EXPECT_NE(peak({"--inertia", "both"}), both);
+  // Least as engineering figures at little strain: 1 + mu d / 3h is 1.1, and grows with the strain.
+  EXPECT_LT(peak({"--friction", "0.1"}), both / 1.1);
+}
+
+TEST_F(SpecimenFiles, RefuseABarModelOutsideWhereItWasIdentified) {
+  folder_.write("cold.toml", replaced(kPmma, "temperature_K = 296.5", "temperature_K = 285.0"));
+  const std::string& capture = captures_.front();
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bar-model", folder_ / "cold.toml"}),
+                      {"cold.toml", "285.0 K", "296.0 K"}));
+  EXPECT_TRUE(refused(kolsky(identify({"--bar-model", folder_ / "cold.toml"})), {"285.0 K"}));
+  EXPECT_TRUE(refused(
+      kolsky({"reduce", capture, "--bar-model", folder_ / "pmma.toml", "--band-limit", "60000"}),
+      {"pmma.toml", "40000 Hz", "60000 Hz"}));
+  folder_.write("odd.toml", replaced(kPmma, "covariance = [9e10", "covariance = [9e8"));
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bar-model", folder_ / "odd.toml"}),
+                      {"odd.toml", "covariance"}));
+}
+
+TEST_F(SpecimenFiles, RefuseWhatMakesNoSense) {
+  const std::string& capture = captures_.front();
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--stress", "four-wave"}), {"three-wave"}));
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--inertia", "all"}), {"--inertia", "radial"}));
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--friction", "3"}), {"--friction"}));
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--draws", "1"}), {"--draws"}));
+  folder_.write("renamed.toml", replaced(kBench, "\"g2\"", "\"h2\""));
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bench", folder_ / "renamed.toml"}),
+                      {"renamed.toml", "h2", "g2"}));
+  EXPECT_TRUE(refused(kolsky(identify({"--solid", "fractional", "--model-out", "x.toml"})),
+                      {"--model-out"}));
+  EXPECT_TRUE(refused(kolsky({"identify", "specimen"}), {"CAPTURE is missing"}));
+  folder_.write("core.toml",
+                "density_kg_m3 = 1140.0\npoisson_ratio = 0.376\nE1_Pa = 121e6\n"
+                "E2_Pa = 143e6\neta2_Pa_s = 2860.0\n");
+  EXPECT_TRUE(refused(
+      kolsky({"plan", "--bench", folder_ / "bench.toml", "--specimen", folder_ / "core.toml"}),
+      {"--striker-speed"}));
+  EXPECT_TRUE(refused(kolsky({"plan", "--bench", folder_ / "bench.toml", "--specimen",
+                              folder_ / "core.toml", "--striker-speed", "10"}),
+                      {"striker"}));
+}
+
+}  // namespace
+}  // namespace kolsky

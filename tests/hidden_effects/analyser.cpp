@@ -1,0 +1,88 @@
+#include "tests/hidden_effects/analyser.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace kolsky::scoring {
+
+namespace {
+
+std::string quoted(const std::string& word) {
+  return "'" + word + "'";
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// One command; its outputs stay beside the case.
+Answer run(const Analyser& analyser, const CaseFiles& files, const std::string& name,
+           const std::string& arguments) {
+  const std::filesystem::path out = files.folder / (name + ".json");
+  const std::filesystem::path error = files.folder / (name + ".err");
+  const std::string command =
+      fmt::format("timeout -k 5 {:.0f} {} {} > {} 2> {}", analyser.timeout_s,
+                  quoted(analyser.program), arguments, quoted(out), quoted(error));
+  const auto begin = std::chrono::steady_clock::now();
+  const int status = std::system(command.c_str());  // NOLINT(concurrency-mt-unsafe)
+  Answer answer;
+  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : 255;
+  answer.error = text_of(error);
+  answer.json = nlohmann::json::parse(text_of(out), nullptr, false);
+  if (answer.json.is_discarded()) {
+    answer.json = nullptr;
+  }
+  return answer;
+}
+
+std::string captures_of(const CaseFiles& files) {
+  std::string words;
+  for (const auto& capture : files.captures) {
+    words += " " + quoted(capture);
+  }
+  return words;
+}
+
+}  // namespace
+
+Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
+  const std::filesystem::path model = files.folder / "model.toml";
+  const std::string bars = files.bars.empty() ? "" : " --bar-model " + quoted(files.bars);
+  Answer made = run(analyser, files, "model-new",
+                    fmt::format("model new --kind {} --bench {}{} -o {} --json", files.kind,
+                                quoted(files.bench), bars, quoted(model)));
+  if (made.code != 0) {
+    return made;
+  }
+  return run(analyser, files, "diagnose",
+             fmt::format("diagnose{} --model {} --json {}", captures_of(files), quoted(model),
+                         analyser.more));
+}
+
+Answer refit(const Analyser& analyser, const CaseFiles& files,
+             const std::vector<std::string>& effects) {
+  std::filesystem::path model = files.folder / "model.toml";
+  int step = 0;
+  for (const std::string& effect : effects) {
+    const std::filesystem::path next = files.folder / fmt::format("model{}.toml", ++step);
+    Answer added = run(
+        analyser, files, "model-add",
+        fmt::format("model add {} {} -o {} --json", quoted(model), quoted(effect), quoted(next)));
+    if (added.code != 0) {
+      return added;
+    }
+    model = next;
+  }
+  return run(analyser, files, "fit",
+             fmt::format("fit{} --model {} -o {} --json", captures_of(files), quoted(model),
+                         quoted(files.folder / "fitted.toml")));
+}
+
+}  // namespace kolsky::scoring

@@ -1,0 +1,176 @@
+// Draws campaigns with hidden effects, has `kolsky diagnose` find them, and prints how well it did.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <fstream>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+#include "processing/base/error.hpp"
+#include "tests/generators/measured_noise.hpp"
+#include "tests/hidden_effects/case_draw.hpp"
+#include "tests/hidden_effects/score_table.hpp"
+
+namespace {
+
+using namespace kolsky;
+using namespace kolsky::scoring;
+
+struct Settings {
+  Plan plan;
+  Analyser analyser;
+  std::string out = "hidden-effects";
+  std::string noise_table;
+  int jobs = 2;
+  int extra_nulls = 0;
+  int only_bench = -1;
+  bool draw_only = false;
+  bool keep = false;
+  bool refit = false;
+};
+
+struct Scores {
+  std::mutex mutex;
+  std::vector<Verdict> verdicts;
+};
+
+bool went_well(const Verdict& verdict) {
+  switch (verdict.kind) {
+    case CaseKind::null:
+      return verdict.answered == "adequate";
+    case CaseKind::withheld:
+      return verdict.answered == "unknown";
+    case CaseKind::absorbed:
+      return verdict.named.empty() && verdict.answered != "failed";
+    case CaseKind::tied:
+      return verdict.found == 1;
+    case CaseKind::single:
+    case CaseKind::two:
+      return verdict.exact;
+  }
+  return false;
+}
+
+void score_case(const Settings& settings, const Case& drawn, Scores& scores) {
+  const CaseFiles files = write_case(drawn, settings.out);
+  if (settings.draw_only) {
+    return;
+  }
+  Verdict verdict = judge(drawn, diagnose(settings.analyser, files));
+  if (settings.refit && verdict.exact) {
+    judge_refit(verdict, drawn, refit(settings.analyser, files, verdict.named));
+  }
+  const bool well = went_well(verdict);
+  if (well && !settings.keep) {
+    std::filesystem::remove_all(files.folder);
+  }
+  const std::lock_guard lock(scores.mutex);
+  std::cerr << fmt::format("{:<24}{:<9}{:<6.1f}s {}\n", verdict.id, verdict.answered,
+                           verdict.seconds, well ? "" : json_of(verdict)["truth"].dump());
+  scores.verdicts.push_back(std::move(verdict));
+}
+
+void work(const Settings& settings, std::atomic<int>& next, Scores& scores) {
+  const int benches = settings.plan.benches + settings.extra_nulls;
+  for (int bench = next++; bench < benches; bench = next++) {
+    if (settings.only_bench >= 0 && bench != settings.only_bench) {
+      continue;
+    }
+    Plan plan = settings.plan;
+    if (bench >= settings.plan.benches) {
+      plan.nulls_per_bench = 1;
+      plan.singles_per_bench = plan.tied_per_bench = plan.doubles_per_bench = 0;
+      plan.absorbed_per_bench = plan.withheld_per_bench = 0;
+    }
+    for (const Case& drawn : draw_cases(plan, bench)) {
+      score_case(settings, drawn, scores);
+    }
+  }
+}
+
+int report(const Settings& settings, std::vector<Verdict> verdicts) {
+  std::ranges::sort(verdicts, {}, &Verdict::id);
+  nlohmann::json all = nlohmann::json::array();
+  for (const Verdict& verdict : verdicts) {
+    all.push_back(json_of(verdict));
+  }
+  std::ofstream(std::filesystem::path(settings.out) / "scores.json")
+      << nlohmann::json{{"seed", settings.plan.seed}, {"cases", all}}.dump(1) << "\n";
+  const std::vector<Measure> table = measures(verdicts);
+  std::cout << table_text(table) << "\nhidden -> said\n"
+            << confusion_text(verdicts)
+            << "\nfound, by multiple of the smallest identifiable size\n"
+            << power_text(verdicts);
+  return std::ranges::all_of(table, [](const Measure& one) { return !one.got || one.met; }) ? 0 : 1;
+}
+
+int run(Settings& settings) {
+  if (!settings.noise_table.empty()) {
+    settings.plan.measured_noise = testing::measured_noise(settings.noise_table);
+  }
+  std::filesystem::create_directories(settings.out);
+  std::atomic<int> next = 0;
+  Scores scores;
+  std::vector<std::jthread> workers;
+  for (int i = 0; i < settings.jobs; ++i) {
+    workers.emplace_back([&] { work(settings, next, scores); });
+  }
+  workers.clear();
+  return settings.draw_only ? 0 : report(settings, std::move(scores.verdicts));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  bool fast = false;
+  bool full = false;
+  CLI::App app(
+      "Draws campaigns with hidden effects, runs `kolsky diagnose` on each and prints the score.\n"
+      "Exit code 1 where a measure falls short.");
+  app.add_option("--kolsky", settings.analyser.program, "the program")->required();
+  app.add_option("--out", settings.out, "folder for cases, truths and scores.json");
+  app.add_option("--seed", settings.plan.seed);
+  app.add_option("--benches", settings.plan.benches);
+  app.add_option("--singles", settings.plan.singles_per_bench, "per bench");
+  app.add_option("--tied", settings.plan.tied_per_bench, "per bench");
+  app.add_option("--doubles", settings.plan.doubles_per_bench, "per bench");
+  app.add_option("--withheld", settings.plan.withheld_per_bench, "per bench");
+  app.add_option("--absorbed", settings.plan.absorbed_per_bench, "per bench");
+  app.add_option("--nulls", settings.extra_nulls, "further benches with nothing hidden");
+  app.add_option("--jobs", settings.jobs);
+  app.add_option("--timeout", settings.analyser.timeout_s, "s per command");
+  app.add_option("--more", settings.analyser.more, "further arguments of diagnose");
+  app.add_option("--noise", settings.noise_table,
+                 "a record whose quiet beginning is used as noise: TABLE.csv:COLUMN:ROWS");
+  app.add_option("--bench", settings.only_bench, "only this one, as a failed case's id has it");
+  app.add_flag("--split", settings.plan.split, "split bars in place of bars");
+  app.add_flag("--refit", settings.refit, "add what is named, fit again, judge the moduli");
+  app.add_flag("--keep", settings.keep, "keep the folders of cases that went well");
+  app.add_flag("--draw-only", settings.draw_only, "write the campaigns and stop");
+  app.add_flag("--short", fast, "a few small campaigns");
+  app.add_flag("--full", full, "2000 nulls and 60 benches");
+  CLI11_PARSE(app, argc, argv);
+  if (fast) {
+    settings.plan.quick = true;
+    settings.plan.benches = 1;
+    settings.plan.singles_per_bench = 3;
+    settings.plan.tied_per_bench = 0;
+    settings.plan.doubles_per_bench = settings.plan.absorbed_per_bench = 0;
+  }
+  if (full) {
+    settings.plan.benches = 60;
+    settings.plan.singles_per_bench = 12;
+    settings.plan.doubles_per_bench = 3;
+    settings.plan.withheld_per_bench = 2;
+    settings.extra_nulls = 2000 - settings.plan.benches;
+  }
+  try {
+    return run(settings);
+  } catch (const InputError& error) {
+    std::cerr << error.what() << "\n";
+    return 2;
+  }
+}

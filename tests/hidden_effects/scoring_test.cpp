@@ -1,0 +1,230 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "drivers/files/capture.hpp"
+#include "drivers/files/table_import.hpp"
+#include "tests/generators/campaign_files.hpp"
+#include "tests/generators/noise.hpp"
+#include "tests/hidden_effects/case_draw.hpp"
+#include "tests/hidden_effects/identifiability.hpp"
+#include "tests/hidden_effects/score_table.hpp"
+#include "tests/hidden_effects/source_freedom.hpp"
+#include "tests/hidden_effects/whitening.hpp"
+
+namespace kolsky::scoring {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Records = std::vector<std::vector<double>>;
+
+Records random_records(std::size_t gauges, std::size_t samples, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Records records(gauges, std::vector<double>(samples));
+  for (auto& record : records) {
+    for (double& value : record) {
+      value = normal(random);
+    }
+  }
+  return records;
+}
+
+// Against a plain least-squares fit of the same columns.
+TEST(SourceFreedom, LeavesWhatADenseFitLeaves) {
+  constexpr std::size_t kSamples = 60;
+  constexpr std::ptrdiff_t kFirst = -9;
+  constexpr std::size_t kStride = 4;
+  const Records responses = random_records(2, kSamples + 9, 1);
+  const std::vector<double> ones(kSamples, 1.0);
+  const SourceFreedom freedom(responses, ones, kSamples, kFirst, kStride, 1e4);
+  const Records a = random_records(2, kSamples, 2);
+  const Records b = random_records(2, kSamples, 3);
+  const Eigen::MatrixXd left = freedom.remaining_products({&a, &b});
+
+  std::vector<Eigen::VectorXd> columns;
+  for (std::ptrdiff_t start = kFirst; start < static_cast<std::ptrdiff_t>(kSamples);
+       start += kStride) {
+    Eigen::VectorXd column = Eigen::VectorXd::Zero(2 * kSamples);
+    for (std::size_t g = 0; g < 2; ++g) {
+      for (std::ptrdiff_t n = std::max<std::ptrdiff_t>(0, start);
+           n < static_cast<std::ptrdiff_t>(kSamples); ++n) {
+        column[static_cast<Eigen::Index>(g * kSamples) + n] =
+            responses[g][static_cast<std::size_t>(n - start)];
+      }
+    }
+    columns.push_back(column);
+  }
+  for (std::size_t g = 0; g < 2; ++g) {
+    Eigen::VectorXd column = Eigen::VectorXd::Zero(2 * kSamples);
+    column.segment(static_cast<Eigen::Index>(g * kSamples), kSamples).setOnes();
+    columns.push_back(column);
+  }
+  Eigen::MatrixXd design(2 * kSamples, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    design.col(static_cast<Eigen::Index>(i)) = columns[i];
+  }
+  Eigen::MatrixXd seen(2 * kSamples, 2);
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      seen(static_cast<Eigen::Index>(g * kSamples + n), 0) = a[g][n];
+      seen(static_cast<Eigen::Index>(g * kSamples + n), 1) = b[g][n];
+    }
+  }
+  const Eigen::MatrixXd rest = seen - design * design.colPivHouseholderQr().solve(seen);
+  const Eigen::MatrixXd want = rest.transpose() * rest;
+  EXPECT_LT((left - want).norm(), 1e-4 * want.norm());
+  EXPECT_LT(want.norm(), 0.9 * (seen.transpose() * seen).norm());
+}
+
+TEST(Whitening, MakesColouredNoiseWhite) {
+  std::mt19937_64 random(5);
+  Records samples;
+  for (int i = 0; i < 40; ++i) {
+    samples.push_back(testing::noise(testing::NoiseColour::pink, 4e-6, 1e-6, 4096, random));
+  }
+  const Whitening whiten(samples, 40);
+  const std::vector<double> white =
+      whiten(testing::noise(testing::NoiseColour::pink, 4e-6, 1e-6, 200000, random));
+  double power = 0.0;
+  double neighbour = 0.0;
+  double far = 0.0;
+  for (std::size_t n = 100; n < white.size(); ++n) {
+    power += white[n] * white[n];
+    neighbour += white[n] * white[n - 1];
+    far += white[n] * white[n - 30];
+  }
+  const double count = static_cast<double>(white.size()) - 100.0;
+  EXPECT_NEAR(power / count, 1.0, 0.05);
+  EXPECT_NEAR(neighbour / power, 0.0, 0.02);
+  EXPECT_NEAR(far / power, 0.0, 0.02);
+}
+
+testing::Campaign small_bench() {
+  testing::CampaignWishes wishes;
+  wishes.seed = 11;
+  wishes.shots = 3;
+  wishes.gauges = 3;
+  wishes.rate_Hz = 1e6;
+  wishes.samples = 1000;
+  wishes.bits = 16;
+  return testing::draw_campaign(wishes);
+}
+
+TEST(Identifiability, TwiceTheNoiseNeedsTwiceTheSize) {
+  testing::Campaign campaign = small_bench();
+  campaign.bits = 0;
+  const Identifiability quiet(campaign);
+  campaign.wishes.noise_strain *= 2.0;
+  const Identifiability loud(campaign);
+  for (std::size_t i = 0; i < quiet.effects().size(); ++i) {
+    const Identifiable& a = quiet.effects()[i];
+    if (!a.possible()) {
+      continue;
+    }
+    // A little less than twice: the sources' weak prior does not grow with the noise.
+    double ratio = loud.effects()[i].smallest / a.smallest;
+    if (a.candidate.effect.id == "gauge-length") {
+      ratio *= ratio;  // grows with the square of the length
+    }
+    EXPECT_LT(ratio, 2.01) << a.candidate.effect.name();
+    EXPECT_GT(ratio, 1.75) << a.candidate.effect.name();
+    EXPECT_GE(a.smallest, a.detect);
+  }
+  // First in the known ties.
+  const auto delay = std::ranges::find_if(quiet.effects(), [](const Identifiable& effect) {
+    return effect.candidate.effect.name() == "channel-delay:g2";
+  });
+  ASSERT_NE(delay, quiet.effects().end());
+  EXPECT_EQ(delay->closest, "amplifier-bandwidth:g2");
+  EXPECT_LT(delay->rival_share, 5e-3);
+  EXPECT_TRUE(delay->seen_but_tied());
+}
+
+TEST(Campaign, TablesAndCapturesHoldTheSame) {
+  testing::Campaign campaign = small_bench();
+  testing::hide(campaign, testing::parse_effect("gauge-factor:g2=0.02"));
+  const fs::path folder = fs::temp_directory_path() / "kolsky_scoring_test";
+  fs::remove_all(folder);
+  const auto captures = testing::write_campaign({.folder = folder}, testing::shots_of(campaign));
+  const Shot stored = read_capture(captures[1]);
+  TableImport request;
+  request.tables = {folder / "shot02.csv"};
+  request.bench = folder / "bench.toml";
+  const Shot imported = import_tables(request);
+  ASSERT_EQ(imported.samples(), 1000u);
+  for (std::size_t g = 0; g < 3; ++g) {
+    const ChannelRecord& a = stored.channels[g];
+    const ChannelRecord& b = imported.channels[g];
+    for (std::size_t n = 0; n < 1000; ++n) {
+      ASSERT_NEAR(a.value(a.codes[n]), b.value(b.codes[n]), 1e-11);
+    }
+  }
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    EXPECT_EQ(entry.path().string().find("truth"), std::string::npos);
+  }
+  fs::remove_all(folder);
+}
+
+Case single(const std::string& effect) {
+  Case made{"b0", CaseKind::single, {}, {2.0}};
+  made.campaign.effects = {testing::parse_effect(effect)};
+  return made;
+}
+
+TEST(Verdict, CountsSetsExactNamesAndStrengths) {
+  Answer answer;
+  answer.json = nlohmann::json::parse(R"({"verdict": "tied", "effects": ["channel-delay:g2"],
+    "tied_with": {"channel-delay:g2": ["amplifier-bandwidth:g2"]},
+    "misfit": {"held_out": {"before": 3.0, "after": 1.2, "floor": 1.0}},
+    "candidates": [{"effect": "amplifier-bandwidth:g2", "strength": 2.2e-6, "sd": 1e-7}]})");
+  const Verdict tied = judge(single("amplifier-bandwidth:g2=2e-6"), answer);
+  EXPECT_EQ(tied.found, 1);
+  EXPECT_FALSE(tied.exact);
+  EXPECT_EQ(tied.set_size, 2.0);
+  EXPECT_NEAR(*tied.closure, 0.9, 1e-12);
+  EXPECT_NEAR(*tied.strength_in_sd, 2.0, 1e-9);
+  EXPECT_EQ(judge(single("gauge-position:g2=1e-3"), answer).found, 0);
+
+  answer.json["tied_with"] = {{"channel-delay:g2", nlohmann::json::array()}};
+  EXPECT_TRUE(judge(single("channel-delay:g2=2e-6"), answer).exact);
+  EXPECT_FALSE(judge(single("channel-delay:g1=2e-6"), answer).exact);
+
+  answer.code = 124;
+  EXPECT_EQ(judge(single("channel-delay:g2=2e-6"), answer).answered, "timeout");
+}
+
+TEST(Verdict, TwoEffectsNeedASetEach) {
+  Case two = single("gauge-factor:g1=0.01");
+  two.kind = CaseKind::two;
+  two.campaign.effects.push_back(testing::parse_effect("temperature=0.003"));
+  Answer answer;
+  answer.json = nlohmann::json::parse(
+      R"({"verdict": "named", "effects": ["x"], "tied_with": {"x": ["gauge-factor:g1", "temperature"]}})");
+  EXPECT_EQ(judge(two, answer).found, 1);
+  answer.json = nlohmann::json::parse(
+      R"({"verdict": "named", "effects": ["temperature", "gauge-factor:g1"], "tied_with": {}})");
+  EXPECT_EQ(judge(two, answer).found, 2);
+  EXPECT_TRUE(judge(two, answer).exact);
+}
+
+TEST(ScoreTable, MarksWhatFallsShort) {
+  std::vector<Verdict> verdicts(100);
+  for (Verdict& verdict : verdicts) {
+    verdict.answered = "adequate";
+  }
+  verdicts[0].named = verdicts[1].named = {"bending"};
+  std::vector<Measure> table = measures(verdicts);
+  EXPECT_NEAR(*table[0].got, 0.02, 1e-12);
+  EXPECT_FALSE(table[0].met);
+  EXPECT_FALSE(table[1].got.has_value());
+  verdicts[0].named.clear();
+  EXPECT_TRUE(measures(verdicts)[0].met);
+}
+
+}  // namespace
+}  // namespace kolsky::scoring

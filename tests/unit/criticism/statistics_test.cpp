@@ -1,0 +1,49 @@
+#include "processing/criticism/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "processing/criticism/smooth_power.hpp"
+
+namespace kolsky {
+namespace {
+
+// Abramowitz and Stegun, table 26.8, and the closed form exp(-x/2) for two degrees of freedom.
+TEST(Chi2Tail, AgreesWithTables) {
+  EXPECT_NEAR(std::exp(log_chi2_tail(3.84146, 1.0)), 0.05, 1e-6);
+  EXPECT_NEAR(std::exp(log_chi2_tail(18.307, 10.0)), 0.05, 1e-5);
+  for (const double x : {0.5, 20.0, 400.0, 9000.0}) {
+    EXPECT_NEAR(log_chi2_tail(x, 2.0), -x / 2.0, 1e-9 * x);
+  }
+}
+
+TEST(FTail, AgreesWithTables) {
+  EXPECT_NEAR(std::exp(log_f_tail(2.978, 10.0, 10.0)), 0.05, 1e-4);
+}
+
+TEST(EquivalentSquare, UndoesTheTailOfOneDegreeOfFreedom) {
+  for (const double x : {0.3, 4.0, 60.0, 3000.0}) {
+    EXPECT_NEAR(equivalent_square(log_chi2_tail(x, 1.0)), x, 1e-6 * x + 1e-9);
+  }
+}
+
+TEST(SmoothPower, FindsTheSpectrumThatDrewThePowers) {
+  std::mt19937_64 random(7);
+  std::gamma_distribution<double> chance(8.0, 1.0 / 8.0);
+  std::vector<double> power;
+  const auto truth = [](std::size_t k) {
+    return 1.0 + 30.0 / static_cast<double>((k + 1) * (k + 1));
+  };
+  for (std::size_t k = 0; k < 300; ++k) {
+    power.push_back(truth(k) * chance(random));
+  }
+  const auto found = smooth_power(power);
+  EXPECT_NEAR(found[0] / truth(0), 1.0, 0.35);
+  EXPECT_NEAR(found[4] / truth(4), 1.0, 0.25);
+  EXPECT_NEAR(found[200] / truth(200), 1.0, 0.06);
+}
+
+}  // namespace
+}  // namespace kolsky

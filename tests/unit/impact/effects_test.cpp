@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "processing/impact/impact.hpp"
+#include "tests/unit/impact/paper_ball.hpp"
+
+namespace kolsky::impact {
+namespace {
+
+using kolsky::testing::paper_bench;
+using kolsky::testing::paper_core;
+using kolsky::testing::paper_cover;
+using kolsky::testing::paper_impact;
+
+ImpactModel small(double speed_m_per_s = 51.0) {
+  ImpactModel model = paper_impact(speed_m_per_s);
+  model.elements = 300;
+  return model;
+}
+
+TEST(Effects, OfNoStrengthChangeNothing) {
+  const ImpactHistory plain = simulate(small());
+  ImpactModel model = impact_on(paper_bench(), {paper_core(), Reading::full, 0.0, {0.0, 1e-4}},
+                                {paper_cover(), Reading::full, 0.0, {}}, TargetKind::dashpot, 51.0);
+  model.elements = 300;
+  model.offset_m = 0.0;
+  EXPECT_EQ(simulate(model).force_N, plain.force_N);
+  model.layers[0].solid.nonlinearity = 1e-9;
+  EXPECT_NEAR(simulate(model).restitution, plain.restitution, 1e-7);
+}
+
+TEST(Effects, AStiffeningCoreRaisesThePeakAndShortensTheContact) {
+  const ImpactHistory plain = simulate(small());
+  for (const double b : {0.5, -0.5}) {
+    ImpactModel model = small();
+    model.layers[0].solid.nonlinearity = b;
+    const ImpactHistory changed = simulate(model);
+    EXPECT_GT((changed.peak_force_N - plain.peak_force_N) * b, 100.0);
+    EXPECT_LT((changed.contact_time_s - plain.contact_time_s) * b, -2e-6);
+    EXPECT_TRUE(changed.energy.dissipated_by_difference);
+    EXPECT_LT(std::abs(changed.energy.worst_closure), 2e-3);
+  }
+}
+
+TEST(Effects, NonlinearityShowsLessAtLowSpeed) {
+  const auto change = [](double speed) {
+    ImpactModel model = small(speed);
+    const double plain = simulate(model).peak_force_N;
+    model.layers[0].solid.nonlinearity = 0.5;
+    return simulate(model).peak_force_N / plain - 1.0;
+  };
+  EXPECT_LT(change(5.0), 0.5 * change(51.0));
+}
+
+// The choice of stress is known to move the peak by about a hundredth at 51 m/s, and less below.
+TEST(Effects, CauchyStressIsTheSofterLawByAboutAHundredth) {
+  const auto change = [](double speed) {
+    ImpactModel model = small(speed);
+    const double plain = simulate(model).peak_force_N;
+    for (Layer& layer : model.layers) {
+      layer.solid.law = FiniteStrain::cauchy;
+    }
+    const ImpactHistory cauchy = simulate(model);
+    EXPECT_LT(std::abs(cauchy.energy.worst_closure), 2e-3);
+    return cauchy.peak_force_N / plain - 1.0;
+  };
+  const double fast = change(51.0);
+  EXPECT_LT(fast, -0.005);
+  EXPECT_GT(fast, -0.02);
+  EXPECT_GT(change(5.0), 0.75 * fast);
+}
+
+TEST(Effects, ASecondRelaxationSoftensAndTakesEnergy) {
+  const ImpactHistory plain = simulate(small());
+  ImpactModel model = impact_on(paper_bench(), {paper_core(), Reading::full, 0.0, {1.5e-9, 1e-4}},
+                                {paper_cover(), Reading::full}, TargetKind::dashpot, 51.0);
+  model.elements = 300;
+  const ImpactHistory relaxing = simulate(model);
+  EXPECT_LT(relaxing.peak_force_N, plain.peak_force_N);
+  EXPECT_LT(relaxing.restitution, plain.restitution - 0.01);
+  EXPECT_LT(std::abs(relaxing.energy.worst_closure), 2e-3);
+}
+
+// Earlier and shorter with more friction, and less bouncy: where prototypes and the paper agree.
+TEST(Effects, FrictionMakesThePeakEarlierAndRestitutionSmaller) {
+  ImpactModel model = small(31.1);
+  model.friction = 0.0;
+  const ImpactHistory without = simulate(model);
+  model.friction = 0.3;
+  const ImpactHistory with = simulate(model);
+  EXPECT_LE(with.peak_time_s, without.peak_time_s);
+  EXPECT_LE(with.contact_time_s, without.contact_time_s);
+  EXPECT_NEAR(with.restitution - without.restitution, -0.0115, 0.006);
+  EXPECT_EQ(without.energy.friction_J, 0.0);
+}
+
+TEST(Effects, ASabotThatFollowsAddsItsPush) {
+  ImpactModel model = small(40.3);
+  const ImpactHistory without = simulate(model);
+  model.sabot_mass_kg = 0.002;
+  const ImpactHistory with = simulate(model);
+  EXPECT_GT(with.rebound_speed_m_per_s, 0.0);
+  EXPECT_LT(with.rebound_speed_m_per_s, without.rebound_speed_m_per_s - 0.5);
+  EXPECT_LT(std::abs(with.energy.worst_closure), 2e-3);
+}
+
+TEST(Effects, OffCentreContactOverhangsAndSaysSo) {
+  ImpactModel model = small();
+  const ImpactHistory centred = simulate(model);
+  model.offset_m = 0.003;
+  const ImpactHistory aside = simulate(model);
+  EXPECT_LT(aside.peak_force_N, centred.peak_force_N);
+  bool said = false;
+  for (const std::string& remark : aside.remarks) {
+    said = said || remark.find("off-centre") != std::string::npos;
+  }
+  EXPECT_TRUE(said);
+  // Where the patch stays on the bar, nothing overhangs.
+  ImpactModel slow = small(5.0);
+  const double plain = simulate(slow).peak_force_N;
+  slow.offset_m = 0.001;
+  EXPECT_EQ(simulate(slow).peak_force_N, plain);
+}
+
+}  // namespace
+}  // namespace kolsky::impact

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "processing/base/error.hpp"
+#include "processing/impact/impact.hpp"
+#include "tests/unit/impact/paper_ball.hpp"
+
+namespace kolsky::impact {
+namespace {
+
+using kolsky::testing::paper_impact;
+
+struct Refusal {
+  const char* name;
+  std::function<void(ImpactModel&)> spoil;
+  const char* place;
+};
+
+class ImpactRefuses : public ::testing::TestWithParam<Refusal> {};
+
+TEST_P(ImpactRefuses, WithThePlace) {
+  ImpactModel model = paper_impact(40.3);
+  model.elements = 256;
+  GetParam().spoil(model);
+  try {
+    (void)simulate(model);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(error.place().find(GetParam().place), std::string::npos) << error.what();
+    EXPECT_FALSE(error.mend().empty());
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
+const double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, ImpactRefuses,
+    ::testing::Values(
+        Refusal{"NoLayers", [](ImpactModel& m) { m.layers.clear(); }, "layers"},
+        Refusal{"CoverInsideCore", [](ImpactModel& m) { m.layers[1].outer_diameter_m = 0.01; },
+                "layers[1].outer_diameter_m"},
+        Refusal{"NegativeModulus",
+                [](ImpactModel& m) { m.layers[0].solid.shear_relaxed_Pa = -1.0; },
+                "layers[0].solid"},
+        Refusal{"ActiveArm", [](ImpactModel& m) { m.layers[1].solid.arms[0].shear_Pa = -1e6; },
+                "layers[1].solid"},
+        Refusal{"NotANumber", [](ImpactModel& m) { m.layers[1].solid.density_kg_m3 = kNaN; },
+                "layers[1].solid"},
+        Refusal{"NoSpeed", [](ImpactModel& m) { m.speed_m_per_s = 0.0; }, "speed"},
+        Refusal{"Backwards", [](ImpactModel& m) { m.speed_m_per_s = -40.0; }, "speed"},
+        Refusal{"NaNSpeed", [](ImpactModel& m) { m.speed_m_per_s = kNaN; }, "speed"},
+        Refusal{"NegativeFriction", [](ImpactModel& m) { m.friction = -0.1; }, "friction"},
+        Refusal{"PastTheEdge", [](ImpactModel& m) { m.offset_m = 0.014; }, "offset"},
+        Refusal{"NegativeSabot", [](ImpactModel& m) { m.sabot_mass_kg = -1.0; }, "sabot"},
+        Refusal{"TooFewElements", [](ImpactModel& m) { m.elements = 3; }, "elements"},
+        Refusal{"NoRoomForRings", [](ImpactModel& m) { m.elements = 64; }, "elements"},
+        Refusal{"GaugeWithoutABar", [](ImpactModel& m) { m.gauge_positions_m = {0.25}; }, "gauge"},
+        Refusal{"ProbeOutside",
+                [](ImpactModel& m) {
+                  m.probes = {{0.0, 0.03}};
+                },
+                "probes"},
+        Refusal{"StepPastStability", [](ImpactModel& m) { m.time_step_s = 5e-6; }, "time_step_s"}),
+    [](const auto& refusal) { return refusal.param.name; });
+
+TEST(ImpactRun, StopsAtAnInvertedElementWithItsPlaceAndTime) {
+  // Jelly at 51 m/s.
+  ImpactModel model = paper_impact(51.0);
+  model.elements = 256;
+  model.layers[0].solid = elastic_solid(1140.0, 5e4, 0.45);
+  model.layers[1].solid = elastic_solid(960.0, 5e4, 0.45);
+  try {
+    (void)simulate(model);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(error.problem().find("element"), std::string::npos) << error.what();
+    EXPECT_NE(error.problem().find(" s"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ImpactRun, StopsWhereAGivenStepIsOvertakenByTheDeformation) {
+  ImpactModel model = paper_impact(51.0);
+  model.elements = 256;
+  const ImpactHistory usual = simulate(model);
+  model.time_step_s = 0.99 * usual.first_step_s / 0.85;
+  try {
+    (void)simulate(model);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "time_step_s");
+    EXPECT_NE(error.problem().find("element"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace kolsky::impact

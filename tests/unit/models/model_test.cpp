@@ -1,0 +1,206 @@
+#include "processing/models/model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "drivers/files/model_file.hpp"
+#include "processing/base/error.hpp"
+#include "processing/models/physics.hpp"
+#include "processing/models/transfers.hpp"
+
+namespace kolsky {
+namespace {
+
+Bench bench_of(BenchKind kind) {
+  Bench bench;
+  bench.kind = kind;
+  bench.sampling_frequency_Hz = 1e6;
+  bench.input.length_m = {2.0, 0.0};
+  bench.input.diameter_m = {0.02, 0.0};
+  bench.input.density_kg_m3 = {1180.0, 0.0};
+  bench.input.poisson_ratio = {0.36, 0.0};
+  for (const auto& [name, x] : {std::pair{"g1", 0.2}, std::pair{"g2", 0.6}, std::pair{"g3", 1.1}}) {
+    Gauge gauge;
+    gauge.name = name;
+    gauge.bar = "input";
+    gauge.position_m = {x, 0.0};
+    gauge.unit = "strain";
+    bench.gauges.push_back(gauge);
+  }
+  if (kind == BenchKind::shpb) {
+    bench.output = bench.input;
+    bench.gauges[2].bar = "output";
+    bench.specimen =
+        Specimen{{0.004, 0.0}, {0.012, 0.0}, Measured{1140.0, 0.0}, Measured{0.376, 0.0}};
+  }
+  return bench;
+}
+
+std::vector<AppliedEffect> applied(const Model& model) {
+  std::vector<AppliedEffect> list;
+  for (const EffectUse& use : model.effects) {
+    AppliedEffect effect{use.effect, use.gauge == "g2" ? std::size_t{1} : std::size_t{0}, {}};
+    for (const ModelValue& value : use.values) {
+      effect.values.push_back(value.value);
+    }
+    list.push_back(std::move(effect));
+  }
+  return list;
+}
+
+/// Everything a model says of a shot, in one list.
+std::vector<Complex> said(const Model& model, const Bench& bench) {
+  ShotFacts facts;
+  facts.peak_strain = 2e-3;
+  facts.warmer_by_K = 3.0;
+  for (int n = 0; n < 50; ++n) {
+    facts.time_s.push_back(1e-5 * n);
+  }
+  std::vector<Complex> path;
+  for (int k = 0; k < 40; ++k) {
+    path.emplace_back(4000.0, 8000.0 * k);
+  }
+  Scene scene(bench, facts, path);
+  shape(applied(model), scene);
+  std::vector<Complex> all;
+  for (const auto& reading : transfers_of(scene, 0).reading) {
+    all.insert(all.end(), reading.begin(), reading.end());
+  }
+  all.emplace_back(scene.record.bridge_b);
+  for (const auto& addition : scene.record.additions) {
+    for (const double value : addition) {
+      all.emplace_back(value);
+    }
+  }
+  if (scene.specimen) {
+    all.emplace_back(scene.specimen->stiffening);
+    all.emplace_back(scene.specimen->friction);
+    all.emplace_back(scene.specimen->gap_m);
+    all.emplace_back(scene.specimen->lateral_inertia_kg_per_m);
+  }
+  return all;
+}
+
+double difference(const std::vector<Complex>& a, const std::vector<Complex>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  }
+  return largest;
+}
+
+class EveryEffect : public ::testing::TestWithParam<const Effect*> {};
+
+TEST_P(EveryEffect, IsNotThereAtItsNullAndIsThereBesideIt) {
+  const EffectAbout& about = GetParam()->about();
+  if (about.base) {
+    GTEST_SKIP() << "part of the paper's model";
+  }
+  for (const BenchKind kind : about.kinds) {
+    if (kind == BenchKind::impact) {
+      continue;
+    }
+    const Bench bench = bench_of(kind);
+    Model model = paper_model(kind, false);
+    if (about.id == "bar-length") {
+      model.effects.push_back(use_named("end-reflection"));
+    }
+    const auto without = said(model, bench);
+    EffectUse use = null_use(*GetParam(), about.per_gauge ? "g2" : "");
+    model.effects.push_back(use);
+    EXPECT_LT(difference(without, said(model, bench)), 1e-12) << "at null";
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const EffectParameter& parameter = about.parameters[p];
+      if (!parameter.auxiliary()) {
+        model.effects.back() = use;
+        const double up = parameter.null_value + parameter.typical;
+        model.effects.back().values[p].value =
+            up <= parameter.upper ? up : parameter.null_value - parameter.typical;
+        EXPECT_GT(difference(without, said(model, bench)), 1e-9) << parameter.name;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Library, EveryEffect, ::testing::ValuesIn(effect_library()),
+                         [](const auto& info) {
+                           std::string name = info.param->about().id;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(EffectLibrary, HoldsTheReferencesEffectsOnce) {
+  std::set<std::string> ids;
+  for (const Effect* effect : effect_library()) {
+    EXPECT_TRUE(ids.insert(effect->about().id).second) << effect->about().id;
+  }
+  for (const char* id : {"second-relaxation",
+                         "series-dashpot",
+                         "fractional-damping",
+                         "amplitude-dependence",
+                         "temperature",
+                         "geometric-dispersion",
+                         "end-reflection",
+                         "bending",
+                         "bar-length",
+                         "specimen-dimensions",
+                         "gauge-position",
+                         "gauge-factor",
+                         "channel-delay",
+                         "amplifier-bandwidth",
+                         "baseline-drift",
+                         "gauge-length",
+                         "crosstalk",
+                         "mains-hum",
+                         "bridge-nonlinearity",
+                         "specimen-second-relaxation",
+                         "specimen-nonlinearity",
+                         "specimen-inertia",
+                         "radial-inertia",
+                         "interface-friction",
+                         "interface-gap",
+                         "punching"}) {
+    EXPECT_TRUE(ids.contains(id)) << id;
+  }
+}
+
+TEST(UseNamed, RefusesWhatTheLibraryDoesNotHaveOrWhatNamesNoGauge) {
+  EXPECT_THROW((void)use_named("geometrical-dispersion"), InputError);
+  EXPECT_THROW((void)use_named("gauge-position"), InputError);
+  EXPECT_THROW((void)use_named("temperature:g1"), InputError);
+  EXPECT_EQ(use_named("gauge-position:g3").id(), "gauge-position:g3");
+}
+
+TEST(ModelFile, ReadsBackTheSameBitsAndKeepsItsHistory) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  file.model.effects.front().values[0] = {5.6612345678901234e9, 1.25e6, true, 0.0, 0.0};
+  begin_step(file, "add gauge-position:g2", "2026-01-02T03:04:05Z");
+  file.model.effects.push_back(use_named("gauge-position:g2"));
+  const std::string text = format_model(file);
+  const ModelFile again = parse_model(text, "m.toml");
+  EXPECT_EQ(format_model(again), text);
+  EXPECT_EQ(again.model.effects.front().values[0].value, 5.6612345678901234e9);
+  ASSERT_EQ(again.history.size(), 1U);
+  const ModelFile before = parse_model(again.history.front().before, "before");
+  EXPECT_EQ(before.model.find("gauge-position:g2"), nullptr);
+  EXPECT_NE(before.model.find("three-element-bar"), nullptr);
+}
+
+TEST(ModelFile, RefusesUnknownEffectsOutOfBoundsAndWrongUnits) {
+  const std::string head = "kolsky_model = 1\nkind = \"bar\"\n[[effects]]\n";
+  EXPECT_THROW((void)parse_model(head + "id = \"warp\"\n", "m"), InputError);
+  EXPECT_THROW((void)parse_model(head + "id = \"interface-friction\"\n", "m"), InputError);
+  EXPECT_THROW((void)parse_model(head + "id = \"second-relaxation\"\n[effects.parameters.D]\n"
+                                        "value = -1e-12\n",
+                                 "m"),
+               InputError);
+  EXPECT_THROW((void)parse_model(head + "id = \"second-relaxation\"\n[effects.parameters.D]\n"
+                                        "value = 1e-12\nunit = \"1/MPa\"\n",
+                                 "m"),
+               InputError);
+}
+
+}  // namespace
+}  // namespace kolsky

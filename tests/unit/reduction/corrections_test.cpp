@@ -1,0 +1,198 @@
+// Corrections to the stress, against the formulas by hand and against a specimen with mass solved
+// in the time domain.
+#include "processing/reduction/corrections.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "drivers/simulated/bench_model.hpp"
+#include "processing/base/error.hpp"
+#include "processing/reduction/reducer.hpp"
+#include "tests/generators/elastic_shpb.hpp"
+
+namespace kolsky {
+namespace {
+
+Specimen disc() {
+  Specimen specimen;
+  specimen.length_m = {0.004};
+  specimen.diameter_m = {0.012};
+  specimen.density_kg_m3 = Measured{1000.0};
+  return specimen;
+}
+
+/// The rate grows by 1e7 1/s2; front and back differ.
+Reduction growing() {
+  Reduction r;
+  for (int n = 0; n < 100; ++n) {
+    const double t = 1e-6 * n;
+    r.time_s.push_back(t);
+    r.strain_rate_per_s.push_back(1e7 * t);
+    r.strain.push_back(0.5e7 * t * t);
+    r.force_front_N.push_back(120.0);
+    r.force_back_N.push_back(100.0);
+    r.stress_Pa.push_back(0.0);
+  }
+  return r;
+}
+
+TEST(SetStress, TakesOneTwoOrThreeWaves) {
+  const double area_m2 = std::numbers::pi * 0.006 * 0.006;
+  Reduction r = growing();
+  set_stress(StressFrom::both_faces, {}, disc(), r);
+  EXPECT_NEAR(r.stress_Pa[50], 110.0 / area_m2, 1e-6);
+  set_stress(StressFrom::back, {}, disc(), r);
+  EXPECT_NEAR(r.stress_Pa[50], 100.0 / area_m2, 1e-6);
+  set_stress(StressFrom::front, {}, disc(), r);
+  EXPECT_NEAR(r.stress_Pa[50], 120.0 / area_m2, 1e-6);
+  EXPECT_THROW((void)stress_from("four-wave"), InputError);
+}
+
+TEST(SetStress, TakesInertiaOffByThePrintedFormulas) {
+  // At 50 us: e = 500 1/s, e' = 1e7 1/s2. Radial: 1000 x 36e-6 x (1.25e6 + 15625).
+  // Axial, mean of both faces: 1000 x 16e-6 x (1e7 - 2.5e5) / 12.
+  Reduction r = growing();
+  set_stress(StressFrom::both_faces, {}, disc(), r);
+  const double plain = r.stress_Pa[50];
+  set_stress(StressFrom::both_faces, {.radial_inertia = true, .friction = {}}, disc(), r);
+  EXPECT_NEAR(plain - r.stress_Pa[50], 45562.5, 1.0);
+  set_stress(StressFrom::both_faces, {.axial_inertia = true, .friction = {}}, disc(), r);
+  EXPECT_NEAR(plain - r.stress_Pa[50], 13000.0, 1.0);
+  // Davies and Hunter: the back face's stress lacks a sixth.
+  set_stress(StressFrom::back, {}, disc(), r);
+  const double back = r.stress_Pa[50];
+  set_stress(StressFrom::back, {.axial_inertia = true, .friction = {}}, disc(), r);
+  EXPECT_NEAR(r.stress_Pa[50] - back, 26000.0, 1.0);
+}
+
+TEST(SetStress, TakesFrictionOff) {
+  Reduction r = growing();
+  set_stress(StressFrom::both_faces, {}, disc(), r);
+  const double plain = r.stress_Pa[0];
+  Corrections corrections;
+  corrections.friction = 0.1;
+  set_stress(StressFrom::both_faces, corrections, disc(), r);
+  EXPECT_NEAR(plain / r.stress_Pa[0], 1.0 + 0.1 * 0.012 / (3.0 * 0.004), 1e-12);
+}
+
+TEST(SetStress, InertiaNeedsTheSpecimensDensity) {
+  Reduction r = growing();
+  Specimen unknown = disc();
+  unknown.density_kg_m3.reset();
+  EXPECT_THROW(
+      set_stress(StressFrom::both_faces, {.axial_inertia = true, .friction = {}}, unknown, r),
+      InputError);
+  EXPECT_NO_THROW(set_stress(StressFrom::both_faces, {}, unknown, r));
+}
+
+double circle_m2(double diameter_m) {
+  return std::numbers::pi * diameter_m * diameter_m / 4.0;
+}
+
+struct Solved {
+  Shot shot;
+  SpecimenHistory truth;
+};
+
+/// A specimen rod between two bars that differ, gauges half a metre and a quarter from it.
+Solved solve(const RodMaterial& input, const RodMaterial& output, const RodMaterial& specimen,
+             double specimen_length_m, double ramp_s = 60e-6) {
+  constexpr std::size_t kStepsPerSample = 10;
+  constexpr std::size_t kPreSamples = 300;
+  BenchModel model;
+  model.input = {1.0, circle_m2(0.015), input};
+  model.output = RodShape{0.8, circle_m2(0.012), output};
+  model.specimen = RodShape{specimen_length_m, circle_m2(0.010), specimen};
+  model.pulse = {.peak_force_N = input.E1_Pa * circle_m2(0.015) * 1e-3,
+                 .duration_s = 170e-6,
+                 .ramp_s = ramp_s};
+  model.gauges = {{RodId::input, 0.5}, {RodId::output, 0.25}};
+  const BenchHistory history = run_bench(model, 0.1e-6, 20'000);
+  std::vector<std::vector<double>> records;
+  for (const auto& strain : history.gauge_strain) {
+    records.emplace_back(kPreSamples, 0.0);
+    for (std::size_t n = 0; n < strain.size(); n += kStepsPerSample) {
+      records.back().push_back(strain[n]);
+    }
+  }
+  const auto bar = [](const RodShape& shape, double diameter_m) {
+    Bar made;
+    made.length_m = {shape.length_m};
+    made.diameter_m = {diameter_m};
+    made.density_kg_m3 = {shape.material.density_kg_m3};
+    made.poisson_ratio = {0.36};
+    if (shape.material.elastic()) {
+      made.youngs_modulus_Pa = Measured{shape.material.E1_Pa};
+    }
+    return made;
+  };
+  Bench bench = testing::ElasticShpb{}.bench();
+  bench.input = bar(model.input, 0.015);
+  bench.output = bar(*model.output, 0.012);
+  bench.gauges[0].position_m = {0.5};
+  bench.gauges[1].position_m = {0.25};
+  bench.specimen->length_m = {specimen_length_m};
+  bench.specimen->diameter_m = {0.010};
+  bench.specimen->density_kg_m3 = Measured{specimen.density_kg_m3};
+  return {testing::digitise(bench, records, 0.0, 24, 0.01, 1), *history.specimen};
+}
+
+constexpr RodMaterial kPmma{1180, 5.66e9, 37.0e9, 1.81e6};
+constexpr RodMaterial kAluminium{2700, 70e9, 0.0, 0.0};
+constexpr RodMaterial kTitanium{4430, 113e9, 0.0, 0.0};
+constexpr RodMaterial kRubber{1100, 100e6, 0.0, 0.0};
+
+TEST(AxialInertia, TakenOffLeavesTheMaterialsOwnStress) {
+  const Solved solved = solve(kPmma, kPmma, kRubber, 0.006);
+  const Reduction plain = Reducer().reduce(solved.shot);
+  ReductionOptions options;
+  options.corrections.axial_inertia = true;
+  const Reduction corrected = Reducer(options).reduce(solved.shot);
+  ASSERT_TRUE(plain.quality.reducible);
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t n = 0; n < 150; ++n) {
+    const double own = kRubber.E1_Pa * plain.strain[n];
+    before += std::pow(plain.stress_Pa[n] - own, 2);
+    after += std::pow(corrected.stress_Pa[n] - own, 2);
+  }
+  EXPECT_LT(std::sqrt(after), 0.35 * std::sqrt(before));
+}
+
+class UnlikeBars : public ::testing::TestWithParam<std::pair<RodMaterial, RodMaterial>> {};
+
+TEST_P(UnlikeBars, AreReducedToTheTimeDomainSolution) {
+  const auto& [input, output] = GetParam();
+  const Solved solved = solve(input, output, kRubber, 0.004);
+  const Reduction r = Reducer().reduce(solved.shot);
+  ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
+  double worst_force = 0.0;
+  double worst_strain = 0.0;
+  double force = 0.0;
+  double strain = 0.0;
+  const double front_s = 300e-6 + 1.0 / input.front_speed_m_per_s();
+  for (std::size_t n = 0; n < r.time_s.size(); ++n) {
+    const double t = r.time_s[n] + r.arrival_s - front_s;
+    const double index = (t - solved.truth.time_s.front()) / 0.1e-6;
+    const auto i = static_cast<std::size_t>(index);
+    if (i + 1 >= solved.truth.strain.size()) {
+      break;
+    }
+    worst_force = std::max(worst_force, std::abs(r.force_back_N[n] - solved.truth.force_back_N[i]));
+    worst_strain = std::max(worst_strain, std::abs(r.strain[n] - solved.truth.strain[i]));
+    force = std::max(force, solved.truth.force_back_N[i]);
+    strain = std::max(strain, solved.truth.strain[i]);
+  }
+  EXPECT_LT(worst_force, 3e-3 * force);
+  EXPECT_LT(worst_strain, 3e-3 * strain);
+}
+
+INSTANTIATE_TEST_SUITE_P(ElasticAndViscoelastic, UnlikeBars,
+                         ::testing::Values(std::pair{kPmma, kPmma}, std::pair{kAluminium, kPmma},
+                                           std::pair{kPmma, kAluminium},
+                                           std::pair{kTitanium, kAluminium}));
+
+}  // namespace
+}  // namespace kolsky

@@ -1,0 +1,203 @@
+// What is filed with a deviation, carried through the reduction of solved benches.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <thread>
+
+#include "processing/uncertainty/monte_carlo.hpp"
+#include "processing/uncertainty/noise.hpp"
+#include "tests/generators/elastic_shpb.hpp"
+#include "tests/generators/linear_shpb.hpp"
+
+namespace kolsky {
+namespace {
+
+using testing::ElasticShpb;
+
+Uncertainty propagated(const Shot& shot, std::size_t draws,
+                       const Executor& executor = run_in_order) {
+  const Reduction reduction = Reducer().reduce(shot);
+  UncertaintyOptions options;
+  options.draws = draws;
+  return propagate(shot, {}, reduction, options, executor);
+}
+
+const UncertainFigure& figure(const Uncertainty& u, const std::string& name) {
+  return *std::find_if(u.figures.begin(), u.figures.end(),
+                       [&](const auto& f) { return f.name == name; });
+}
+
+double rms(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (const double value : values) {
+    squares += value * value / static_cast<double>(values.size());
+  }
+  return std::sqrt(squares);
+}
+
+TEST(Uncertainty, OfNoiseIsTheScatterOfRepeatedShots) {
+  const ElasticShpb model;
+  const auto records = model.solve();
+  constexpr unsigned kShots = 60;
+  ReductionOptions options;
+  options.band_limit_Hz = 60e3;
+  options.arrival_s = model.foot_at_gauge_s;  // else the histories' samples lie at other times
+  Reducer reducer(options);
+  std::vector<std::vector<double>> stress;
+  for (unsigned seed = 1; seed <= kShots; ++seed) {
+    stress.push_back(reducer.reduce(model.shot(records, 4e-6, 16, 0.01, seed)).stress_Pa);
+  }
+  std::vector<double> scatter;
+  for (std::size_t n = 30; n < 80; ++n) {
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const auto& one : stress) {
+      mean += one[n] / kShots;
+    }
+    for (const auto& one : stress) {
+      squares += std::pow(one[n] - mean, 2) / (kShots - 1);
+    }
+    scatter.push_back(std::sqrt(squares));
+  }
+  const Shot shot = model.shot(records, 4e-6, 16, 0.01, 99);
+  const Reduction reduction = reducer.reduce(shot);
+  UncertaintyOptions wanted;
+  wanted.draws = 300;
+  const Uncertainty u = propagate(shot, options, reduction, wanted, run_in_order);
+  EXPECT_EQ(u.draws, 300U);
+  EXPECT_TRUE(u.sources.empty());
+  const std::vector<double> stated(u.stress_Pa.sd.begin() + 30, u.stress_Pa.sd.begin() + 80);
+  EXPECT_NEAR(rms(stated) / rms(scatter), 1.0, 0.2);
+}
+
+TEST(Uncertainty, OfOneGainIsThatShareOfItsForce) {
+  const ElasticShpb model;
+  Shot shot = model.shot(model.solve(), 0.2e-6, 24, 0.01, 1);
+  shot.bench.gauges[1].unit = "V";
+  shot.bench.gauges[1].strain_per_V = Measured{1.0, 0.01};
+  const Uncertainty u = propagated(shot, 600);
+  const Reduction r = Reducer().reduce(shot);
+  const auto peak = static_cast<std::size_t>(
+      std::max_element(r.force_back_N.begin(), r.force_back_N.end()) - r.force_back_N.begin());
+  EXPECT_NEAR(u.force_back_N.sd[peak] / r.force_back_N[peak], 0.01, 0.0012);
+  EXPECT_LT(u.force_front_N.sd[peak], 0.1 * u.force_back_N.sd[peak]);
+  // The mean of both faces has half of it.
+  EXPECT_NEAR(u.stress_Pa.sd[peak] / r.stress_Pa[peak], 0.005, 0.0006);
+  EXPECT_LT(u.force_back_N.low[peak], r.force_back_N[peak] * 0.985);
+  EXPECT_GT(u.force_back_N.high[peak], r.force_back_N[peak] * 1.015);
+  ASSERT_GE(u.budget.size(), 2U);
+  EXPECT_EQ(u.budget.front().source, "gauge factors");
+  EXPECT_GT(u.budget.front().share.front(), 0.95);
+  EXPECT_NEAR(u.budget.front().sd.front() / figure(u, "peak_stress_Pa").sd, 1.0, 0.15);
+}
+
+TEST(Uncertainty, TheBudgetAddsUpToTheWhole) {
+  testing::LinearShpb model;
+  Shot shot = testing::digitise(model.bench(), model.solve(), 4e-6, 16, 0.005, 1);
+  shot.bench.gauges[0].position_m.sd = 0.2e-3;
+  shot.bench.gauges[1].position_m.sd = 0.2e-3;
+  shot.bench.input.diameter_m.sd = 0.02e-3;
+  shot.bench.output->diameter_m.sd = 0.02e-3;
+  shot.bench.input.density_kg_m3.sd = 3.0;
+  shot.bench.specimen->length_m.sd = 0.01e-3;
+  shot.bench.specimen->diameter_m.sd = 0.02e-3;
+  shot.bench.temperature_K = Measured{296.0, 0.5};
+  shot.bar_model = paper_pmma();
+  UncertaintyOptions options;
+  options.draws = 800;
+  options.bars.covariance[0][0] = std::pow(5e-4 * 5.66e9, 2);
+  options.bars.covariance[2][2] = std::pow(5e-3 * 1.81e6, 2);
+  const Uncertainty u = propagate(shot, {}, Reducer().reduce(shot), options, run_in_order);
+  EXPECT_EQ(u.sources.size(),
+            10U);  // 2 positions, 2 diameters, 1 density, 2 of the specimen, 2 + 1
+  for (std::size_t f = 0; f < u.figures.size(); ++f) {
+    double sum = 0.0;
+    double share = 0.0;
+    for (const BudgetLine& line : u.budget) {
+      sum += line.sd[f] * line.sd[f];
+      share += line.share[f];
+    }
+    EXPECT_NEAR(share, 1.0, 1e-9);
+    EXPECT_NEAR(std::sqrt(sum) / u.figures[f].sd, 1.0, 0.25) << u.figures[f].name;
+  }
+}
+
+TEST(Uncertainty, IntervalsHoldTheTruth) {
+  // The bench file is off by its own deviations and the noise is new each time.
+  const ElasticShpb model;
+  const auto records = model.solve();
+  const double true_strain =
+      *std::max_element(records.truth.strain.begin(), records.truth.strain.begin() + 30'000);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  int inside = 0;
+  constexpr int kRepeats = 40;
+  for (unsigned repeat = 1; repeat <= kRepeats; ++repeat) {
+    Shot shot = model.shot(records, 4e-6, 16, 0.01, repeat);
+    for (Gauge& gauge : shot.bench.gauges) {
+      gauge.strain_per_V = Measured{1.0 + 0.005 * normal(random), 0.005};
+      gauge.unit = "V";
+    }
+    shot.bench.specimen->length_m = {0.004 * (1.0 + 0.003 * normal(random)), 0.004 * 0.003};
+    const Uncertainty u = propagated(shot, 80);
+    const UncertainFigure& strain = figure(u, "peak_strain");
+    inside += true_strain > strain.low && true_strain < strain.high ? 1 : 0;
+  }
+  EXPECT_GE(inside, 33);  // 38 expected
+}
+
+TEST(Uncertainty, IsTheSameHoweverTheWorkIsSpread) {
+  const ElasticShpb model;
+  const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 1);
+  const Executor threads = [](std::size_t count, const std::function<void(std::size_t)>& task) {
+    std::vector<std::jthread> pool;
+    for (std::size_t i = 0; i < count; ++i) {
+      pool.emplace_back([&task, i] { task(i); });
+    }
+  };
+  const Uncertainty one = propagated(shot, 64);
+  const Uncertainty many = propagated(shot, 64, threads);
+  EXPECT_EQ(one.stress_Pa.sd, many.stress_Pa.sd);
+  EXPECT_EQ(one.strain.low, many.strain.low);
+  EXPECT_EQ(one.budget.front().sd, many.budget.front().sd);
+}
+
+TEST(Uncertainty, OfWhatCannotBeReducedIsNothing) {
+  const ElasticShpb model;
+  Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 1);
+  shot.channels[0].codes[600] = shot.channels[0].code_max;
+  const Uncertainty u = propagated(shot, 50);
+  EXPECT_EQ(u.draws, 0U);
+  EXPECT_TRUE(u.stress_Pa.sd.empty());
+}
+
+TEST(NoiseMaker, MakesNoiseOfTheSpectrumItWasShown) {
+  std::mt19937 engine(5);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<double> red(4000, 0.0);
+  for (std::size_t n = 1; n < red.size(); ++n) {
+    red[n] = 0.9 * red[n - 1] + normal(engine);
+  }
+  NoiseMaker maker(red, 8000);
+  RandomStream random(1, 2);
+  std::vector<double> made(8000);
+  maker.make(random, made);
+  double variance = 0.0;
+  double neighbours = 0.0;
+  for (std::size_t n = 1; n < made.size(); ++n) {
+    variance += made[n] * made[n] / 8000.0;
+    neighbours += made[n] * made[n - 1] / 8000.0;
+  }
+  EXPECT_NEAR(neighbours / variance, 0.9, 0.04);
+  EXPECT_NEAR(variance, 1.0 / (1.0 - 0.81), 1.5);
+  std::vector<double> white(4000);
+  std::generate(white.begin(), white.end(), [&] { return 3.0 * normal(engine); });
+  NoiseMaker(white, 8000).make(random, made);
+  EXPECT_NEAR(rms(made), 3.0, 0.15);
+}
+
+}  // namespace
+}  // namespace kolsky
