@@ -129,9 +129,10 @@ void Comparer::choose_bands() {
     ComparedBand band{width * static_cast<double>(edges[b]),
                       width * static_cast<double>(edges[b + 1]),
                       {edges[b], edges[b + 1]}};
-    // What windows smear beyond the judged band belongs to its nearest part.
+    // What windows smear beyond the judged band belongs to its nearest part; it does not reach far.
     band.bins.first = b == 0 ? 0 : band.bins.first;
-    band.bins.end = b + 2 == edges.size() ? transform_.bins() : band.bins.end;
+    band.bins.end =
+        b + 2 == edges.size() ? std::min(transform_.bins(), last + last / 2) : band.bins.end;
     bands_.push_back(band);
   }
 }
