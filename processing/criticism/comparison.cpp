@@ -19,10 +19,6 @@ constexpr std::size_t kMostBands = 6;
 /// Of a unit row: below this what is left of a gauge's deviation is rounding.
 constexpr double kNothingLeft = 1e-4;
 
-double log_p_of(double energy, const TileNoise& noise) {
-  return noise.mean > 0.0 ? log_chi2_tail(energy * noise.freedom / noise.mean, noise.freedom) : 0.0;
-}
-
 /// Benjamini and Hochberg: the largest ln p that still counts among these.
 double discovery_limit(std::vector<double> log_ps) {
   std::sort(log_ps.begin(), log_ps.end());
@@ -133,9 +129,10 @@ void Comparer::choose_bands() {
     ComparedBand band{width * static_cast<double>(edges[b]),
                       width * static_cast<double>(edges[b + 1]),
                       {edges[b], edges[b + 1]}};
-    // What windows smear beyond the judged band belongs to its nearest part.
+    // What windows smear beyond the judged band belongs to its nearest part; it does not reach far.
     band.bins.first = b == 0 ? 0 : band.bins.first;
-    band.bins.end = b + 2 == edges.size() ? transform_.bins() : band.bins.end;
+    band.bins.end =
+        b + 2 == edges.size() ? std::min(transform_.bins(), last + last / 2) : band.bins.end;
     bands_.push_back(band);
   }
 }
@@ -325,7 +322,7 @@ void Comparer::add_tiles(const Reading& reading, const std::vector<Windowed>& wi
       // Parseval: a mean square is 2/N times the one-sided sum over the window's length.
       const double mean_square = 2.0 * squares / static_cast<double>(weight.size()) / length;
       tile.percent_of_peak = peak > 0.0 ? 100.0 * std::sqrt(mean_square) / peak : 0.0;
-      tile.log_p = log_p_of(tile.energy, tile.noise);
+      tile.log_p = tile.noise.log_tail(tile.energy);
       tiles.push_back(std::move(tile));
     }
   }
@@ -385,12 +382,11 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     region.window = tile.window;
     region.band = tile.band;
     region.energy += tile.energy;
-    region.noise.mean += tile.noise.mean;
-    region.noise.freedom += tile.noise.freedom;
+    region.noise += tile.noise;
     comparison.excess += std::max(0.0, tile.energy - tile.noise.mean);
   }
   for (auto& [key, region] : regions) {
-    region.log_p = log_p_of(region.energy, region.noise);
+    region.log_p = region.noise.log_tail(region.energy);
     double followed = 0.0;
     double total = 0.0;
     for (const Following& bin : following[key]) {
@@ -398,7 +394,7 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
       total += bin.all();
     }
     if (shots > 1 && total > followed) {
-      const double free = region.noise.freedom / static_cast<double>(shots);
+      const double free = region.noise.freedom() / static_cast<double>(shots);
       const double rest = free * static_cast<double>(shots - 1);
       region.repeat_log_p = log_f_tail((followed / free) / ((total - followed) / rest), free, rest);
     }

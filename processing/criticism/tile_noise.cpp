@@ -1,7 +1,10 @@
 #include "processing/criticism/tile_noise.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
+#include "processing/criticism/statistics.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -28,7 +31,25 @@ class Lines {
   std::vector<Complex> lines_;
 };
 
+/// Operations that a tile's exact moments may cost.
+constexpr std::size_t kMostOperations = 1'000'000;
+
 }  // namespace
+
+double TileNoise::log_tail(double energy) const {
+  if (second <= 0.0 || third <= 0.0) {
+    return 0.0;
+  }
+  const double free = second * second * second / (third * third);
+  return log_chi2_tail(free + (energy - mean) * std::sqrt(free / second), free);
+}
+
+TileNoise& TileNoise::operator+=(const TileNoise& other) {
+  mean += other.mean;
+  second += other.second;
+  third += other.third;
+  return *this;
+}
 
 std::vector<TileNoise> tile_noise(std::span<const double> window, std::span<const double> quiet,
                                   std::size_t judged, std::span<const BinRange> ranges) {
@@ -41,38 +62,45 @@ std::vector<TileNoise> tile_noise(std::span<const double> window, std::span<cons
   const Lines w2(square);
   const Lines v(quiet.empty() ? std::span<const double>(none) : quiet);
   const double n = static_cast<double>(window.size());
-  const double unit = 2.0 / (n * n);
-  double mean_power = 0.0;
-  for (std::size_t k = 1; k <= judged; ++k) {
-    mean_power += 2.0 * unit * std::norm(v.at(k));
-  }
   const auto share = [&](std::size_t bin) {
     return bin == 0 || 2 * bin == window.size() ? 0.5 : 1.0;
   };
   std::vector<TileNoise> list;
   for (const BinRange& range : ranges) {
-    TileNoise noise;
-    double variance = 0.0;
-    double of_mean = 0.0;
+    const std::size_t bins = range.end - range.first;
+    // From real and imaginary parts of the judged bins to those of the tile's.
+    Eigen::MatrixXd map(2 * bins, 2 * judged);
     for (std::size_t f = range.first; f < range.end; ++f) {
-      double power = 0.0;
-      Complex with_mean = 0.0;
+      const auto row = static_cast<Eigen::Index>(2 * (f - range.first));
+      const double root = std::sqrt(share(f)) / n;
       for (std::size_t k = 1; k <= judged; ++k) {
+        const auto column = static_cast<Eigen::Index>(2 * (k - 1));
         const Complex below = w.minus(f, k);
         const Complex above = w.at(f + k);
-        power += unit * (std::norm(below) + std::norm(above));
-        with_mean += unit * (below * v.at(k) + above * std::conj(v.at(k)));
-      }
-      const double shifted = std::norm(w.at(f)) * mean_power;
-      of_mean += share(f) * shifted;
-      noise.mean += share(f) * (power + shifted - 2.0 * (std::conj(w.at(f)) * with_mean).real());
-      for (std::size_t g = range.first; g < range.end; ++g) {
-        variance += share(f) * share(g) * 4.0 / (n * n) *
-                    (std::norm(w2.minus(f, g)) + std::norm(w2.at(f + g)));
+        const Complex of_real = root * (below + above - 2.0 * v.at(k).real() * w.at(f));
+        const Complex of_imaginary =
+            root * (Complex(0.0, 1.0) * (below - above) - 2.0 * v.at(k).imag() * w.at(f));
+        map(row, column) = of_real.real();
+        map(row + 1, column) = of_real.imag();
+        map(row, column + 1) = of_imaginary.real();
+        map(row + 1, column + 1) = of_imaginary.imag();
       }
     }
-    variance += 2.0 * of_mean * of_mean;
-    noise.freedom = variance > 0.0 ? 2.0 * noise.mean * noise.mean / variance : 0.0;
+    TileNoise noise;
+    noise.mean = map.squaredNorm();
+    if (4 * bins * bins * 2 * judged <= kMostOperations) {
+      const Eigen::MatrixXd covariance = map * map.transpose();
+      noise.second = covariance.squaredNorm();
+      noise.third = (covariance * covariance).cwiseProduct(covariance).sum();
+    } else {
+      for (std::size_t f = range.first; f < std::min(range.end, judged + 1); ++f) {
+        for (std::size_t g = range.first; g < std::min(range.end, judged + 1); ++g) {
+          noise.second += share(f) * share(g) * 2.0 / (n * n) *
+                          (std::norm(w2.minus(f, g)) + std::norm(w2.at(f + g)));
+        }
+      }
+      noise.third = noise.second * noise.second / noise.mean;
+    }
     list.push_back(noise);
   }
   return list;

@@ -6,11 +6,21 @@
 
 namespace kolsky {
 
-/// What noise of unit power per judged component leaves in a tile: its energy's mean, and how many
-/// degrees of freedom a chi-square variable of the same mean and variance has.
+/// What noise of unit power per judged component leaves in a tile: a sum of squares of normal
+/// variables, known by the traces of their covariance's first three powers. Those of independent
+/// tiles add.
 struct TileNoise {
   double mean = 0.0;
-  double freedom = 0.0;
+  double second = 0.0;  ///< half the variance
+  double third = 0.0;   ///< an eighth of the third central moment
+
+  /// Of a chi-square variable of the same mean and variance.
+  [[nodiscard]] double freedom() const { return second > 0.0 ? mean * mean / second : 0.0; }
+  /// ln probability of more than this: a chi-square variable, scaled and shifted to the same first
+  /// three moments (Buckley and Eagleson 1988).
+  [[nodiscard]] double log_tail(double energy) const;
+
+  TileNoise& operator+=(const TileNoise& other);
 };
 
 /// Bins of a transform of the judged window, first to last.
@@ -23,12 +33,11 @@ struct BinRange {
 /// independent and of unit variance, after multiplication with a window: sum of |Z(f)|^2 over each
 /// range of bins, Z by the transform in which z has them (bin 0 and the last count half).
 ///
-/// The mean is exact. The variance takes the window's spectrum as narrow against the judged band:
-/// Cov Z(f), Z(f') = 2/N times the transform of the squared window at f - f', and at f + f' without
-/// the conjugate.
+/// Exact where a tile has few components; of many the variance is that of the window's squared
+/// spectrum alone, as if it were narrow against the judged band.
 ///
 /// Bin 0 is not judged, so z floats; it is taken to be zero on average before the pulse: z(t) less
-/// its mean there, weighted by `quiet`. That mean's own noise is counted as a component of its own.
+/// its mean there, weighted by `quiet`. That mean's own noise is counted.
 /// @param window  one weight per sample, an even number of them
 /// @param quiet   weights of the mean, summing to one; empty: nothing is subtracted
 [[nodiscard]] std::vector<TileNoise> tile_noise(std::span<const double> window,

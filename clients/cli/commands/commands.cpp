@@ -50,6 +50,7 @@ std::vector<Command> all_commands() {
       model_history_command(),
       model_revert_command(),
       fit_command(),
+      compare_command(),
       diagnose_command(),
       impact_command(),
       verify_command(),

@@ -1,0 +1,248 @@
+#include "processing/criticism/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+struct Made {
+  testing::Campaign truth;
+  std::vector<Shot> shots;
+};
+
+Made make(std::uint64_t seed, const std::vector<std::string>& effects, int gauges = 4,
+          bool split = false) {
+  testing::CampaignWishes wishes;
+  wishes.seed = seed;
+  wishes.shots = 6;
+  wishes.samples = 2048;
+  wishes.rate_Hz = 1e6;
+  wishes.split = split;
+  wishes.gauges = gauges;
+  Made made{testing::draw_campaign(wishes), {}};
+  for (const std::string& effect : effects) {
+    testing::hide(made.truth, testing::parse_effect(effect));
+  }
+  made.shots = testing::shots_of(made.truth);
+  return made;
+}
+
+struct Compared {
+  Campaign campaign;
+  std::unique_ptr<Study> study;
+  std::unique_ptr<Studied> studied;
+  Comparison comparison;
+
+  explicit Compared(const std::vector<Shot>& shots, BenchKind kind = BenchKind::bar)
+      : campaign(read_campaign(shots)),
+        study(std::make_unique<Study>(campaign, 0.0, Workers{})),
+        studied(std::make_unique<Studied>(study->fit(paper_model(kind, false)))),
+        comparison(compare(*study, *studied)) {}
+
+  [[nodiscard]] double share(std::size_t gauge) const {
+    double sum = 0.0;
+    for (const Region& region : comparison.regions) {
+      sum += region.gauge == gauge ? region.share : 0.0;
+    }
+    return sum;
+  }
+  [[nodiscard]] std::size_t significant() const {
+    return static_cast<std::size_t>(std::count_if(comparison.tiles.begin(), comparison.tiles.end(),
+                                                  [](const Tile& t) { return t.significant; }));
+  }
+};
+
+TEST(TileNoise, MeanAndVarianceAreThoseOfManyRecordsOfNoise) {
+  constexpr std::size_t kSamples = 60;
+  constexpr std::size_t kJudged = 14;
+  constexpr int kRecords = 20000;
+  std::vector<double> window(kSamples);
+  std::vector<double> quiet(kSamples, 0.0);
+  for (std::size_t n = 0; n < kSamples; ++n) {
+    window[n] =
+        n < 20 || n > 44 ? 0.0 : std::sin(std::numbers::pi * static_cast<double>(n - 19) / 26.0);
+  }
+  std::fill(quiet.begin(), quiet.begin() + 16, 1.0 / 16.0);
+  const std::vector<BinRange> ranges{{0, 5}, {5, 9}, {9, kSamples / 2 + 1}};
+  const auto expected = tile_noise(window, quiet, kJudged, ranges);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<double> sum(3, 0.0);
+  std::vector<int> far(3, 0);  // beyond what noise should exceed once in a hundred
+  std::vector<double> squares(3, 0.0);
+  // The discrete Fourier transforms written out, so that nothing is shared with what is tested.
+  for (int record = 0; record < kRecords; ++record) {
+    std::vector<double> z(kSamples, 0.0);
+    for (std::size_t k = 1; k <= kJudged; ++k) {
+      const double a = normal(random);
+      const double b = normal(random);
+      for (std::size_t n = 0; n < kSamples; ++n) {
+        const double phase =
+            2.0 * std::numbers::pi * static_cast<double>(k * n % kSamples) / kSamples;
+        z[n] += 2.0 / kSamples * (a * std::cos(phase) - b * std::sin(phase));
+      }
+    }
+    double mean = 0.0;
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      mean += quiet[n] * z[n];
+    }
+    for (std::size_t r = 0; r < ranges.size(); ++r) {
+      double energy = 0.0;
+      for (std::size_t f = ranges[r].first; f < ranges[r].end; ++f) {
+        double re = 0.0;
+        double im = 0.0;
+        for (std::size_t n = 20; n <= 44; ++n) {
+          const double phase =
+              2.0 * std::numbers::pi * static_cast<double>(f * n % kSamples) / kSamples;
+          re += window[n] * (z[n] - mean) * std::cos(phase);
+          im -= window[n] * (z[n] - mean) * std::sin(phase);
+        }
+        energy += (f == 0 || 2 * f == kSamples ? 0.5 : 1.0) * (re * re + im * im);
+      }
+      sum[r] += energy;
+      squares[r] += energy * energy;
+      far[r] += expected[r].log_tail(energy) < std::log(0.01) ? 1 : 0;
+    }
+  }
+  for (std::size_t r = 0; r < ranges.size(); ++r) {
+    const double mean = sum[r] / kRecords;
+    const double variance = squares[r] / kRecords - mean * mean;
+    EXPECT_NEAR(expected[r].mean, mean, 5.0 * std::sqrt(variance / kRecords)) << r;
+    const double freedom = 2.0 * mean * mean / variance;
+    EXPECT_NEAR(far[r], 0.01 * kRecords, 60.0) << r;  // four deviations
+    EXPECT_NEAR(expected[r].freedom(), freedom, 0.06 * freedom) << r;
+  }
+}
+
+TEST(ArrivalWindows, SquaresAddUpToOneAndFollowTheFront) {
+  const Made made = make(31, {});
+  const Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  const Studied studied = study.fit(paper_model(BenchKind::bar, false));
+  const auto windows =
+      arrival_windows(study.residuals(), studied.composition, studied.fit.theta, 0);
+  ASSERT_EQ(windows.size(), 4U);
+  const auto& material = made.truth.world.material;
+  const double speed = std::sqrt(material.E1_Pa / campaign.bench.input.density_kg_m3.value);
+  const auto pulse_of = [&](std::size_t gauge) {
+    return *std::find_if(windows[gauge].begin(), windows[gauge].end(),
+                         [](const ArrivalWindow& w) { return w.name == "incident pulse"; });
+  };
+  for (std::size_t j = 0; j < windows.size(); ++j) {
+    for (std::size_t n = 0; n < windows[j].front().weight.size(); ++n) {
+      double sum = 0.0;
+      for (const ArrivalWindow& window : windows[j]) {
+        sum += window.weight[n] * window.weight[n];
+      }
+      ASSERT_NEAR(sum, 1.0, 1e-12);
+    }
+    const double way = campaign.bench.gauges[j].position_m.value -
+                       campaign.bench.gauges[campaign.reference].position_m.value;
+    EXPECT_NEAR(pulse_of(j).start_s - pulse_of(campaign.reference).start_s, way / speed, 2e-6);
+  }
+}
+
+TEST(Comparison, FailsNowhereWhereNothingIsHidden) {
+  for (const std::uint64_t seed : {3U, 4U}) {
+    const Compared compared(make(seed, {}).shots);
+    EXPECT_EQ(compared.significant(), 0U) << seed;
+    for (const Region& region : compared.comparison.regions) {
+      EXPECT_FALSE(region.repeats) << seed;
+      EXPECT_NEAR(region.sigma(), 1.0, 5.0 / std::sqrt(2.0 * region.noise.freedom())) << seed;
+    }
+  }
+}
+
+struct Fault {
+  std::string effect;
+  std::size_t gauge;
+};
+
+class OneGauge : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(OneGauge, IsWhereTheMisfitIs) {
+  const Compared compared(make(12, {GetParam().effect}).shots);
+  ASSERT_FALSE(compared.comparison.regions.empty());
+  const Region& worst = compared.comparison.regions.front();
+  EXPECT_EQ(worst.gauge, GetParam().gauge);
+  EXPECT_EQ(worst.window, "incident pulse");
+  EXPECT_TRUE(worst.significant);
+  EXPECT_TRUE(worst.repeats);
+  EXPECT_GT(compared.share(GetParam().gauge), 0.8);
+  double shares = 0.0;
+  for (const Tile& tile : compared.comparison.tiles) {
+    shares += tile.share;
+  }
+  EXPECT_NEAR(shares, 1.0, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, OneGauge,
+                         ::testing::Values(Fault{"gauge-factor:g2=0.02", 1},
+                                           Fault{"gauge-factor:g3=-0.02", 2},
+                                           Fault{"channel-delay:g3=2e-6", 2}));
+
+TEST(Comparison, FindsAFaultOfOneShotThere) {
+  Made made = make(13, {});
+  // A blip of 25 us, 100 us before the record's end.
+  ChannelRecord& channel = made.shots[3].channels[1];
+  std::int32_t largest = 0;
+  for (const std::int32_t code : channel.codes) {
+    largest = std::max(largest, std::abs(code));
+  }
+  const std::size_t at = channel.codes.size() - 300;
+  for (std::size_t n = 0; n < 50; ++n) {
+    const double bump = 1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / 50.0);
+    channel.codes[at + n] += static_cast<std::int32_t>(std::lround(0.03 * largest * bump));
+  }
+  const Compared compared(made.shots);
+  const Tile& worst = compared.comparison.tiles.front();
+  EXPECT_EQ(worst.gauge, 1U);
+  EXPECT_EQ(worst.shot, 3U);
+  EXPECT_EQ(worst.window, "after the pulse");
+  EXPECT_TRUE(worst.significant);
+  EXPECT_FALSE(worst.repeats);
+}
+
+TEST(Comparison, SharesItBetweenTwoGaugesThatCannotBeTold) {
+  const Compared compared(make(14, {"gauge-factor:g2=0.1"}, 2).shots);
+  ASSERT_GT(compared.significant(), 0U);
+  EXPECT_NEAR(compared.share(0), 0.5, 0.1);
+  EXPECT_NEAR(compared.share(1), 0.5, 0.1);
+}
+
+TEST(Comparison, OfASplitBarNamesItsWaves) {
+  const Compared compared(make(15, {}, 3, true).shots, BenchKind::shpb);
+  for (const Region& region : compared.comparison.regions) {
+    const bool output = compared.campaign.bench.gauges[region.gauge].bar == "output";
+    EXPECT_EQ(output, region.window == "transmitted pulse" ||
+                          (output && region.window == "later") ||
+                          (output && region.window == kBeforePulse))
+        << region.window;
+    EXPECT_NE(region.window, "after the pulse");
+  }
+}
+
+TEST(Comparison, OfOneShotIsThatOfTheCampaign) {
+  const Compared compared(make(12, {"gauge-factor:g2=0.02"}).shots);
+  Comparer comparer(compared.study->residuals(), compared.studied->composition,
+                    compared.studied->fit.theta);
+  const std::size_t size = compared.study->residuals().per_shot();
+  const std::vector<Tile> tiles =
+      comparer.compare_shot({compared.studied->fit.residual.data() + 2 * size, size}, 2);
+  const auto worst = std::max_element(
+      tiles.begin(), tiles.end(), [](const Tile& a, const Tile& b) { return a.share < b.share; });
+  EXPECT_EQ(worst->gauge, 1U);
+  EXPECT_EQ(worst->window, "incident pulse");
+  EXPECT_TRUE(worst->significant);
+}
+
+}  // namespace
+}  // namespace kolsky
