@@ -352,8 +352,6 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
     list.push_back(direction_of({use, false, false}, studied, study, 0));
     total += list.back().columns.cols();
   }
-  list.push_back(direction_of({null_use(bent_scale_effect()), false, false}, studied, study, 0));
-  total += list.back().columns.cols();
   Eigen::MatrixXd columns(studied.fit.residual.size(), total);
   Eigen::Index at = 0;
   for (const Direction& direction : list) {
@@ -372,7 +370,7 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
   const Eigen::VectorXd pull = columns.transpose() * studied.fit.residual;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
   for (Eigen::Index i = 0; i < total; ++i) {
-    constexpr double kResolved = 1e-7;
+    constexpr double kResolved = 1e-4;
     if (solver.eigenvalues()[i] > kResolved) {
       const double z = solver.eigenvectors().col(i).dot(pull);
       gain += z * z / solver.eigenvalues()[i];

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "processing/models/additions.hpp"
 #include "processing/models/scene.hpp"
 
 namespace kolsky {
@@ -60,32 +59,7 @@ class Distortion final : public Effect {
   }
 };
 
-class BentScale final : public Effect {
- public:
-  BentScale()
-      : Effect({
-            .id = "bent-scale",
-            .stage = Stage::record,
-            .definition = "reading = e (1 + b e + c e^2)",
-            .reference = "",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
-            .parameters = {{"b", "-", 0.0, -100.0, 100.0, 0.5, {}},
-                           {"c", "-", 0.0, -1e5, 1e5, 200.0, {}}},
-            .base = true,
-        }) {}
-
-  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
-    scene.record.bridge_b += values[0];
-    scene.record.cubic += values[1];
-  }
-};
-
 }  // namespace
-
-const Effect& bent_scale_effect() {
-  static const BentScale effect;
-  return effect;
-}
 
 const Effect& distortion_effect() {
   static const Distortion effect;

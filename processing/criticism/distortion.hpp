@@ -7,11 +7,8 @@
 namespace kolsky {
 
 /// Smooth distortions that fit nearly anything and name nothing: at every gauge but the reference a
-/// filter of powers of s, of slow relaxations and of echoes, and a curved baseline. What they find
+/// filter of powers of s, of slow relaxations and of echoes. What they find
 /// in the residuals of a model is misfit that the model does not explain.
 [[nodiscard]] const Effect& distortion_effect();
-
-/// The same of the sensors' scale: reading = e (1 + b e + c e^2) at every gauge.
-[[nodiscard]] const Effect& bent_scale_effect();
 
 }  // namespace kolsky

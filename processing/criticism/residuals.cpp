@@ -306,12 +306,6 @@ void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
         e = 2.0 * e / (1.0 + std::sqrt(std::max(root, 0.0)));
       }
     }
-    if (const double c = record.cubic; c != 0.0) {
-      // To first order: only ever asked for beside null.
-      for (double& e : work.shaped) {
-        e -= c * e * e * e;
-      }
-    }
     transform_record(work, work.shaped, work.records[j]);
   }
 }
@@ -404,12 +398,13 @@ void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
         followed += w * std::conj(sources[n][k]);
       }
       const double freedom = 2.0 * static_cast<double>(shots - 1);
-      power[k] = (all - std::norm(followed) / source_power) / freedom;
+      // Beside the noise measured before the pulses, whatever was corrected so far.
+      const double before = correction_.empty() ? 1.0 : correction_[k][i];
+      power[k] = before * (all - std::norm(followed) / source_power) / freedom;
     }
     const std::vector<double> shape = smooth_power(power);
     for (std::size_t k = 0; k < bins; ++k) {
-      const double before = correction_.empty() ? 1.0 : correction_[k][i];
-      correction[k][i] = before * shape[k];
+      correction[k][i] = shape[k];
     }
   }
   correction_ = std::move(correction);

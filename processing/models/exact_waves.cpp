@@ -67,7 +67,7 @@ ExactWaves::ExactWaves(double poisson_ratio) {
                                         -angle * static_cast<double>(order));
         const Complex ratio = modes[at].gamma / path[at];
         gamma += ratio * ratio * turn;
-        mean += modes[at].mean_over_surface * turn;
+        mean += turn / modes[at].mean_over_surface;
       }
       place.gamma_squared[order] = gamma / static_cast<double>(kPointsOnCircle);
       place.mean[order] = mean / static_cast<double>(kPointsOnCircle);
@@ -93,7 +93,7 @@ ExactWaves::Ratios ExactWaves::at(Complex z) const {
   Ratios ratios{place.gamma_squared[kOrder - 1], place.mean[kOrder - 1]};
   for (std::size_t order = kOrder - 1; order-- > 0;) {
     ratios.gamma_squared = ratios.gamma_squared * step + place.gamma_squared[order];
-    ratios.mean_over_surface = ratios.mean_over_surface * step + place.mean[order];
+    ratios.surface_over_mean = ratios.surface_over_mean * step + place.mean[order];
   }
   return ratios;
 }
@@ -116,7 +116,7 @@ void blend_exact_waves(BarScene& bar, std::span<const Complex> s, double strengt
     const Complex scaled = elementary * bar.radius_m;
     const auto ratios = table->at(scaled * scaled);
     bar.gamma_per_m[k] += strength * elementary * (std::sqrt(ratios.gamma_squared) - 1.0);
-    bar.surface_over_mean[k] += strength * (1.0 / ratios.mean_over_surface - 1.0);
+    bar.surface_over_mean[k] += strength * (ratios.surface_over_mean - 1.0);
   }
 }
 

@@ -9,7 +9,8 @@ namespace kolsky {
 
 /// Exact first-mode waves (see PochhammerChree) for any linear solid of constant Poisson's ratio.
 /// With z = (gamma_elementary a)^2 the frequency equation holds no other number: (gamma/gamma_el)^2
-/// and the mean-to-surface ratio are analytic functions of z alone. They are kept as Taylor
+/// and the surface-to-mean ratio are analytic functions of z alone (its inverse has a pole where
+/// surface gauges go blind). They are kept as Taylor
 /// polynomials around places on the imaginary axis of sqrt(z), where slightly damped bars live, so
 /// that a change of the bar's moduli costs a polynomial instead of a root.
 class ExactWaves {
@@ -18,7 +19,7 @@ class ExactWaves {
 
   struct Ratios {
     Complex gamma_squared;  ///< (gamma / gamma_elementary)^2
-    Complex mean_over_surface;
+    Complex surface_over_mean;
   };
   /// @param z  (gamma_elementary radius)^2; beyond the table's end (|z| = 9) its last place's value
   [[nodiscard]] Ratios at(Complex z) const;

@@ -87,7 +87,6 @@ struct ShotFacts {
 
 /// Memoryless maps and additions between strain and what was recorded.
 struct RecordScene {
-  double cubic = 0.0;                            ///< ... and + c e^3
   double bridge_b = 0.0;                         ///< reading = e (1 + b e)
   std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
 };

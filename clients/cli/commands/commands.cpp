@@ -7,7 +7,6 @@ Command identify_bar_command();
 Command identify_specimen_command();
 Command plan_command();
 Command reduce_command();
-Command export_command();
 Command effects_command();
 Command model_new_command();
 Command model_add_command();
@@ -20,6 +19,7 @@ Command compare_command();
 Command diagnose_command();
 Command impact_command();
 Command verify_command();
+Command export_command();
 Command status_command();
 Command arm_command();
 Command disarm_command();
@@ -41,7 +41,6 @@ std::vector<Command> all_commands() {
       identify_specimen_command(),
       plan_command(),
       reduce_command(),
-      export_command(),
       effects_command(),
       model_new_command(),
       model_add_command(),
@@ -54,31 +53,7 @@ std::vector<Command> all_commands() {
       diagnose_command(),
       impact_command(),
       verify_command(),
-      status_command(),
-      arm_command(),
-      disarm_command(),
-      fire_command(),
-      force_trigger_command(),
-      shots_command(),
-      get_command(),
-      watch_command(),
-      reload_command(),
-      release_command(),
-      stop_command(),
-      import_csv_command(),
-      reduce_command(),
-      effects_command(),
-      model_new_command(),
-      model_add_command(),
-      model_remove_command(),
-      model_show_command(),
-      model_history_command(),
-      model_revert_command(),
-      fit_command(),
-      compare_command(),
-      diagnose_command(),
       export_command(),
-      verify_command(),
       status_command(),
       arm_command(),
       disarm_command(),

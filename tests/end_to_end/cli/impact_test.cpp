@@ -26,9 +26,9 @@ std::vector<std::string> impact(const std::vector<std::string>& more) {
                                     "--bench",
                                     kBenches + "paper-impact.toml",
                                     "--core",
-                                    kBenches + "impact-core.toml",
+                                    kBenches + "../materials/golf-core.toml",
                                     "--cover",
-                                    kBenches + "impact-cover.toml"};
+                                    kBenches + "../materials/golf-cover.toml"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -118,7 +118,7 @@ TEST(Impact, DensitiesAreScaledOnlyWhenTheBenchSaysSo) {
 
 TEST(Impact, RefusesWhatCannotBe) {
   const Folder folder;
-  std::string core = text_of(kBenches + "impact-core.toml");
+  std::string core = text_of(kBenches + "../materials/golf-core.toml");
   folder.write("active.toml", core.replace(core.find("143e6"), 5, "-14e6"));
   const auto with_core = [&](const std::string& file) {
     std::vector<std::string> words = impact({"--speed", "40.3"});

@@ -68,10 +68,9 @@ std::vector<Complex> said(const Model& model, const Bench& bench) {
     all.insert(all.end(), reading.begin(), reading.end());
   }
   all.emplace_back(scene.record.bridge_b);
-  for (const auto& addition : scene.record.additions) {
-    for (const double value : addition) {
-      all.emplace_back(value);
-    }
+  for (std::vector<double> addition : scene.record.additions) {
+    addition.resize(facts.time_s.size(), 0.0);
+    all.insert(all.end(), addition.begin(), addition.end());
   }
   if (scene.specimen) {
     all.emplace_back(scene.specimen->stiffening);
