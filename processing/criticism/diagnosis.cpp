@@ -24,6 +24,7 @@ constexpr double kTie = 7.5;
 constexpr double kDetected = 6.0;      ///< sigma
 constexpr double kToldApart = 5.0;     ///< sigma beside a rival
 constexpr double kAllowedRest = 0.03;  ///< of a misfit that certified effects explain
+constexpr double kUnexplained = -9.2;  ///< ln of the chance that noise leaves as much
 constexpr double kFarOff = 3.0;        ///< chi2 per degree of freedom
 constexpr std::size_t kMostRefits = 14;
 constexpr int kSimulatedRepeats = 2000;
@@ -562,8 +563,8 @@ class Diagnostician {
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
-    const bool rest =
-        diagnosis_.unexplained_log_p < -6.5 && excess > kAllowedRest * std::max(0.0, explained);
+    const bool rest = diagnosis_.unexplained_log_p < kUnexplained &&
+                      excess > kAllowedRest * std::max(0.0, explained);
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {

