@@ -107,7 +107,8 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
         const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
         numbers_.push_back({uses_.size(), p, value.value, scale, parameter.lower, parameter.upper,
                             value.prior_mean, value.prior_sd,
-                            by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1});
+                            by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1,
+                            parameter.difference});
       }
     }
     slots[p] = std::move(own);

@@ -21,6 +21,7 @@ struct FreeNumber {
   double prior_mean = 0.0;
   double prior_sd = 0.0;     ///< 0: none
   std::ptrdiff_t shot = -1;  ///< the only one it acts on; -1: all
+  double difference = 2e-3;  ///< step of numeric derivatives, in scales
 };
 
 /// A model laid out for a campaign: every number that is free, once, per shot or per gauge, and the

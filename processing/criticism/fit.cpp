@@ -11,7 +11,6 @@ namespace kolsky {
 namespace {
 
 constexpr int kMostIterations = 25;
-constexpr double kStep = 2e-3;     ///< of differences, in scales
 constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
 
 /// Prior's rows: (theta scale - mean) / sd.
@@ -67,7 +66,7 @@ Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& resi
     const FreeNumber& number = composition.numbers()[numbers[i]];
     // Away from the bound that is next to the value.
     const double room = number.upper / number.scale - moved[numbers[i]];
-    const double step = room > kStep ? kStep : -kStep;
+    const double step = room > number.difference ? number.difference : -number.difference;
     moved[numbers[i]] += step;
     const auto column = static_cast<Eigen::Index>(i);
     if (number.shot >= 0) {

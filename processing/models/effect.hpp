@@ -29,6 +29,7 @@ struct EffectParameter {
   /// Present or not: first order asks for a share of it, a model that holds the effect has it
   /// whole.
   bool is_switch = false;
+  double difference = 2e-3;  ///< step of numeric derivatives, in typical sizes
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };

@@ -13,7 +13,10 @@ class InterfaceGap final : public Effect {
             .definition = "a gap or soft layer closes before the specimen is loaded",
             .reference = "effects.md",
             .kinds = {BenchKind::shpb},
-            .parameters = {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}}},
+            .parameters =
+                // A gap below the noise of the strain before the pulse shows nothing of what one
+                // does.
+            {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}, false, 1.0}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
