@@ -63,6 +63,13 @@ std::string digest_of(const std::vector<std::string>& captures) {
   return all.hex();
 }
 
+double band_limit_of(std::optional<double> asked_Hz) {
+  if (asked_Hz && *asked_Hz <= 0.0) {
+    throw InputError("--band-limit", "must be above 0 Hz", "give a positive number in Hz");
+  }
+  return asked_Hz.value_or(0.0);
+}
+
 Workers all_cores() {
   Workers executor;
   executor.workers = std::max(1U, std::thread::hardware_concurrency());

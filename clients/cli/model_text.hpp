@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@ namespace kolsky::cli {
 
 /// SHA-256 over the captures' own digests, in the order given.
 [[nodiscard]] std::string digest_of(const std::vector<std::string>& captures);
+
+/// What --band-limit asks for; 0, what the noise allows, where it was not given.
+/// @throws InputError where it is not above 0
+[[nodiscard]] double band_limit_of(std::optional<double> asked_Hz);
 
 /// As many threads as the machine has cores.
 [[nodiscard]] Workers all_cores();

@@ -7,6 +7,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/identification/bar_records.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
@@ -18,13 +19,6 @@ constexpr double kShortestPulse_s = 5e-6;
 constexpr double kPulseReach_s = 500e-6;
 constexpr double kFootClearance_s = 10e-6;
 constexpr std::size_t kFewestQuiet = 32;
-
-std::vector<double> readings_of(const ChannelRecord& channel) {
-  std::vector<double> readings(channel.codes.size());
-  std::transform(channel.codes.begin(), channel.codes.end(), readings.begin(),
-                 [&](std::int32_t code) { return channel.value(code); });
-  return readings;
-}
 
 std::size_t reference_of(const Bench& bench) {
   std::size_t reference = bench.gauges.size();

@@ -1,29 +1,13 @@
 #include "processing/criticism/composition.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "processing/base/error.hpp"
+#include "processing/identification/known_unknowns.hpp"
 
 namespace kolsky {
 
 namespace {
-
-double relative_sd(const Measured& number) {
-  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
-}
-
-/// Relative standard deviation of what turns a gauge's reading into strain.
-double gain_sd(const Gauge& gauge) {
-  if (gauge.strain_per_V) {
-    return relative_sd(*gauge.strain_per_V);
-  }
-  if (gauge.bridge) {
-    return std::hypot(relative_sd(gauge.bridge->gauge_factor),
-                      relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
-  }
-  return gauge.gain_sd;
-}
 
 EffectUse filed(const std::string& id, std::vector<double> sds) {
   EffectUse use = use_named(id);

@@ -19,13 +19,6 @@ constexpr double kReach_s = 500e-6;
 constexpr double kFootClearance_s = 10e-6;
 constexpr std::size_t kFewestQuiet = 32;
 
-std::vector<double> readings_of(const ChannelRecord& channel) {
-  std::vector<double> readings(channel.codes.size());
-  std::transform(channel.codes.begin(), channel.codes.end(), readings.begin(),
-                 [&](std::int32_t code) { return channel.value(code); });
-  return readings;
-}
-
 /// The first pulse of a record.
 struct FirstPulse {
   double foot = 0.0;  ///< in samples, as its half rise
@@ -126,6 +119,13 @@ void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readi
 }
 
 }  // namespace
+
+std::vector<double> readings_of(const ChannelRecord& channel) {
+  std::vector<double> readings(channel.codes.size());
+  std::transform(channel.codes.begin(), channel.codes.end(), readings.begin(),
+                 [&](std::int32_t code) { return channel.value(code); });
+  return readings;
+}
 
 BarRecords read_bar_records(const Shot& shot) {
   require_bar(shot);

@@ -21,6 +21,9 @@ struct BarRecords {
   double period_s = 0.0;
 };
 
+/// A channel's values in its gauge's unit.
+[[nodiscard]] std::vector<double> readings_of(const ChannelRecord& channel);
+
 /// @throws InputError where the shot cannot serve: another kind of bench, fewer than two gauges or
 ///   all at one place, a hole, clipped codes, no pulse, no quiet samples before it
 [[nodiscard]] BarRecords read_bar_records(const Shot& shot);

@@ -4,13 +4,10 @@
 
 namespace kolsky {
 
-namespace {
-
 double relative_sd(const Measured& number) {
   return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
 }
 
-/// Relative standard deviation of what turns a gauge's reading into strain.
 double gain_sd(const Gauge& gauge) {
   if (gauge.strain_per_V) {
     return relative_sd(*gauge.strain_per_V);
@@ -21,8 +18,6 @@ double gain_sd(const Gauge& gauge) {
   }
   return gauge.gain_sd;
 }
-
-}  // namespace
 
 std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& records) {
   using Of = KnownUnknown::Of;

@@ -46,7 +46,7 @@ std::string how(const Settings& settings, const ModelFile& file) {
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
   const Campaign campaign = read_campaign(read_shots(settings.captures));
-  Study study(campaign, settings.band_limit_Hz.value_or(0.0), all_cores());
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
   const Studied studied = fit_first ? study.fit(file.model) : study.as_it_is(file.model);
   Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);

@@ -127,7 +127,7 @@ Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
     return diagnosis;
   }
   const Campaign campaign = read_campaign(shots);
-  Study study(campaign, settings.band_limit_Hz.value_or(0.0), all_cores());
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   DiagnosisOptions options;
   if (progress) {
     options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };

@@ -25,7 +25,7 @@ int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   const Workers executor = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
-  Study study(campaign, settings.band_limit_Hz.value_or(0.0), executor);
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), executor);
   const Studied studied = study.fit(file.model);
   begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
   file.history.back().data_sha256 = digest_of(settings.captures);

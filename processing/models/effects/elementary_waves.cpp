@@ -13,7 +13,7 @@ class ElementaryWaves final : public Effect {
             .stage = Stage::propagation,
             .definition = "gamma = s sqrt(rho J)",
             .reference = "paper, eq. 6",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {},
             .base = true,
         }) {}

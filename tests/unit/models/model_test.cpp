@@ -187,6 +187,14 @@ TEST(ModelFile, ReadsBackTheSameBitsAndKeepsItsHistory) {
   EXPECT_NE(before.model.find("three-element-bar"), nullptr);
 }
 
+TEST(ModelFile, ReadsBackThePapersModelOfEveryBench) {
+  for (const BenchKind kind : {BenchKind::bar, BenchKind::shpb, BenchKind::impact}) {
+    ModelFile file;
+    file.model = paper_model(kind, kind == BenchKind::impact);
+    EXPECT_EQ(format_model(parse_model(format_model(file), "m.toml")), format_model(file));
+  }
+}
+
 TEST(ModelFile, RefusesUnknownEffectsOutOfBoundsAndWrongUnits) {
   const std::string head = "kolsky_model = 1\nkind = \"bar\"\n[[effects]]\n";
   EXPECT_THROW((void)parse_model(head + "id = \"warp\"\n", "m"), InputError);
