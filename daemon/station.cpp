@@ -59,8 +59,8 @@ std::uint64_t recovered(const StoreLayout& store, std::uint64_t boot_id) {
   for (const std::string& id : report.recovered) {
     log::info(fmt::format("shot {} was in a journal only; its capture is written now", id));
   }
-  if (!report.pruned.empty()) {
-    log::info(fmt::format("{} journals removed, whose {} shots are in captures that were read back",
+  if (!report.pruned.empty() && report.journaled_shots != 0) {
+    log::info(fmt::format("removed of journals: {}; shots in them, read back from captures: {}",
                           report.pruned.size(), report.journaled_shots));
   }
   for (const StoreReport::Problem& problem : report.problems) {
