@@ -21,12 +21,15 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
-constexpr double kDetected = 6.0;      ///< sigma
-constexpr double kToldApart = 5.0;     ///< sigma beside a rival
-constexpr double kAllowedRest = 0.03;  ///< of a misfit that certified effects explain
-constexpr double kUnexplained = -9.2;  ///< ln of the chance that noise leaves as much
-constexpr double kFarOff = 3.0;        ///< chi2 per degree of freedom
+constexpr double kDetected = 6.0;            ///< sigma
+constexpr double kToldApart = 5.0;           ///< sigma beside a rival
+constexpr double kAllowedRest = 0.03;        ///< of a misfit that certified effects explain
+constexpr double kUnexplained = -9.2;        ///< ln of the chance that noise leaves as much
+constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
+constexpr double kFarOff = 3.0;              ///< chi2 per degree of freedom
 constexpr std::size_t kMostRefits = 14;
+constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
+constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
 constexpr int kSimulatedRepeats = 2000;
 
 /// A candidate refitted in full beside the model.
@@ -59,10 +62,33 @@ double noise_of(const Misfit& misfit, std::size_t shots) {
   return shots > 1 ? misfit.noise_scale : std::max(1.0, misfit.noise_scale);
 }
 
-/// How far the strengths that single shots give are from the common one: the chi2 that strengths of
-/// their own would gain, and the shots less one.
-std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
-                                       std::size_t per_shot) {
+/// What single shots say of an effect's strength.
+struct ShotStrengths {
+  std::vector<double> over_common;  ///< each shot's strength over the common one
+  std::vector<double> weight;       ///< one over the variances of these
+
+  /// The chi2 that strengths of their own would gain over strengths in proportion to `like`.
+  [[nodiscard]] double departure_from(const std::vector<double>& like) const {
+    double cross = 0.0;
+    double square = 0.0;
+    double all = 0.0;
+    for (std::size_t n = 0; n < weight.size(); ++n) {
+      cross += weight[n] * like[n] * over_common[n];
+      square += weight[n] * like[n] * like[n];
+      all += weight[n] * over_common[n] * over_common[n];
+    }
+    return square > 0.0 ? all - cross * cross / square : all;
+  }
+  [[nodiscard]] double disagreement() const {
+    return departure_from(std::vector<double>(weight.size(), 1.0));
+  }
+  [[nodiscard]] double freedom() const {
+    return weight.empty() ? 1.0 : static_cast<double>(weight.size()) - 1.0;
+  }
+};
+
+/// @return nothing for strengths that are each shot's own, or fewer than three shots
+ShotStrengths shot_strengths(const Studied& studied, const std::string& id, std::size_t per_shot) {
   const ModelFit& fit = studied.fit;
   std::vector<Eigen::Index> own;
   for (std::size_t i = 0; i < fit.theta.size(); ++i) {
@@ -76,7 +102,7 @@ std::pair<double, double> disagreement(const Studied& studied, const std::string
   const auto size = static_cast<Eigen::Index>(per_shot);
   const Eigen::Index shots = fit.residual.size() / size;
   if (own.empty() || shots < 3) {
-    return {0.0, 1.0};
+    return {};
   }
   // What its strengths add to the residuals, clear of the other numbers, over all shots.
   Eigen::VectorXd clear = Eigen::VectorXd::Zero(fit.residual.size());
@@ -96,17 +122,16 @@ std::pair<double, double> disagreement(const Studied& studied, const std::string
     share[column] = 0.0;
   }
   clear -= fit.jacobian * rest.ldlt().solve(share);
-  double q = 0.0;
+  ShotStrengths list;
   const double noise = std::max(1.0, studied.misfit.noise_scale);
   for (Eigen::Index n = 0; n < shots; ++n) {
     const auto part = clear.segment(n * size, size);
     const double information = part.squaredNorm();
-    if (information > 0.0) {
-      const double pull = part.dot(fit.residual.segment(n * size, size));
-      q += pull * pull / information / noise;
-    }
+    const double pull = part.dot(fit.residual.segment(n * size, size));
+    list.over_common.push_back(information > 0.0 ? 1.0 - pull / information : 1.0);
+    list.weight.push_back(information / noise);
   }
-  return {q, static_cast<double>(shots - 1)};
+  return list;
 }
 
 class Search {
@@ -244,7 +269,8 @@ class Search {
     std::map<std::string, std::pair<double, std::size_t>> best;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const double evidence = evidence_of(directions_[i], candidates_[i]);
-      auto& own = best[candidates_[i].id() + (candidates_[i].use.per_shot ? " per shot" : "")];
+      const EffectUse& use = candidates_[i].use;
+      auto& own = best[use.id() + (use.per_shot ? " per shot" : "") + (use.alike ? " alike" : "")];
       if (evidence > own.first) {
         own = {evidence, i};
       }
@@ -259,7 +285,9 @@ class Search {
     std::vector<std::size_t> chosen;
     for (const auto& [evidence, i] : ranked) {
       const double margin = std::max(25.0, 0.6 * ranked.front().first);
-      if (chosen.size() < kMostRefits && evidence > ranked.front().first - margin) {
+      const bool near = evidence > ranked.front().first - margin ||
+                        (chosen.size() < kAlwaysRefits && evidence > kWorthRefitting);
+      if (chosen.size() < kMostRefits && near) {
         chosen.push_back(i);
       }
     }
@@ -329,8 +357,8 @@ class Search {
     // which additions to a record are sought, little is known.
     const Effect* effect = studied.model.find(id)->effect;
     const double belief = effect->about().stage == Stage::record ? 3.0 : 20.0;
-    const auto [q, freedom] = disagreement(studied, id, study_.residuals().per_shot());
-    return std::max(1.0, (belief + q) / (belief + freedom));
+    const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
+    return std::max(1.0, (belief + shots.disagreement()) / (belief + shots.freedom()));
   }
 
   Study& study_;
@@ -384,12 +412,26 @@ double unexplained(Study& study, const Studied& studied, double* excess) {
 }
 
 /// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
-/// more than noise, and by more than a small part of what it explains.
-bool shots_agree(const Studied& studied, double gain, const std::string& id, std::size_t per_shot) {
+/// more than noise, and by more than a small part of what it explains. Of what is added to the
+/// records, slow noise makes strengths differ anyway: there it tells that they follow the shots'
+/// amplitudes.
+bool shots_agree(const Studied& studied, double gain, const std::string& id,
+                 const Campaign& campaign, std::size_t per_shot) {
   constexpr double kChance = -14.0;
   constexpr double kPart = 0.02;
-  const auto [q, freedom] = disagreement(studied, id, per_shot);
-  return log_chi2_tail(q, freedom) > kChance || q < kPart * gain;
+  const ShotStrengths shots = shot_strengths(studied, id, per_shot);
+  const double q = shots.disagreement();
+  if (log_chi2_tail(q, shots.freedom()) > kChance || q < kPart * gain) {
+    return true;
+  }
+  std::vector<double> peaks;
+  for (const CampaignShot& shot : campaign.shots) {
+    peaks.push_back(shot.facts.peak_strain);
+  }
+  const double departure = shots.departure_from(peaks);
+  constexpr double kSquare = 9.0;
+  return studied.model.find(id)->effect->about().per_shot &&
+         q - departure < kSquare * departure / shots.freedom();
 }
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
@@ -424,14 +466,15 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
     return;
   }
   const auto& parameters = use->effect->about().parameters;
-  std::size_t at = 0;
-  if (id == "end-reflection") {
-    at = 1;
-  }
+  const std::size_t at = use->effect->about().strength;
   result.parameter = parameters[at].name;
   result.unit = parameters[at].unit;
   result.strength = use->values[at].value;
   result.sd = use->values[at].sd;
+  if (use->effect->about().quadrature) {
+    result.parameter = "A";
+    result.strength = std::hypot(use->values[0].value, use->values[1].value);
+  }
 }
 
 }  // namespace
@@ -499,7 +542,7 @@ class Diagnostician {
       const std::string id = search.candidates()[refit.candidate].id();
       const auto [gain, better] = certification(current, refit.studied, per_shot);
       const std::size_t shots = study_.campaign().shots.size();
-      const bool agrees = shots_agree(refit.studied, refit.gain, id, per_shot);
+      const bool agrees = shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot);
       if (gain <= 0.0 || 2 * better < shots || !agrees ||
           search.with_search(refit.log_p) > options_.log_alpha) {
         set_verdict(id, "rejected");
@@ -537,7 +580,8 @@ class Diagnostician {
                                carry(current.composition, current.fit.theta, composition));
       const double noise = noise_of(current.misfit, study_.campaign().shots.size());
       const double loss = (fit.objective() - current.fit.objective()) / noise;
-      if (equivalent_square(log_tail(loss, 1.0, false)) < 16.0) {
+      if (equivalent_square(log_tail(loss, 1.0, false)) < 16.0 ||
+          !own_strengths_confirmed(current, id, study_.campaign())) {
         const Misfit misfit =
             misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
         Model after = fitted(without, composition, fit);
@@ -563,7 +607,9 @@ class Diagnostician {
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
-    const bool rest = diagnosis_.unexplained_log_p < kUnexplained &&
+    // That something is there is certain once an effect is certified.
+    const double threshold = diagnosis_.effects.empty() ? kUnexplained : kUnexplainedBeside;
+    const bool rest = diagnosis_.unexplained_log_p < threshold &&
                       excess > kAllowedRest * std::max(0.0, explained);
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
