@@ -8,11 +8,11 @@
 #include <random>
 #include <set>
 
-#include "processing/criticism/distortion.hpp"
 #include "processing/criticism/held_out.hpp"
 #include "processing/criticism/next_experiment.hpp"
 #include "processing/criticism/own_strengths.hpp"
 #include "processing/criticism/statistics.hpp"
+#include "processing/criticism/unexplained.hpp"
 
 namespace kolsky {
 
@@ -23,8 +23,8 @@ namespace {
 constexpr double kTie = 7.5;
 constexpr double kDetected = 6.0;            ///< sigma
 constexpr double kToldApart = 5.0;           ///< sigma beside a rival
-constexpr double kAllowedRest = 0.03;        ///< of a misfit that certified effects explain
-constexpr double kUnexplained = -9.2;        ///< ln of the chance that noise leaves as much
+constexpr double kAllowedRest = 0.01;        ///< of a misfit that certified effects explain
+constexpr double kUnexplained = -6.9;        ///< ln of the chance that noise leaves as much
 constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
 constexpr double kFarOff = 3.0;              ///< chi2 per degree of freedom
 constexpr std::size_t kMostRefits = 14;
@@ -36,7 +36,10 @@ constexpr int kSimulatedRepeats = 2000;
 struct Refit {
   std::size_t candidate = 0;
   Studied studied;
-  double gain = 0.0;      ///< of the objective
+  double freedom = 1.0;
+  bool one_sided = false;
+  double scatter = 1.0;   ///< how much more than noise the shots differ in its direction
+  double gain = 0.0;      ///< of the objective, over the noise
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
   double log_p = 0.0;
 };
@@ -169,12 +172,14 @@ class Search {
     });
     std::vector<Refit> list;
     for (auto& own : done) {
-      if (own && std::isfinite(own->gain) && !beyond_the_record(own->studied, *own) &&
+      if (own && std::isfinite(own->studied.fit.objective()) &&
+          !beyond_the_record(own->studied, *own) &&
           own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
                                   study_.campaign())) {
         list.push_back(std::move(*own));
       }
     }
+    rate(list);
     std::sort(list.begin(), list.end(),
               [](const Refit& a, const Refit& b) { return a.evidence > b.evidence; });
     return list;
@@ -335,19 +340,31 @@ class Search {
     const Misfit misfit =
         misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
     Refit out{index,
-              {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit},
-              0.0,
-              0.0,
-              0.0};
-    const double noise = noise_of(out.studied.misfit, study_.campaign().shots.size());
+              {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit}};
     const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                            out.studied.fit.degrees_of_freedom(out.studied.composition);
-    out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise /
-               scatter_of(out.studied, candidate.id());
-    out.log_p = log_tail(out.gain, candidate.frees_prior ? 1.0 : std::round(freedom),
-                         candidate.one_sided && freedom < 1.5);
-    out.evidence = equivalent_square(out.log_p);
+    out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
+    out.one_sided = candidate.one_sided && freedom < 1.5;
+    out.scatter = scatter_of(out.studied, candidate.id());
     return out;
+  }
+
+  /// Rates rivals by one measure of the noise, that of the best: what they leave of each other's
+  /// misfit must not count as noise.
+  void rate(std::vector<Refit>& list) const {
+    const auto best =
+        std::min_element(list.begin(), list.end(), [](const Refit& a, const Refit& b) {
+          return a.studied.fit.objective() < b.studied.fit.objective();
+        });
+    if (best == list.end()) {
+      return;
+    }
+    const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
+    for (Refit& refit : list) {
+      refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
+      refit.log_p = log_tail(refit.gain, refit.freedom, refit.one_sided);
+      refit.evidence = equivalent_square(refit.log_p);
+    }
   }
 
   /// How much more than noise the shots differ in the direction of an effect's strength: noise
@@ -356,9 +373,15 @@ class Search {
     // What is known of the noise beforehand counts as much as this many shots; of slow noise, among
     // which additions to a record are sought, little is known.
     const Effect* effect = studied.model.find(id)->effect;
-    const double belief = effect->about().stage == Stage::record ? 3.0 : 20.0;
+    const bool slow = effect->about().stage == Stage::record;
+    const double belief = slow ? 3.0 : 20.0;
     const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
-    return std::max(1.0, (belief + shots.disagreement()) / (belief + shots.freedom()));
+    const double q = shots.disagreement();
+    constexpr double kOrdinary = -4.6;
+    if (!slow && log_chi2_tail(q, shots.freedom()) > kOrdinary) {
+      return 1.0;  // chance alone must not rank rivals
+    }
+    return std::max(1.0, (belief + q) / (belief + shots.freedom()));
   }
 
   Study& study_;
@@ -369,55 +392,13 @@ class Search {
   double trials_ = 1.0;
 };
 
-/// What smooth distortions of every gauge still find in a model's residuals.
-double unexplained(Study& study, const Studied& studied, double* excess) {
-  double gain = 0.0;
-  double freedom = 0.0;
-  std::vector<Direction> list;
-  const auto& campaign = study.campaign();
-  Eigen::Index total = 0;
-  for (const std::size_t j : study.residuals().others()) {
-    EffectUse use = null_use(distortion_effect(), campaign.bench.gauges[j].name);
-    list.push_back(direction_of({use, false, false}, studied, study, 0));
-    total += list.back().columns.cols();
-  }
-  Eigen::MatrixXd columns(studied.fit.residual.size(), total);
-  Eigen::Index at = 0;
-  for (const Direction& direction : list) {
-    columns.middleCols(at, direction.columns.cols()) = direction.columns;
-    at += direction.columns.cols();
-  }
-  for (Eigen::Index i = 0; i < total; ++i) {
-    const double norm = columns.col(i).norm();
-    if (norm > 0.0) {
-      columns.col(i) /= norm;
-    }
-  }
-  const Eigen::MatrixXd share = studied.fit.jacobian.transpose() * columns;
-  const Eigen::MatrixXd information =
-      columns.transpose() * columns - share.transpose() * studied.fit.covariance * share;
-  const Eigen::VectorXd pull = columns.transpose() * studied.fit.residual;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
-  for (Eigen::Index i = 0; i < total; ++i) {
-    constexpr double kResolved = 1e-4;
-    if (solver.eigenvalues()[i] > kResolved) {
-      const double z = solver.eigenvectors().col(i).dot(pull);
-      gain += z * z / solver.eigenvalues()[i];
-      freedom += 1.0;
-    }
-  }
-  const double noise = noise_of(studied.misfit, campaign.shots.size());
-  *excess = std::max(0.0, gain / noise - freedom);
-  return freedom > 0.0 ? log_chi2_tail(gain / noise, freedom) : 0.0;
-}
-
 /// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
 /// more than noise, and by more than a small part of what it explains. Of what is added to the
 /// records, slow noise makes strengths differ anyway: there it tells that they follow the shots'
 /// amplitudes.
 bool shots_agree(const Studied& studied, double gain, const std::string& id,
                  const Campaign& campaign, std::size_t per_shot) {
-  constexpr double kChance = -14.0;
+  constexpr double kChance = -9.2;
   constexpr double kPart = 0.02;
   const ShotStrengths shots = shot_strengths(studied, id, per_shot);
   const double q = shots.disagreement();
@@ -543,7 +524,7 @@ class Diagnostician {
       const auto [gain, better] = certification(current, refit.studied, per_shot);
       const std::size_t shots = study_.campaign().shots.size();
       const bool agrees = shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot);
-      if (gain <= 0.0 || 2 * better < shots || !agrees ||
+      if (gain <= 0.0 || 2 * better <= shots || !agrees ||
           search.with_search(refit.log_p) > options_.log_alpha) {
         set_verdict(id, "rejected");
         continue;
@@ -597,8 +578,8 @@ class Diagnostician {
 
   void conclude(const Studied& first, const Studied& current) {
     options_.progress("looking for what nothing explains");
-    double excess = 0.0;
-    diagnosis_.unexplained_log_p = unexplained(study_, current, &excess);
+    const Unexplained left = unexplained(study_, current);
+    diagnosis_.unexplained_log_p = left.log_p;
     diagnosis_.after = current.misfit;
     // Both by the same measure of the noise.
     const Studied before = diagnosis_.effects.empty() ? first : study_.refit(first);
@@ -610,7 +591,7 @@ class Diagnostician {
     // That something is there is certain once an effect is certified.
     const double threshold = diagnosis_.effects.empty() ? kUnexplained : kUnexplainedBeside;
     const bool rest = diagnosis_.unexplained_log_p < threshold &&
-                      excess > kAllowedRest * std::max(0.0, explained);
+                      left.excess > kAllowedRest * std::max(0.0, explained);
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {

@@ -25,6 +25,16 @@ double slope_before(const CampaignShot& shot, const std::vector<double>& record)
   return cross / square;
 }
 
+/// A hum is as strong in every shot; slow noise that was taken for one is not.
+bool amplitudes_agree(const Eigen::VectorXcd& amplitudes) {
+  const Eigen::VectorXd size = amplitudes.cwiseAbs();
+  const double mean = size.mean();
+  const auto count = static_cast<double>(size.size());
+  const double variance = (size.array() - mean).square().sum() / std::max(1.0, count - 1.0);
+  constexpr double kScatter = 0.3;  // of noise it is 0.5
+  return size.size() > 2 && std::sqrt(variance) < kScatter * mean;
+}
+
 /// The slopes before the pulses must follow those found: regression through the origin.
 bool slopes_agree(const std::vector<double>& found, const std::vector<double>& before) {
   double cross = 0.0;
@@ -90,7 +100,8 @@ Slopes slopes_of(const Studied& studied, const std::string& id, const Campaign& 
   return slopes;
 }
 
-/// Amplitudes by shot and gauge, their cosine and sine parts as one complex number.
+/// Amplitudes by shot and, where they differ, gauge, their cosine and sine parts as one complex
+/// number.
 Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
                                const Campaign& campaign) {
   // In the order of the composition: by parameter, then shot, then gauge.
@@ -102,8 +113,8 @@ Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
       found[number.parameter].push_back(studied.fit.theta[i] * number.scale);
     }
   }
-  Eigen::MatrixXcd amplitudes(static_cast<Eigen::Index>(campaign.shots.size()),
-                              static_cast<Eigen::Index>(campaign.gauges()));
+  const auto shots = static_cast<Eigen::Index>(campaign.shots.size());
+  Eigen::MatrixXcd amplitudes(shots, static_cast<Eigen::Index>(found[0].size()) / shots);
   for (Eigen::Index n = 0; n < amplitudes.rows(); ++n) {
     for (Eigen::Index j = 0; j < amplitudes.cols(); ++j) {
       const auto at = static_cast<std::size_t>(n * amplitudes.cols() + j);
@@ -123,6 +134,9 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
   }
   if (use->effect->about().each_gauge && !use->alike) {
     return one_phase(amplitudes_of(studied, id, campaign));
+  }
+  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0))) {
+    return false;
   }
   const Slopes slopes = slopes_of(studied, id, campaign);
   return slopes_agree(slopes.found, slopes.before);
