@@ -290,8 +290,10 @@ class Search {
     std::vector<std::size_t> chosen;
     for (const auto& [evidence, i] : ranked) {
       const double margin = std::max(25.0, 0.6 * ranked.front().first);
+      // Far from the records, first order says little of what fits best.
+      const bool far = base_.misfit.chi2_reduced > kFarOff;
       const bool near = evidence > ranked.front().first - margin ||
-                        (chosen.size() < kAlwaysRefits && evidence > kWorthRefitting);
+                        ((far || chosen.size() < kAlwaysRefits) && evidence > kWorthRefitting);
       if (chosen.size() < kMostRefits && near) {
         chosen.push_back(i);
       }
@@ -299,15 +301,14 @@ class Search {
     return chosen;
   }
 
-  std::optional<Refit> refit(std::size_t index, std::size_t worker) {
-    const Candidate& candidate = candidates_[index];
-    const Direction& direction = directions_[index];
-    const Model model = with(base_.model, candidate, true);
-    Composition composition(model, study_.campaign());
-    std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
-    // Begin where first order says the strengths are, or short of it.
+  /// Where first order says the strengths and the model's numbers are, or as far on the way as
+  /// makes things better.
+  [[nodiscard]] std::vector<double> begin_near(const Candidate& candidate,
+                                               const Direction& direction,
+                                               const Composition& composition,
+                                               std::size_t worker) const {
     std::vector<std::size_t> strengths;
-    for (std::size_t i = 0; i < start.size(); ++i) {
+    for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
       const FreeNumber& number = composition.numbers()[i];
       const EffectUse& use = composition.uses()[number.use];
       if (use.id() == candidate.id() &&
@@ -315,16 +316,44 @@ class Search {
         strengths.push_back(i);
       }
     }
-    if (!candidate.frees_prior &&
-        static_cast<Eigen::Index>(strengths.size()) == direction.step.size()) {
+    std::vector<double> best = carry(base_.composition, base_.fit.theta, composition);
+    if (candidate.frees_prior ||
+        static_cast<Eigen::Index>(strengths.size()) != direction.step.size()) {
+      return best;
+    }
+    const std::vector<double> null = best;
+    const Eigen::VectorXd along = -base_.fit.covariance * direction.model_share * direction.step;
+    double least = study_.residuals().evaluate(composition, best, worker).squaredNorm();
+    for (const double share : {1.0, 0.3, 0.1}) {
+      std::vector<double> moved = base_.fit.theta;
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        const FreeNumber& number = base_.composition.numbers()[i];
+        moved[i] = std::clamp(moved[i] + share * along[static_cast<Eigen::Index>(i)],
+                              number.lower / number.scale, number.upper / number.scale);
+      }
+      std::vector<double> start = carry(base_.composition, moved, composition);
       for (std::size_t i = 0; i < strengths.size(); ++i) {
         const FreeNumber& number = composition.numbers()[strengths[i]];
-        const double value = start[strengths[i]] * number.scale +
-                             direction.step[static_cast<Eigen::Index>(i)] * number.scale;
-        start[strengths[i]] = std::clamp(value, number.lower, number.upper) / number.scale;
+        start[strengths[i]] =
+            std::clamp(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)],
+                       number.lower / number.scale, number.upper / number.scale);
+      }
+      const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
+      if (chi2 < least) {
+        least = chi2;
+        best = std::move(start);
       }
     }
-    ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker), std::move(start));
+    return best;
+  }
+
+  std::optional<Refit> refit(std::size_t index, std::size_t worker) {
+    const Candidate& candidate = candidates_[index];
+    const Direction& direction = directions_[index];
+    const Model model = with(base_.model, candidate, true);
+    Composition composition(model, study_.campaign());
+    ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker),
+                             begin_near(candidate, direction, composition, worker));
     if (base_.misfit.chi2_reduced > kFarOff) {
       // The model's own numbers may have gone far astray for want of this effect: begin again from
       // where they started.
@@ -362,19 +391,17 @@ class Search {
     const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
     for (Refit& refit : list) {
       refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
-      refit.log_p = log_tail(refit.gain, refit.freedom, refit.one_sided);
-      refit.evidence = equivalent_square(refit.log_p);
+      refit.evidence = equivalent_square(log_tail(refit.gain, refit.freedom, refit.one_sided));
+      refit.log_p = chance_of(refit);
     }
   }
 
   /// How much more than noise the shots differ in the direction of an effect's strength: noise
   /// whose frequencies hang together scatters more there than its spectrum says.
   [[nodiscard]] double scatter_of(const Studied& studied, const std::string& id) const {
-    // What is known of the noise beforehand counts as much as this many shots; of slow noise, among
-    // which additions to a record are sought, little is known.
     const Effect* effect = studied.model.find(id)->effect;
     const bool slow = effect->about().stage == Stage::record;
-    const double belief = slow ? 3.0 : 20.0;
+    const double belief = belief_in(*effect);
     const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
     const double q = shots.disagreement();
     constexpr double kOrdinary = -4.6;
@@ -382,6 +409,26 @@ class Search {
       return 1.0;  // chance alone must not rank rivals
     }
     return std::max(1.0, (belief + q) / (belief + shots.freedom()));
+  }
+
+  /// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no
+  /// better than so many degrees of freedom do.
+  [[nodiscard]] double chance_of(const Refit& refit) const {
+    const EffectUse& use = candidates_[refit.candidate].use;
+    const std::size_t shots = study_.campaign().shots.size();
+    if (use.per_shot || shots < 3 || refit.gain <= 0.0) {
+      return log_tail(refit.gain, refit.freedom, refit.one_sided);
+    }
+    const double freedom = std::max(refit.freedom, 1.0);
+    const double known = belief_in(*use.effect) + static_cast<double>(shots - 1);
+    const double log_p = log_f_tail(refit.gain / freedom, freedom, known);
+    return refit.one_sided ? log_p - std::log(2.0) : log_p;
+  }
+
+  /// What is known of the noise beforehand counts as much as this many shots; of slow noise, among
+  /// which additions to a record are sought, little is known.
+  static double belief_in(const Effect& effect) {
+    return effect.about().stage == Stage::record ? 3.0 : 20.0;
   }
 
   Study& study_;

@@ -343,19 +343,38 @@ void WhiteResiduals::plain_spectrum(Workspace& work, const Spectrum& damped, Spe
   }
 }
 
-std::vector<Complex> WhiteResiduals::plain_ratios(const Scene& like, const Composition& composition,
-                                                  const std::vector<double>& theta) const {
-  Scene scene(campaign_.bench, *like.facts, plain_path_);
-  shape(composition.applied(theta, like.facts->shot), scene);
-  const Transfers transfers = transfers_of(scene, campaign_.reference);
-  std::vector<Complex> ratios(band_.bins_judged * others_.size());
-  for (std::size_t i = 0; i < others_.size(); ++i) {
-    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-      ratios[k * others_.size() + i] =
-          transfers.reading[others_[i]][k] / transfers.reading[campaign_.reference][k];
+/// Each gauge's reading over the reference gauge's, along the damped path.
+Transfers WhiteResiduals::ratios_of(const Scene& scene) const {
+  Transfers transfers = transfers_of(scene, campaign_.reference);
+  for (const std::size_t j : others_) {
+    for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+      transfers.reading[j][k] /= transfers.reading[campaign_.reference][k];
     }
   }
-  return ratios;
+  return transfers;
+}
+
+/// The same at the judged bins, bin by bin, as far as a record's length lets them act: what would
+/// come back later carries no noise into it.
+std::vector<Complex> WhiteResiduals::ratios_within_record(Workspace& work,
+                                                          const Transfers& ratios) const {
+  // The filter reaches to both sides of the first sample: the window begins a little before it.
+  const double before_s = static_cast<double>(band_.edge) * campaign_.period_s;
+  const double start_s = static_cast<double>(band_.lead) * campaign_.period_s + 2.0 * before_s;
+  std::vector<Complex> within(band_.bins_judged * others_.size());
+  Spectrum impulse(band_.bins_carried);
+  Spectrum plain;
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+      impulse[k] =
+          ratios.reading[others_[i]][k] * damped_filter_[k] * std::exp(-damped_path_[k] * start_s);
+    }
+    plain_spectrum(work, impulse, plain);
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      within[k * others_.size() + i] = plain[k] * std::exp(plain_path_[k] * before_s);
+    }
+  }
+  return within;
 }
 
 /// Inverse Cholesky factor of G P G^H at one bin; `cross` becomes P G^H.
@@ -381,8 +400,9 @@ Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::
 }
 
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
-  const Scene scene(campaign_.bench, campaign_.shots.front().facts, plain_path_);
-  const std::vector<Complex> ratios = plain_ratios(scene, composition, theta);
+  Scene scene(campaign_.bench, campaign_.shots.front().facts, damped_path_);
+  shape(composition.applied(theta, 0), scene);
+  const std::vector<Complex> ratios = ratios_within_record(*work_.front(), ratios_of(scene));
   spread_.clear();
   Eigen::MatrixXcd cross;
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
@@ -479,16 +499,11 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     if (!scene || composition.differs_by_shot()) {
       scene.emplace(campaign_.bench, shot.facts, damped_path_);
       shape(composition.applied(theta, n), *scene);
-      const std::vector<Complex> ratios = plain_ratios(*scene, composition, theta);
+      transfers = ratios_of(*scene);
+      const std::vector<Complex> ratios = ratios_within_record(work, transfers);
       work.whitener.resize(band_.bins_judged);
       for (std::size_t k = 0; k < band_.bins_judged; ++k) {
         work.whitener[k] = std::numbers::sqrt2 * whitener(ratios, k, work.cross);
-      }
-      transfers = transfers_of(*scene, reference);
-      for (std::size_t j : others_) {
-        for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-          transfers.reading[j][k] /= transfers.reading[reference][k];
-        }
       }
     } else if (composition.changes_records()) {
       scene->facts = &shot.facts;

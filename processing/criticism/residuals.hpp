@@ -6,6 +6,7 @@
 
 #include "processing/criticism/campaign.hpp"
 #include "processing/criticism/composition.hpp"
+#include "processing/models/transfers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -96,8 +97,9 @@ class WhiteResiduals {
   struct Workspace;
   using Spectrum = std::vector<Complex>;
 
-  [[nodiscard]] std::vector<Complex> plain_ratios(const Scene& like, const Composition& composition,
-                                                  const std::vector<double>& theta) const;
+  [[nodiscard]] Transfers ratios_of(const Scene& scene) const;
+  [[nodiscard]] std::vector<Complex> ratios_within_record(Workspace& work,
+                                                          const Transfers& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(std::span<const Complex> ratios, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
