@@ -222,14 +222,16 @@ void encode(const ForceStation& station, v1::ForceStation& message) {
   message.set_gauges(station.gauges);
   message.set_position_m(station.position_m);
   message.set_weight(station.weight);
+  message.set_clean_from_s(station.clean_from_s);
   message.set_clean_until_s(station.clean_until_s);
   message.set_noise_n(station.noise_N);
   message.set_impulse_n_s(station.impulse_N_s);
 }
 
 ForceStation decode(const v1::ForceStation& message) {
-  return {message.gauges(),        message.position_m(), message.weight(),
-          message.clean_until_s(), message.noise_n(),    message.impulse_n_s()};
+  return {message.gauges(),       message.position_m(),    message.weight(),
+          message.clean_from_s(), message.clean_until_s(), message.noise_n(),
+          message.impulse_n_s()};
 }
 
 /// What is not known is not in the message.

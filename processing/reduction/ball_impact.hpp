@@ -13,7 +13,8 @@ struct ForceStation {
   std::string gauges;  ///< their names
   double position_m = 0.0;
   double weight = 0.0;         ///< in the force, by noise; 0: its window is too short
-  double clean_until_s = 0.0;  ///< first touch to the far end's reflection, at this place
+  double clean_from_s = 0.0;   ///< from first touch to the wave's arrival at this place
+  double clean_until_s = 0.0;  ///< and to that of the far end's reflection
   double noise_N = 0.0;        ///< rms before the impact, as a force, not low-passed
   double impulse_N_s = 0.0;    ///< from this place alone
 };
@@ -44,6 +45,11 @@ struct BallImpact {
   std::optional<Measured> restitution_difference{};
   std::optional<Measured> momentum_excess{};  ///< J / (m (Vi + Vr)) - 1
   std::vector<ForceStation> stations;
+
+  /// By speed, else by impulse.
+  [[nodiscard]] std::optional<Measured> restitution() const {
+    return restitution_by_speed ? restitution_by_speed : restitution_by_impulse;
+  }
 };
 
 }  // namespace kolsky

@@ -10,6 +10,7 @@
 #include "processing/reduction/ball_flight.hpp"
 #include "processing/reduction/ball_quality.hpp"
 #include "processing/reduction/band_limit.hpp"
+#include "processing/reduction/contact_numbers.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/stations.hpp"
@@ -199,38 +200,6 @@ double mean(std::span<const double> values) {
   return values.empty() ? 0.0
                         : std::accumulate(values.begin(), values.end(), 0.0) /
                               static_cast<double>(values.size());
-}
-
-/// While a force is above a level, round its largest sample; places in samples.
-struct Stay {
-  double begin = 0.0;
-  double end = 0.0;
-  bool over = false;              ///< it ends within the record
-  double slopes[2] = {0.0, 0.0};  ///< at both ends, per sample
-};
-
-Stay stay_above(std::span<const double> force, std::size_t peak, double level) {
-  Stay stay;
-  std::size_t n = peak;
-  while (n > 0 && force[n - 1] >= level) {
-    --n;
-  }
-  stay.begin = static_cast<double>(n);
-  if (n > 0) {
-    stay.slopes[0] = force[n] - force[n - 1];
-    stay.begin -= (force[n] - level) / stay.slopes[0];
-  }
-  n = peak;
-  while (n + 1 < force.size() && force[n + 1] >= level) {
-    ++n;
-  }
-  stay.end = static_cast<double>(n);
-  stay.over = n + 1 < force.size();
-  if (stay.over) {
-    stay.slopes[1] = force[n] - force[n + 1];
-    stay.end += (force[n] - level) / stay.slopes[1];
-  }
-  return stay;
 }
 
 std::size_t index_of_largest(std::span<const double> values) {
@@ -645,9 +614,8 @@ class Pass {
       station.gauges = names_of(stations_[i], shot_.bench);
       station.position_m = stations_[i].gauge_to_specimen_m;
       station.weight = weights_[i];
-      station.clean_until_s =
-          (clean_samples(stations_[i]) + travel_samples(stations_[i].gauge_to_specimen_m)) *
-          period_s_;
+      station.clean_from_s = travel_samples(stations_[i].gauge_to_specimen_m) * period_s_;
+      station.clean_until_s = station.clean_from_s + clean_samples(stations_[i]) * period_s_;
       station.noise_N = noise_strain_[i] * N_per_strain;
       station.impulse_N_s = impulse(forces_[i], span);
       reduction_.ball->stations.push_back(std::move(station));
