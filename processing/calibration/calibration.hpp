@@ -8,7 +8,7 @@
 #include "processing/base/measured.hpp"
 #include "processing/calibration/arrangement.hpp"
 #include "processing/calibration/pulse_areas.hpp"
-#include "processing/criticism/workers.hpp"
+#include "processing/base/workers.hpp"
 
 namespace kolsky {
 

@@ -6,6 +6,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/bench_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"

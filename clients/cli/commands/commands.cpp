@@ -19,6 +19,7 @@ Command fit_command();
 Command compare_command();
 Command diagnose_command();
 Command impact_command();
+Command chain_command();
 Command verify_command();
 Command export_command();
 Command status_command();
@@ -54,6 +55,7 @@ std::vector<Command> all_commands() {
       compare_command(),
       diagnose_command(),
       impact_command(),
+      chain_command(),
       verify_command(),
       export_command(),
       status_command(),
