@@ -231,11 +231,12 @@ Apparatus read_apparatus(const DaemonConfig& config) {
     apparatus.bar_model = read_material(*config.bar_model);
   }
   const std::size_t asked = config.digitiser.channels.size();
-  const std::size_t gauges = apparatus.bench.gauges.size();
+  const std::size_t gauges = apparatus.bench.channels().size();
   if (asked != 0 && asked != gauges) {
     throw InputError(
         config.file.string() + ": digitiser.channels",
-        fmt::format("names {} channels, {} has {} gauges", asked, config.bench.string(), gauges),
+        fmt::format("names {} channels, {} has {} {}", asked, config.bench.string(), gauges,
+                    apparatus.bench.photo_sensors.empty() ? "gauges" : "gauges and photo-sensors"),
         "name one channel for each gauge, in the bench's order");
   }
   check_gauges(config, apparatus.bench);
@@ -267,7 +268,7 @@ TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_H
 DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench) {
   DigitiserOptions options;
   options.channels = config.digitiser.channels;
-  options.channel_count = bench.gauges.size();
+  options.channel_count = bench.channels().size();
   options.sampling_frequency_Hz = bench.sampling_frequency_Hz;
   options.block_samples = static_cast<std::size_t>(config.digitiser.block_samples);
   options.device = config.digitiser.device;

@@ -88,6 +88,7 @@ JsonValue describe_effects(const Model& model) {
         JsonObject{{"id", use.id()},
                    {"stage", kolsky::name_of(about.stage)},
                    {"per_shot", use.per_shot},
+                   {"alike", use.alike},
                    {"known_unknown", !use.values.empty() && use.values[0].prior_sd > 0.0},
                    {"parameters", std::move(parameters)}});
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "processing/base/error.hpp"
+#include "processing/reduction/ball_reducer.hpp"
 #include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/carrying.hpp"
 #include "processing/reduction/pulse.hpp"
@@ -532,10 +533,12 @@ struct Reducer::State {
   ReductionOptions options;
   std::unique_ptr<Plans> plans;
   std::unique_ptr<Tables> tables;
+  BallReducer ball{};
 };
 
-Reducer::Reducer(ReductionOptions options)
-    : state_(std::make_unique<State>(State{std::move(options), nullptr, nullptr})) {}
+Reducer::Reducer(ReductionOptions options) : state_(std::make_unique<State>()) {
+  state_->options = std::move(options);
+}
 Reducer::~Reducer() = default;
 Reducer::Reducer(Reducer&&) noexcept = default;
 Reducer& Reducer::operator=(Reducer&&) noexcept = default;
@@ -545,6 +548,9 @@ void Reducer::set_bar_model(const Material& material) {
 }
 
 Reduction Reducer::reduce(const Shot& shot) {
+  if (shot.bench.kind == BenchKind::impact) {
+    return state_->ball.reduce(shot, state_->options);
+  }
   require_reducible_bench(shot);
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {

@@ -3,6 +3,7 @@
 namespace kolsky::cli {
 
 Command import_csv_command();
+Command calibrate_command();
 Command identify_bar_command();
 Command identify_specimen_command();
 Command plan_command();
@@ -18,6 +19,7 @@ Command fit_command();
 Command compare_command();
 Command diagnose_command();
 Command impact_command();
+Command chain_command();
 Command verify_command();
 Command export_command();
 Command status_command();
@@ -37,6 +39,7 @@ std::vector<Command> all_commands() {
   // clang-format off
   return {
       import_csv_command(),
+      calibrate_command(),
       identify_bar_command(),
       identify_specimen_command(),
       plan_command(),
@@ -52,6 +55,7 @@ std::vector<Command> all_commands() {
       compare_command(),
       diagnose_command(),
       impact_command(),
+      chain_command(),
       verify_command(),
       export_command(),
       status_command(),
