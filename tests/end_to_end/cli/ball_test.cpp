@@ -66,6 +66,24 @@ double sd(const json& number) {
   return number.at("sd").get<double>();
 }
 
+/// Rms over the first 400 us of measured less computed force, of the peak.
+double history_error(const std::vector<double>& times, const std::vector<double>& forces,
+                     double shift_s, const BallHistory& truth) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < times.size() && times[i] < 400e-6; ++i) {
+    const double place = (times[i] + shift_s - truth.time_s.front()) * 1e6;
+    if (place >= 0.0) {
+      const auto n = static_cast<std::size_t>(place);
+      const double share = place - static_cast<double>(n);
+      const double force_N = (1.0 - share) * truth.force_N[n] + share * truth.force_N[n + 1];
+      squares += std::pow(forces[i] - force_N, 2);
+      ++count;
+    }
+  }
+  return std::sqrt(squares / static_cast<double>(count)) / truth.peak_force_N;
+}
+
 class BallAtSpeed : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BallAtSpeed, IsMeasuredLiveAsTheFiniteElementsHaveIt) {
@@ -90,21 +108,19 @@ TEST_P(BallAtSpeed, IsMeasuredLiveAsTheFiniteElementsHaveIt) {
   EXPECT_EQ(got["speed_source"], "photo-sensors");
   EXPECT_EQ(got["time_s"].size(), got["force_N"].size());
 
-  // The whole history, moved to where the reduction put first touch.
-  const double peak_at = got["peak_time_s"];
-  const auto peak = std::max_element(truth.force_N.begin(), truth.force_N.end());
-  double squares = 0.0;
-  std::size_t count = 0;
-  const auto& times = got["time_s"];
-  for (std::size_t i = 0; i < times.size() && times[i].get<double>() < 400e-6; ++i) {
-    // First touch is found some microseconds late, where the force has begun to rise.
-    const double place = times[i].get<double>() + 4e-6 - truth.time_s.front();
-    const auto n = static_cast<std::size_t>(std::max(0.0, place * 1e6));
-    squares += std::pow(got["force_N"][i].get<double>() - truth.force_N[n], 2);
-    ++count;
+  // The whole history, at whatever first touch fits it best: within some microseconds of the
+  // truth's.
+  const std::vector<double> times = got["time_s"];
+  const std::vector<double> forces = got["force_N"];
+  double best = 1.0;
+  double best_shift_s = 0.0;
+  for (double shift_s = -8e-6; shift_s <= 8e-6; shift_s += 0.25e-6) {
+    const double error = history_error(times, forces, shift_s, truth);
+    best_shift_s = error < best ? shift_s : best_shift_s;
+    best = std::min(best, error);
   }
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.015 * *peak)
-      << "peak at " << peak_at;
+  EXPECT_LT(best, 5e-3);
+  EXPECT_LT(std::abs(best_shift_s), 5e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, BallAtSpeed, ::testing::Values("impact", "impact-51"));
@@ -140,6 +156,12 @@ TEST(BallLive, GetIsReduceToTheByteAndEveryViewShowsIt) {
   std::ifstream page_file(svg);
   EXPECT_NE(std::string(std::istreambuf_iterator<char>(page_file), {}).find("contact force"),
             std::string::npos);
+  for (const std::string format : {"hdf5", "mat", "csv"}) {
+    const std::string file = lab.folder() / ("exported." + format);
+    const Answer exported = kolsky({"export", capture, "--format", format, "-o", file});
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    EXPECT_EQ(exported.out.find("gauges only"), std::string::npos) << exported.out;
+  }
   EXPECT_TRUE(
       refused(kolsky({"reduce", capture, "--uncertainty"}), {"--uncertainty", "specimens"}));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--stress", "one-wave"}), {"--stress"}));
