@@ -47,6 +47,13 @@ void say(const std::string& text) {
   std::cerr << "kolsky chain: " << text << std::endl;
 }
 
+// For who watches; a log gets only what takes long.
+void say_to_a_person(const std::string& text) {
+  if (terminal_of(2).interactive) {
+    say(text);
+  }
+}
+
 std::vector<Shot> read_shots(const std::vector<std::string>& places) {
   std::vector<Shot> shots;
   for (const std::string& place : places) {
@@ -117,7 +124,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   }
   const std::vector<Shot> shots = read_shots(settings.bar_shots);
   require_kind(shots, BenchKind::bar, "--bar-shots", "bar");
-  say(fmt::format("identifying the bar from {} shots", shots.size()));
+  say_to_a_person(fmt::format("identifying the bar from {} shots", shots.size()));
   run.bar = identify_bar(shots, {});
   const BarFit& fit = run.bar->three_element;
   Material material;
@@ -139,7 +146,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
 
 SpecimenFit fit_of(const std::vector<Shot>& shots, const Settings& settings, const Bars& bars,
                    const char* part) {
-  say(fmt::format("identifying the {} from {} shots", part, shots.size()));
+  say_to_a_person(fmt::format("identifying the {} from {} shots", part, shots.size()));
   const bool own = settings.bar_shots.empty() && !settings.bar_model;
   const BarPrior prior =
       own && shots.front().bar_model ? BarPrior(*shots.front().bar_model) : bars.prior;
@@ -325,7 +332,7 @@ class Progress {
   void show(std::size_t done, std::size_t of) {
     const std::scoped_lock hold(lock_);
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_ > std::chrono::seconds(2) || done == of) {
+    if (now - last_ > every_) {
       last_ = now;
       say(fmt::format("{} of {} impacts computed", done, of));
     }
@@ -333,6 +340,7 @@ class Progress {
 
  private:
   std::mutex lock_;
+  std::chrono::seconds every_{terminal_of(2).interactive ? 1 : 20};
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 

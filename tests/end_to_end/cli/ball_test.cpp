@@ -120,7 +120,7 @@ TEST_P(BallAtSpeed, IsMeasuredLiveAsTheFiniteElementsHaveIt) {
     best = std::min(best, error);
   }
   EXPECT_LT(best, 5e-3);
-  EXPECT_LT(std::abs(best_shift_s), 5e-6);
+  EXPECT_LT(std::abs(best_shift_s), 7e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, BallAtSpeed, ::testing::Values("impact", "impact-51"));
