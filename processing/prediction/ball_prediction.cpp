@@ -151,7 +151,7 @@ BallPrediction summary_of(const ForetoldSpeed& asked, const Runs& runs, double i
 std::vector<BallPrediction> foretell_impacts(
     const Bench& bench, const MaterialPosterior& core, const MaterialPosterior& cover,
     const std::vector<ForetoldSpeed>& speeds, const PredictionOptions& options,
-    const Executor& executor, const std::function<void(std::size_t, std::size_t)>& progress) {
+    const Workers& workers, const std::function<void(std::size_t, std::size_t)>& progress) {
   Numbers numbers(options.seed);
   const MaterialDraws core_draws(core);
   const MaterialDraws cover_draws(cover);
@@ -182,7 +182,7 @@ std::vector<BallPrediction> foretell_impacts(
   }
   const std::size_t each = draws.size() + 2;
   std::atomic<std::size_t> done = 0;
-  executor(each * speeds.size(), [&](std::size_t task) {
+  workers.run(each * speeds.size(), [&](std::size_t task, std::size_t /*worker*/) {
     const ForetoldSpeed& asked = speeds[task / each];
     Runs& speed = runs[task / each];
     const std::size_t which = task % each;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/impact/bench_impact.hpp"
-#include "processing/uncertainty/executor.hpp"
 
 namespace kolsky {
 
@@ -60,6 +60,6 @@ struct BallPrediction {
 [[nodiscard]] std::vector<BallPrediction> foretell_impacts(
     const Bench& bench, const MaterialPosterior& core, const MaterialPosterior& cover,
     const std::vector<ForetoldSpeed>& speeds, const PredictionOptions& options,
-    const Executor& executor, const std::function<void(std::size_t, std::size_t)>& progress = {});
+    const Workers& workers, const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 }  // namespace kolsky

@@ -14,7 +14,7 @@
 #include "clients/cli/chain_run.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
-#include "clients/cli/thread_executor.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/bench_file.hpp"
 #include "drivers/files/capture.hpp"
@@ -378,7 +378,7 @@ int run_command(const Settings& settings, Context& context) {
   Progress progress;
   const std::vector<BallPrediction> predictions =
       foretell_impacts(bench, posterior_of(run.core, core_filed),
-                       posterior_of(run.cover, cover_filed), speeds, run.options, thread_executor(),
+                       posterior_of(run.cover, cover_filed), speeds, run.options, all_cores(),
                        [&progress](std::size_t done, std::size_t of) { progress.show(done, of); });
   for (std::size_t i = 0; i < predictions.size(); ++i) {
     run.speeds[i].foretold = predictions[i];

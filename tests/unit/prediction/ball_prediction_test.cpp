@@ -36,7 +36,7 @@ impact::ImpactHistory thrown(const Material& core, double speed_m_per_s) {
 
 BallPrediction only(const MaterialPosterior& core, const Measured& speed) {
   return foretell_impacts(paper_bench(), core, {paper_cover(), {}}, {{speed, 50e3, 0.01}}, small(),
-                          run_in_order)
+                          Workers{})
       .front();
 }
 
@@ -112,7 +112,7 @@ TEST(BallPrediction, ABenchThatDoesNotFitIsRefused) {
   Bench bench = paper_bench();
   bench.ball->core_diameter_m.value = 0.038;
   EXPECT_THROW((void)foretell_impacts(bench, {paper_core(), {}}, {paper_cover(), {}},
-                                      {{{40.3, 0.0}, 50e3, 0.01}}, small(), run_in_order),
+                                      {{{40.3, 0.0}, 50e3, 0.01}}, small(), Workers{}),
                InputError);
 }
 
