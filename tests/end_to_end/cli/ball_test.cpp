@@ -255,6 +255,43 @@ TEST_F(BallTables, RepeatsAreGroupedBySpeed) {
   EXPECT_EQ(kolsky({"reduce", folder_ / "a.h5", folder_ / "c.h5"}).code, 0);
 }
 
+// The ball's surface is at the gap g from the face; it blocks a beam at d from g = d - 42.7 mm to g
+// = d.
+TEST_F(BallTables, PhotoSensorsAreColumnsByTheirNames) {
+  std::ifstream file(folder_ / "bench.toml");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  folder_.write("beams.toml", text +
+                                  "[[photo_sensors]]\nname = \"p1\"\ndistance_m = 0.09\n"
+                                  "[[photo_sensors]]\nname = \"p2\"\ndistance_m = 0.06\n");
+  constexpr double kIn = 31.0;
+  constexpr double kOut = 25.0;
+  constexpr double kContact_s = 450e-6;
+  std::ofstream table(folder_ / "beams.csv");
+  table.precision(9);
+  table << "time_s,p2/mV,g1,p1/mV\n";
+  for (int n = 0; n < 8500; ++n) {
+    const double time_s = 1e-6 * n - 3.6e-3;
+    const double gap_m = time_s < 0.0 ? -kIn * time_s : std::max(0.0, kOut * (time_s - kContact_s));
+    const auto beam_mV = [&](double d) { return gap_m > d - 0.0427 && gap_m < d ? 120.0 : 4800.0; };
+    const double phase = time_s / kContact_s;
+    const double push_N =
+        phase > 0.0 && phase < 1.0 ? 9300.0 * std::pow(std::sin(M_PI * phase), 1.5) : 0.0;
+    table << 1e-6 * n << ',' << beam_mV(0.06) << ',' << push_N / (113e9 * 5.7255526e-4) << ','
+          << beam_mV(0.09) << '\n';
+  }
+  table.close();
+  const std::string capture = folder_ / "beams.h5";
+  const Answer imported = kolsky(
+      {"import", "csv", folder_ / "beams.csv", "--bench", folder_ / "beams.toml", "-o", capture});
+  ASSERT_EQ(imported.code, 0) << imported.err;
+  const json told = json_of(kolsky({"reduce", capture, "--json"}));
+  EXPECT_EQ(told["speed_source"], "photo-sensors");
+  EXPECT_NEAR(value(told["incident_speed_m_per_s"]), kIn, 0.05);
+  EXPECT_NEAR(value(told["rebound_speed_m_per_s"]), kOut, 0.05);
+  EXPECT_NEAR(value(told["restitution"]["by_speed"]), kOut / kIn,
+              4.0 * sd(told["restitution"]["by_speed"]));
+}
+
 TEST_F(BallTables, BenchCanBeCorrectedAndSaved) {
   const std::string capture = import("a", 31.0, 1.0, {"--meta", "rebound_speed_m_per_s=25"});
   const json before = json_of(kolsky({"reduce", capture, "--json"}));
