@@ -42,8 +42,42 @@ ModelValue read_value(const TomlTable& table, const EffectParameter& parameter) 
   return value;
 }
 
+/// Positive definite, symmetric, ones on the diagonal: what a prior needs.
+void require_correlation(const TomlTable& table, const std::vector<double>& own,
+                         const EffectUse& use) {
+  const std::size_t count = use.values.size();
+  bool sound = own.size() == count * count;
+  for (std::size_t a = 0; sound && a < count; ++a) {
+    sound = std::abs(own[a * count + a] - 1.0) < 1e-9;
+    for (std::size_t b = 0; sound && b < a; ++b) {
+      sound = std::abs(own[a * count + b] - own[b * count + a]) < 1e-9;
+    }
+  }
+  // Cholesky's factor exists for nothing else.
+  std::vector<double> factor = own;
+  for (std::size_t a = 0; sound && a < count; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      double sum = factor[a * count + b];
+      for (std::size_t k = 0; k < b; ++k) {
+        sum -= factor[a * count + k] * factor[b * count + k];
+      }
+      if (a == b) {
+        sound = sound && sum > 0.0;
+        factor[a * count + a] = std::sqrt(std::max(sum, 0.0));
+      } else {
+        factor[a * count + b] = factor[b * count + b] > 0.0 ? sum / factor[b * count + b] : 0.0;
+      }
+    }
+  }
+  if (!sound) {
+    throw table.error(
+        "prior_correlation", "is not a correlation of this effect's parameters",
+        fmt::format("give {} x {} numbers, symmetric and positive definite", count, count));
+  }
+}
+
 EffectUse read_use(const TomlTable& table) {
-  table.expect({"id", "per_shot", "alike", "parameters"});
+  table.expect({"id", "per_shot", "alike", "parameters", "prior_correlation"});
   EffectUse use;
   try {
     use = use_named(table.text("id"));
@@ -67,6 +101,10 @@ EffectUse read_use(const TomlTable& table) {
         use.values[p] = read_value(*own, known[p]);
       }
     }
+  }
+  if (table.has("prior_correlation")) {
+    use.prior_correlation = table.numbers("prior_correlation");
+    require_correlation(table, use.prior_correlation, use);
   }
   return use;
 }
@@ -144,6 +182,13 @@ std::string format_use(const EffectUse& use) {
   }
   if (use.per_shot) {
     text += "per_shot = true\n";
+  }
+  if (!use.prior_correlation.empty()) {
+    text += "prior_correlation = [";
+    for (std::size_t i = 0; i < use.prior_correlation.size(); ++i) {
+      text += (i == 0 ? "" : ", ") + digits(use.prior_correlation[i]);
+    }
+    text += "]\n";
   }
   const auto& parameters = use.effect->about().parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) {

@@ -176,8 +176,8 @@ std::vector<double> carry(const Composition& from, const std::vector<double>& th
   return out;
 }
 
-Direction direction_of(const Candidate& candidate, const Studied& studied, Study& study,
-                       std::size_t worker) {
+Direction direction_of(const Candidate& candidate, const Studied& studied, const Campaign& campaign,
+                       ShotResiduals& residuals, std::size_t worker) {
   Direction direction;
   const ModelFit& fit = studied.fit;
   if (candidate.frees_prior) {
@@ -212,7 +212,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, Study
                                                         fit.covariance * direction.model_share;
   } else {
     const Model extended = with(studied.model, candidate, false);
-    const Composition composition(extended, study.campaign());
+    const Composition composition(extended, campaign);
     const std::vector<double> theta = carry(studied.composition, fit.theta, composition);
     std::vector<std::size_t> own;
     for (std::size_t i = 0; i < theta.size(); ++i) {
@@ -227,8 +227,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, Study
         work(i, worker);
       }
     };
-    direction.columns =
-        derivatives(composition, study.residuals(), theta, fit.residual, own, serial);
+    direction.columns = derivatives(composition, residuals, theta, fit.residual, own, serial);
     direction.model_share = fit.jacobian.transpose() * direction.columns;
     direction.unprojected = direction.columns.transpose() * direction.columns;
     direction.pull = -direction.columns.transpose() * fit.residual;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "processing/base/material.hpp"
 #include "processing/models/effect.hpp"
 
 namespace kolsky {
@@ -23,6 +25,8 @@ struct EffectUse {
   bool per_shot = false;           ///< strengths of their own for every shot
   bool alike = false;              ///< the same at all gauges, where each could have its own
   std::vector<ModelValue> values;  ///< one per parameter; of strengths per shot or gauge the mean
+  /// Of the priors among each other, parameters x parameters row by row; empty: independent.
+  std::vector<double> prior_correlation{};
 
   /// "gauge-position:g3".
   [[nodiscard]] std::string id() const;
@@ -44,8 +48,14 @@ struct Model {
 /// @throws InputError where there is no such effect, or a gauge is missing or too many
 [[nodiscard]] EffectUse use_named(const std::string& id);
 
+/// A layer of the ball as a material file has it: what is filed with a deviation is free within it,
+/// the rest is held.
+/// @param covariance  of E1, E2 and eta2, row by row, in place of their deviations; may be empty
+void take_layer(const Material& material, EffectUse& layer,
+                std::span<const double> covariance = {});
+
 /// The paper's model (INTERFACE: where every diagnosis starts), moduli free and, for a split bar,
-/// those of the bars held.
+/// those of the bars held. An impact: the paper's core and cover.
 /// @param elastic  the bench gives the bars' modulus
 [[nodiscard]] Model paper_model(BenchKind kind, bool elastic);
 

@@ -71,6 +71,9 @@ Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex>
     sp.poisson_ratio = bench.specimen->poisson_ratio.value_or(Measured{}).value;
     specimen = sp;
   }
+  if (bench.kind == BenchKind::impact) {
+    ball.emplace();
+  }
   record.additions.resize(gauges.size());
 }
 

@@ -77,12 +77,35 @@ struct SpecimenScene {
   [[nodiscard]] bool nonlinear() const;
 };
 
+/// One of the two layers of a ball.
+struct BallLayer {
+  Solid solid{};  ///< uniaxial
+  double density_kg_m3 = 0.0;
+  double poisson_ratio = 0.0;
+  double nonlinearity = 0.0;  ///< b: instantaneous deviatoric stress x (1 + b strain)
+};
+
+/// The ball that strikes an elastic bar, as far as effects shape it; its geometry is the bench's.
+struct BallScene {
+  BallLayer core{};
+  BallLayer cover{};
+  double friction = 0.0;
+  double offset_m = 0.0;
+  double sabot_mass_kg = 0.0;
+  double cauchy_share = 0.0;  ///< 0: Kirchhoff stress from Hencky's strain, 1: Cauchy stress
+  int reading = 0;            ///< of the uniaxial law, as three-dimensional-reading numbers them
+};
+
 /// What is known of one shot besides its records.
 struct ShotFacts {
   std::size_t shot = 0;
-  double peak_strain = 0.0;             ///< largest at the first gauge
-  std::optional<double> warmer_by_K{};  ///< than the campaign's reference, where logged
-  std::vector<double> time_s{};         ///< of its samples, from the pulse's foot
+  double peak_strain = 0.0;                        ///< largest at the first gauge
+  std::optional<double> warmer_by_K{};             ///< than the campaign's reference, where logged
+  std::vector<double> time_s{};                    ///< of its samples, from the pulse's foot
+  std::optional<double> incident_speed_m_per_s{};  ///< of a ball
+  double incident_speed_sd_m_per_s = 0.0;          ///< 0: not known
+  std::optional<double> rebound_speed_m_per_s{};
+  double rebound_speed_sd_m_per_s = 0.0;
 };
 
 /// Memoryless maps and additions between strain and what was recorded.
@@ -100,6 +123,7 @@ struct Scene {
   std::vector<BarScene> bars{};
   std::vector<GaugeScene> gauges{};
   std::optional<SpecimenScene> specimen{};
+  std::optional<BallScene> ball{};
   RecordScene record{};
 
   /// The bench as filed; right-going waves in a bar, free far ends around a specimen.

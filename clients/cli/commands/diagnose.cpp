@@ -8,6 +8,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/comparison_page.hpp"
 #include "clients/cli/criticism_text.hpp"
+#include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/threads.hpp"
@@ -15,6 +16,7 @@
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/impact_diagnosis.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -114,12 +116,34 @@ Diagnosis refused(const std::string& reason) {
   return diagnosis;
 }
 
+Diagnosis examine_impacts(const Settings& settings, const Model& model,
+                          const std::vector<Shot>& shots, const DiagnosisOptions& options) {
+  const Campaign campaign = read_campaign(shots);
+  require_kind(model, campaign);
+  ImpactStudy study(campaign, judges_whole(model), band_limit_of(settings.band_limit_Hz),
+                    all_cores());
+  Diagnosis diagnosis = diagnose_impacts(study, model, options);
+  if (settings.report) {
+    replace_file(*settings.report,
+                 render_html(impact_diagnosis_page("What " + settings.model + " lacks", study,
+                                                   model, diagnosis)));
+  }
+  return diagnosis;
+}
+
 Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
   for (const Shot& shot : shots) {
     if (const std::string reason = bad_data(shot); !reason.empty()) {
       return refused(shot.id + ": " + reason);
     }
+  }
+  DiagnosisOptions options;
+  if (progress) {
+    options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };
+  }
+  if (model.kind == BenchKind::impact) {
+    return examine_impacts(settings, model, shots, options);
   }
   if (shots.front().bench.gauges.size() < 2) {
     Diagnosis diagnosis;
@@ -129,10 +153,6 @@ Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   }
   const Campaign campaign = read_campaign(shots);
   Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
-  DiagnosisOptions options;
-  if (progress) {
-    options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };
-  }
   Diagnosis diagnosis = diagnose(study, model, options);
   if (settings.report) {
     replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",

@@ -12,7 +12,7 @@ class Crosstalk final : public Effect {
             .stage = Stage::sensor,
             .definition = "reading += kappa x its neighbour's",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"kappa", "-", 0.0, -0.5, 0.5, 5e-3, {}},
                            {"neighbour", "-", 0.0, -1.0, 1.0, 1.0, {-1.0, 1.0}}},
             .per_gauge = true,

@@ -16,7 +16,7 @@ class MainsHum final : public Effect {
             .stage = Stage::record,
             .definition = "reading of each gauge += c cos(2 pi f t) + d sin(2 pi f t)",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters =
                 {{"c", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
                  {"d", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
