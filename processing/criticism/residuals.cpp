@@ -310,13 +310,17 @@ void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
         work.shaped[n] -= addition[n] - before;
       }
     }
-    if (const double b = record.bridge_b; b != 0.0) {
-      // What the bridge added follows from the reading without its noise: bent straight with the
-      // signal, noise would shrink under every b > 0, and any record would ask for some.
-      for (std::size_t n = 0; n < work.shaped.size(); ++n) {
-        const double read = work.shaped[n] - own_noise_[of_shot][j][n];
-        const double root = 1.0 + 4.0 * b * read;
-        work.shaped[n] -= read - 2.0 * read / (1.0 + std::sqrt(std::max(root, 0.0)));
+    if (record.bends(j)) {
+      // What was bent follows from the reading without its noise: bent straight with the signal,
+      // noise would shrink under every b > 0, and any record would ask for some.
+      std::vector<double> read = work.shaped;
+      for (std::size_t n = 0; n < read.size(); ++n) {
+        read[n] -= own_noise_[of_shot][j][n];
+      }
+      std::vector<double> straight = read;
+      record.straighten(j, straight);
+      for (std::size_t n = 0; n < read.size(); ++n) {
+        work.shaped[n] -= read[n] - straight[n];
       }
     }
     transform_record(work, work.shaped, work.records[j]);

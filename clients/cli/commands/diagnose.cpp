@@ -13,7 +13,7 @@
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
-#include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/examination.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -106,25 +106,10 @@ std::string report(const Diagnosis& diagnosis) {
   return text;
 }
 
-Diagnosis refused(const std::string& reason) {
-  Diagnosis diagnosis;
-  diagnosis.verdict = DiagnosisVerdict::bad_data;
-  diagnosis.notes = {reason};
-  return diagnosis;
-}
-
 Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
-  for (const Shot& shot : shots) {
-    if (const std::string reason = bad_data(shot); !reason.empty()) {
-      return refused(shot.id + ": " + reason);
-    }
-  }
-  if (shots.front().bench.gauges.size() < 2) {
-    Diagnosis diagnosis;
-    diagnosis.verdict = DiagnosisVerdict::untestable;
-    diagnosis.notes = {"one gauge, and each shot's source is free: record with two at least"};
-    return diagnosis;
+  if (auto verdict = verdict_without_fit(shots)) {
+    return *std::move(verdict);
   }
   const Campaign campaign = read_campaign(shots);
   Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
