@@ -106,7 +106,7 @@ std::vector<Candidate> candidates_for(const Studied& studied, const Campaign& ca
       list.push_back({use, true, false});
     }
   }
-  for (const Effect* effect : effect_library()) {
+  for (const Effect* effect : effects_known_to(studied.model)) {
     const EffectAbout& about = effect->about();
     if (about.base || !belongs(about, campaign.bench.kind)) {
       continue;
@@ -144,8 +144,7 @@ Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries
       use.values[p].free = false;
     }
     // What is chosen among a few (a neighbour, a harmonic) stays chosen.
-    if (parameters[p].auxiliary() && parameters[p].starts.size() != 2 &&
-        parameters[p].unit != "Hz") {
+    if (parameters[p].auxiliary() && !parameters[p].chosen) {
       use.values[p].free = true;
     }
   }

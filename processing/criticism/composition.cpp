@@ -19,6 +19,26 @@ EffectUse filed(const std::string& id, std::vector<double> sds) {
   return use;
 }
 
+/// Without waves, or with a material that nobody states, nothing can be foretold.
+void require_whole(const Model& model, const Bench& bench) {
+  std::vector<std::string> needed;
+  if (bench.kind != BenchKind::impact) {
+    needed.emplace_back("elementary-waves");
+    if (!bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa)) {
+      needed.emplace_back("three-element-bar");
+    }
+  }
+  if (bench.kind == BenchKind::shpb) {
+    needed.emplace_back("three-element-specimen");
+  }
+  for (const std::string& id : needed) {
+    if (model.find(id) == nullptr) {
+      throw InputError("model", "lacks " + id + ", without which nothing can be foretold here",
+                       "add it with `kolsky model add`");
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
@@ -51,6 +71,7 @@ Composition::Composition(const Model& model, const Campaign& campaign)
     throw InputError("model", "is of another kind of bench than the captures",
                      "make one with `kolsky model new --kind`");
   }
+  require_whole(model, campaign.bench);
   for (const EffectUse& use : model.effects) {
     add(use, campaign);
   }

@@ -11,9 +11,9 @@ namespace kolsky {
 
 namespace {
 
-std::string nearest_ids(const std::string& id) {
+std::string nearest_ids(const std::string& id, const Model& model) {
   std::string list;
-  for (const Effect* effect : effect_library()) {
+  for (const Effect* effect : effects_known_to(model)) {
     const std::string& known = effect->about().id;
     if (known.find(id) != std::string::npos || id.find(known) != std::string::npos ||
         known.substr(0, 4) == id.substr(0, 4)) {
@@ -51,17 +51,32 @@ EffectUse null_use(const Effect& effect, const std::string& gauge) {
   return use;
 }
 
+std::vector<const Effect*> effects_known_to(const Model& model) {
+  std::vector<const Effect*> list = effect_library();
+  for (const auto& own : model.expressions) {
+    list.push_back(own.get());
+  }
+  return list;
+}
+
 EffectUse use_named(const std::string& id) {
+  return use_named(id, {});
+}
+
+EffectUse use_named(const std::string& id, const Model& model) {
   const auto colon = id.find(':');
   const std::string name = id.substr(0, colon);
   const std::string gauge = colon == std::string::npos ? "" : id.substr(colon + 1);
-  const Effect* effect = find_effect(name);
-  if (effect == nullptr) {
-    const std::string near = nearest_ids(name);
+  const std::vector<const Effect*> all = effects_known_to(model);
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Effect* own) { return own->about().id == name; });
+  if (found == all.end()) {
+    const std::string near = nearest_ids(name, model);
     throw InputError("effect " + name, "is not in the library",
                      near.empty() ? "`kolsky effects` lists them"
                                   : "did you mean " + near + "? `kolsky effects` lists all");
   }
+  const Effect* effect = *found;
   if (effect->about().per_gauge && gauge.empty()) {
     throw InputError("effect " + name, "is of one gauge, and none is named",
                      "write " + name + ":GAUGE");

@@ -1,5 +1,6 @@
 #include "processing/models/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -46,6 +47,21 @@ double SpecimenScene::area_m2() const {
 
 bool SpecimenScene::nonlinear() const {
   return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || lateral_inertia_kg_per_m != 0.0;
+}
+
+void RecordScene::straighten(std::size_t gauge, std::vector<double>& record) const {
+  if (gauge < maps.size()) {
+    for (auto map = maps[gauge].rbegin(); map != maps[gauge].rend(); ++map) {
+      undo(*map, record);
+    }
+  }
+  if (bridge_b != 0.0 || bridge_c != 0.0) {
+    for (double& e : record) {
+      const double root = 1.0 + 4.0 * bridge_b * e;
+      e = 2.0 * e / (1.0 + std::sqrt(std::max(root, 0.0)));
+      e -= bridge_c * e * e * e;
+    }
+  }
 }
 
 Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex> path)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "processing/base/bench.hpp"
+#include "processing/models/record_map.hpp"
 #include "processing/waves/compliance.hpp"
 
 namespace kolsky {
@@ -43,6 +44,15 @@ struct BarScene {
   Solid solid{};
   /// Stress reflection of its far end; 0: no wave comes back.
   double far_reflection = 0.0;
+  std::vector<Complex> further_reflection{};  ///< what expressions add to it; empty for none
+
+  [[nodiscard]] bool reflects() const {
+    return far_reflection != 0.0 || !further_reflection.empty();
+  }
+  /// At the path's place k.
+  [[nodiscard]] Complex reflection(std::size_t k) const {
+    return further_reflection.empty() ? far_reflection : far_reflection + further_reflection[k];
+  }
 
   std::vector<Complex> J_per_Pa{};
   std::vector<Complex> gamma_per_m{};
@@ -110,9 +120,17 @@ struct ShotFacts {
 
 /// Memoryless maps and additions between strain and what was recorded.
 struct RecordScene {
-  double bridge_b = 0.0;  ///< reading = e (1 + b e + c e^2)
+  double bridge_b = 0.0;  ///< reading = e (1 + b e + c e^2), c to first order
   double bridge_c = 0.0;
   std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
+  std::vector<std::vector<RecordMap>> maps{};  ///< by gauge, in the order they act; may be shorter
+
+  [[nodiscard]] bool bends(std::size_t gauge) const {
+    return bridge_b != 0.0 || bridge_c != 0.0 || (gauge < maps.size() && !maps[gauge].empty());
+  }
+  /// Takes the maps off a gauge's record, the last first, and the bridge's: what strain was sensed,
+  /// in place.
+  void straighten(std::size_t gauge, std::vector<double>& record) const;
 };
 
 /// One shot's bench and physics on a path of the Laplace variable, as effects shape it stage by

@@ -16,6 +16,7 @@
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/examination.hpp"
 #include "processing/criticism/impact_diagnosis.hpp"
 
 namespace kolsky::cli {
@@ -109,13 +110,6 @@ std::string report(const Diagnosis& diagnosis) {
   return text;
 }
 
-Diagnosis refused(const std::string& reason) {
-  Diagnosis diagnosis;
-  diagnosis.verdict = DiagnosisVerdict::bad_data;
-  diagnosis.notes = {reason};
-  return diagnosis;
-}
-
 Diagnosis examine_impacts(const Settings& settings, const Model& model,
                           const std::vector<Shot>& shots, const DiagnosisOptions& options) {
   const Campaign campaign = read_campaign(shots);
@@ -133,10 +127,8 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
 
 Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
-  for (const Shot& shot : shots) {
-    if (const std::string reason = bad_data(shot); !reason.empty()) {
-      return refused(shot.id + ": " + reason);
-    }
+  if (auto verdict = verdict_without_fit(shots)) {
+    return *std::move(verdict);
   }
   DiagnosisOptions options;
   if (progress) {
@@ -144,12 +136,6 @@ Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   }
   if (model.kind == BenchKind::impact) {
     return examine_impacts(settings, model, shots, options);
-  }
-  if (shots.front().bench.gauges.size() < 2) {
-    Diagnosis diagnosis;
-    diagnosis.verdict = DiagnosisVerdict::untestable;
-    diagnosis.notes = {"one gauge, and each shot's source is free: record with two at least"};
-    return diagnosis;
   }
   const Campaign campaign = read_campaign(shots);
   Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());

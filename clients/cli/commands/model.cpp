@@ -149,7 +149,7 @@ struct EditSettings {
 
 int add(const EditSettings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  EffectUse use = use_named(settings.effect);
+  EffectUse use = use_named(settings.effect, file.model);
   const auto& kinds = use.effect->about().kinds;
   if (std::find(kinds.begin(), kinds.end(), file.model.kind) == kinds.end()) {
     throw InputError("effect " + use.id(),
