@@ -53,6 +53,10 @@ std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
   return shots;
 }
 
+std::size_t count_of(const std::vector<std::string>& captures) {
+  return files_of(captures).size();
+}
+
 std::string digest_of(const std::vector<std::string>& captures) {
   Sha256 all;
   for (const auto& file : files_of(captures)) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "drivers/files/sha256.hpp"
 #include "drivers/files/toml_table.hpp"
+#include "drivers/files/toml_text.hpp"
 
 namespace kolsky {
 
@@ -66,16 +66,6 @@ EffectUse read_use(const TomlTable& table) {
   return use;
 }
 
-ModelStep read_step(const TomlTable& table) {
-  table.expect({"action", "when", "note", "data_sha256", "parent", "before"});
-  return {table.text("action"),
-          table.text("when"),
-          table.optional_text("note").value_or(""),
-          table.optional_text("data_sha256").value_or(""),
-          table.text("parent"),
-          table.text("before")};
-}
-
 ModelFile read(const TomlTable& table) {
   table.expect({"kolsky_model", "kind", "bar_source", "effects", "history"});
   if (table.integer("kolsky_model") != kFormat) {
@@ -105,35 +95,8 @@ ModelFile read(const TomlTable& table) {
   return file;
 }
 
-std::string digits(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  std::string result(text.data(), end);
-  if (result.find_first_of(".e") == std::string::npos) {
-    result += ".0";
-  }
-  return result;
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (c == '\n') {
-      result += "\\n";
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      result += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    } else {
-      result += c;
-    }
-  }
-  return result + "\"";
-}
-
 std::string format_use(const EffectUse& use) {
-  std::string text = "\n[[effects]]\nid = " + quoted(use.id()) + "\n";
+  std::string text = "\n[[effects]]\nid = " + toml_quoted(use.id()) + "\n";
   if (use.per_shot) {
     text += "per_shot = true\n";
   }
@@ -141,15 +104,15 @@ std::string format_use(const EffectUse& use) {
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const ModelValue& value = use.values[p];
     text += "[effects.parameters." + parameters[p].name + "]\n";
-    text += "value = " + digits(value.value) + "\n";
+    text += "value = " + toml_number(value.value) + "\n";
     if (value.sd > 0.0) {
-      text += "sd = " + digits(value.sd) + "\n";
+      text += "sd = " + toml_number(value.sd) + "\n";
     }
     if (value.prior_sd > 0.0) {
-      text += "prior_mean = " + digits(value.prior_mean) +
-              "\nprior_sd = " + digits(value.prior_sd) + "\n";
+      text += "prior_mean = " + toml_number(value.prior_mean) +
+              "\nprior_sd = " + toml_number(value.prior_sd) + "\n";
     }
-    text += "unit = " + quoted(parameters[p].unit) + "\n";
+    text += "unit = " + toml_quoted(parameters[p].unit) + "\n";
     text += std::string("free = ") + (value.free ? "true" : "false") + "\n";
   }
   return text;
@@ -170,22 +133,14 @@ std::string format_model(const ModelFile& file, bool with_history) {
   std::string text = fmt::format("kolsky_model = {}\nkind = \"{}\"\n", kFormat,
                                  kinds.at(static_cast<std::size_t>(file.model.kind)));
   if (!file.bar_source.empty()) {
-    text += "bar_source = " + quoted(file.bar_source) + "\n";
+    text += "bar_source = " + toml_quoted(file.bar_source) + "\n";
   }
   for (const EffectUse& use : file.model.effects) {
     text += format_use(use);
   }
   if (with_history) {
     for (const ModelStep& step : file.history) {
-      text +=
-          "\n[[history]]\naction = " + quoted(step.action) + "\nwhen = " + quoted(step.when) + "\n";
-      if (!step.note.empty()) {
-        text += "note = " + quoted(step.note) + "\n";
-      }
-      if (!step.data_sha256.empty()) {
-        text += "data_sha256 = " + quoted(step.data_sha256) + "\n";
-      }
-      text += "parent = " + quoted(step.parent) + "\nbefore = " + quoted(step.before) + "\n";
+      text += format_step(step);
     }
   }
   return text;
@@ -195,6 +150,7 @@ void begin_step(ModelFile& file, const std::string& action, const std::string& w
   ModelStep step;
   step.action = action;
   step.when = when;
+  step.software = KOLSKY_VERSION;
   step.before = format_model(file, false);
   step.parent = sha256_hex(std::as_bytes(std::span(step.before)));
   file.history.push_back(std::move(step));

@@ -14,6 +14,8 @@ Command model_remove_command();
 Command model_show_command();
 Command model_history_command();
 Command model_revert_command();
+Command model_diff_command();
+Command model_waterfall_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
@@ -48,6 +50,8 @@ std::vector<Command> all_commands() {
       model_show_command(),
       model_history_command(),
       model_revert_command(),
+      model_diff_command(),
+      model_waterfall_command(),
       fit_command(),
       compare_command(),
       diagnose_command(),

@@ -9,6 +9,7 @@
 #include "clients/cli/comparison_page.hpp"
 #include "clients/cli/criticism_text.hpp"
 #include "clients/cli/json_value.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
@@ -23,6 +24,7 @@ struct Settings {
   std::string model;
   std::optional<std::string> output;
   std::optional<std::string> report;
+  std::optional<std::string> note;
   std::optional<double> band_limit_Hz;
 };
 
@@ -152,6 +154,8 @@ int run(const Settings& settings, Context& context) {
                "diagnose:" + (added.empty() ? " " + kolsky::name_of(diagnosis.verdict) : added),
                utc_now());
     file.history.back().data_sha256 = digest_of(settings.captures);
+    file.history.back().note = settings.note.value_or("");
+    keep(diagnosis, count_of(settings.captures), file.history.back());
     file.model = *diagnosis.model;
     replace_file(*settings.output, format_model(file));
   }
@@ -178,6 +182,7 @@ Command diagnose_command() {
       needed("--model", "M.toml", "the model to diagnose", &s.model),
       option("-o,--output", "M2.toml", "where to write the model with what was found, fitted",
              &s.output),
+      option("--note", "TEXT", "kept in the history of the model that is written", &s.note),
       option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
              &s.report),
       option("--band-limit", "HZ",
