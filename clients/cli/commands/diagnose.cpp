@@ -156,7 +156,10 @@ int run(const Settings& settings, Context& context) {
     file.history.back().data_sha256 = digest_of(settings.captures);
     file.history.back().note = settings.note.value_or("");
     keep(diagnosis, count_of(settings.captures), file.history.back());
-    file.model = *diagnosis.model;
+    if (diagnosis.verdict != DiagnosisVerdict::unknown) {
+      // What was tried and rejected has no place in the model.
+      file.model = *diagnosis.model;
+    }
     replace_file(*settings.output, format_model(file));
   }
   context.out << (context.json ? to_text(describe(diagnosis)) + "\n" : report(diagnosis));
