@@ -29,6 +29,12 @@ Complex smoothing(Complex s) {
   return std::exp(x) * (1.0 - x + 0.5 * x * x);
 }
 
+/// What smoothing sends ahead of a record's start comes back at the transform's end, grown by the
+/// damping: it must not be the record's.
+std::size_t padded(std::size_t samples) {
+  return samples + samples / 4;
+}
+
 /// Zero until a little before the foot.
 double gate(double time_s) {
   if (time_s >= 0.0) {
@@ -67,7 +73,7 @@ Planter::Planter(const std::vector<Shot>& shots, Study& study, const Studied& st
 
 void Planter::find_waves() {
   const std::size_t samples = campaign_.shots.front().strain.front().size();
-  DampedTransform transform(samples, campaign_.period_s);
+  DampedTransform transform(padded(samples), campaign_.period_s);
   for (std::size_t k = 0; k < transform.bins(); ++k) {
     path_.push_back(transform.s(k));
   }
@@ -95,7 +101,7 @@ std::vector<Planter::Record> Planter::through(const Composition& composition,
                                               const std::vector<double>& theta,
                                               std::size_t shot) const {
   const CampaignShot& own = campaign_.shots[shot];
-  DampedTransform transform(waves_[shot].size(), campaign_.period_s);
+  DampedTransform transform(padded(waves_[shot].size()), campaign_.period_s);
   Scene scene(campaign_.bench, own.facts, path_);
   shape(composition.applied(theta, shot), scene);
   const Transfers transfers = transfers_of(scene, campaign_.reference);

@@ -38,6 +38,9 @@ PlantOutcome outcome_of(const Diagnosis& diagnosis, const std::string& id,
   if (diagnosis.verdict == DiagnosisVerdict::unknown) {
     return PlantOutcome::unknown;
   }
+  if (diagnosis.verdict == DiagnosisVerdict::bad_data) {
+    return PlantOutcome::unusable;
+  }
   bool own = false;
   bool tied = false;
   bool other = false;
@@ -211,6 +214,8 @@ std::string name_of(PlantOutcome outcome) {
       return "wrong";
     case PlantOutcome::unseen:
       return "unseen";
+    case PlantOutcome::unusable:
+      return "bad data";
   }
   return {};
 }

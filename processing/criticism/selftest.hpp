@@ -28,7 +28,8 @@ enum class PlantOutcome {
   beside,   ///< named, and something that was not planted too
   unknown,  ///< misfit was seen, and not explained
   wrong,    ///< another effect was named
-  unseen    ///< adequate
+  unseen,   ///< adequate
+  unusable  ///< so large that the records no longer serve
 };
 
 [[nodiscard]] std::string name_of(PlantOutcome outcome);

@@ -136,7 +136,8 @@ TEST(Selftest, FindsWhatWasPlantedLargeAndNothingFarBelowTheNoise) {
   const PlantedEffect& effect = result.effects.front();
   ASSERT_EQ(effect.sizes.size(), 2U);
   EXPECT_EQ(effect.sizes[0].outcome, PlantOutcome::unseen);
-  EXPECT_TRUE(effect.sizes[1].found());
+  EXPECT_TRUE(effect.sizes[1].found())
+      << name_of(effect.sizes[1].outcome) << " " << ::testing::PrintToString(effect.sizes[1].said);
   EXPECT_LT(std::abs(effect.sizes[1].strength - effect.sizes[1].size), 4.0 * effect.sizes[1].sd);
   EXPECT_EQ(effect.smallest_found(), 5e-3);
   EXPECT_GT(effect.identifiable, 2e-5);
