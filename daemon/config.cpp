@@ -16,6 +16,7 @@ namespace kolsky {
 namespace {
 
 constexpr std::int64_t kLongestWindow = std::int64_t{1} << 26;
+constexpr std::int64_t kLongestJournal_bytes = std::int64_t{1} << 40;
 constexpr std::string_view kReplay = "replay:";
 
 // Absolute, because clients that run elsewhere are told of it.
@@ -203,8 +204,10 @@ DaemonConfig read_config(const std::filesystem::path& path) {
   config.digitiser = read_digitiser(root.table("digitiser"), path);
   config.trigger = read_trigger(root.table("trigger"));
   const TomlTable store = root.table("store");
-  store.expect({"folder"});
+  store.expect({"folder", "journal_limit_bytes"});
   config.store = beside(path, store.text("folder"));
+  config.journal_limit_bytes = integer_within(
+      store, "journal_limit_bytes", config.journal_limit_bytes, 4096, kLongestJournal_bytes);
   if (const auto endpoints = root.optional_table("endpoints")) {
     config.endpoints = read_endpoints(*endpoints);
   }

@@ -3,11 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <atomic>
 #include <ctime>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "drivers/files/capture.hpp"
 #include "drivers/files/file_bytes.hpp"
@@ -74,38 +70,6 @@ double band_limit_of(std::optional<double> asked_Hz) {
   return asked_Hz.value_or(0.0);
 }
 
-Workers all_cores() {
-  Workers executor;
-  executor.workers = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t workers = executor.workers;
-  executor.run = [workers](std::size_t count,
-                           const std::function<void(std::size_t, std::size_t)>& work) {
-    std::atomic<std::size_t> next{0};
-    std::exception_ptr error;
-    std::mutex lock;
-    const auto loop = [&](std::size_t worker) {
-      for (std::size_t index = next++; index < count; index = next++) {
-        try {
-          work(index, worker);
-        } catch (...) {
-          const std::scoped_lock held(lock);
-          error = std::current_exception();
-        }
-      }
-    };
-    std::vector<std::jthread> threads;
-    for (std::size_t worker = 1; worker < std::min(workers, count); ++worker) {
-      threads.emplace_back(loop, worker);
-    }
-    loop(0);
-    threads.clear();
-    if (error) {
-      std::rethrow_exception(error);
-    }
-  };
-  return executor;
-}
-
 std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
@@ -128,6 +92,7 @@ JsonValue describe_effects(const Model& model) {
         JsonObject{{"id", use.id()},
                    {"stage", kolsky::name_of(about.stage)},
                    {"per_shot", use.per_shot},
+                   {"alike", use.alike},
                    {"known_unknown", !use.values.empty() && use.values[0].prior_sd > 0.0},
                    {"parameters", std::move(parameters)}});
   }

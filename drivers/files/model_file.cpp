@@ -43,12 +43,17 @@ ModelValue read_value(const TomlTable& table, const EffectParameter& parameter) 
 }
 
 EffectUse read_use(const TomlTable& table) {
-  table.expect({"id", "per_shot", "parameters"});
+  table.expect({"id", "per_shot", "alike", "parameters"});
   EffectUse use;
   try {
     use = use_named(table.text("id"));
   } catch (const InputError& error) {
     throw table.error("id", "\"" + table.text("id") + "\": " + error.problem(), error.mend());
+  }
+  use.alike = table.optional_flag("alike").value_or(false);
+  if (use.alike && !use.effect->about().each_gauge) {
+    throw table.error("alike", "is true, and " + use.id() + " has no strengths by gauge",
+                      "leave it out");
   }
   use.per_shot = table.optional_flag("per_shot").value_or(false);
   if (use.per_shot && !use.effect->about().per_shot) {
@@ -97,6 +102,9 @@ ModelFile read(const TomlTable& table) {
 
 std::string format_use(const EffectUse& use) {
   std::string text = "\n[[effects]]\nid = " + toml_quoted(use.id()) + "\n";
+  if (use.alike) {
+    text += "alike = true\n";
+  }
   if (use.per_shot) {
     text += "per_shot = true\n";
   }

@@ -8,17 +8,13 @@
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/identification/bar_records.hpp"
+#include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
 namespace kolsky {
 
 namespace {
-
-constexpr double kShortestPulse_s = 5e-6;
-constexpr double kPulseReach_s = 500e-6;
-constexpr double kFootClearance_s = 10e-6;
-constexpr std::size_t kFewestQuiet = 32;
 
 std::size_t reference_of(const Bench& bench) {
   std::size_t reference = bench.gauges.size();
@@ -30,30 +26,6 @@ std::size_t reference_of(const Bench& bench) {
     }
   }
   return reference;
-}
-
-/// Foot of the first pulse [samples]; none where nothing stands out.
-std::optional<double> foot_in(const std::vector<double>& readings, double rate_Hz) {
-  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
-  const auto reach = static_cast<std::size_t>(kPulseReach_s * rate_Hz);
-  const auto rise = find_first_pulse(readings, width, reach);
-  if (!rise) {
-    return std::nullopt;
-  }
-  const double baseline =
-      quiet_before(readings, std::min<std::size_t>(rise->index, kFewestQuiet)).baseline;
-  const std::size_t end = std::min(readings.size(), rise->index + reach);
-  std::vector<double> shifted(end);
-  for (std::size_t n = 0; n < end; ++n) {
-    shifted[n] = rise->sense * (readings[n] - baseline);
-  }
-  const double peak =
-      *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(rise->index), shifted.end());
-  return foot_of(shifted, rise->index, peak, 0.0).index;
-}
-
-std::size_t quiet_samples(double foot, double rate_Hz) {
-  return static_cast<std::size_t>(std::max(0.0, foot - kFootClearance_s * rate_Hz));
 }
 
 /// The step between neighbouring codes where the record takes few enough values to show it.
@@ -134,10 +106,9 @@ CampaignShot read_shot(const Shot& shot, std::size_t reference) {
   const Bench& bench = shot.bench;
   CampaignShot out;
   out.id = shot.id;
-  const double rate_Hz = shot.rate.Hz();
-  const double foot = *foot_in(readings_of(shot.channels[reference]), rate_Hz);
-  out.quiet_samples = quiet_samples(foot, rate_Hz);
-  out.foot_s = foot * shot.rate.period_s();
+  const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
+  out.quiet_samples = pulse.value().quiet;
+  out.foot_s = pulse->foot * shot.rate.period_s();
   for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
     const BridgeConversion bridge(bench.gauges[j], bench.bar_of(bench.gauges[j]), bench.positive);
     const std::vector<double> readings = readings_of(shot.channels[j]);
@@ -181,15 +152,14 @@ std::string bad_data(const Shot& shot) {
              " samples: it was cut off there";
     }
   }
-  const auto foot = foot_in(readings_of(shot.channels[reference]), shot.rate.Hz());
-  if (!foot) {
+  const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
+  if (!pulse) {
     return "gauge " + shot.bench.gauges[reference].name +
            " holds no pulse that stands out of its noise";
   }
-  if (quiet_samples(*foot, shot.rate.Hz()) < kFewestQuiet) {
-    return "too few quiet samples before the pulse: " +
-           std::to_string(quiet_samples(*foot, shot.rate.Hz())) + " of at least " +
-           std::to_string(kFewestQuiet);
+  if (pulse->quiet < kFewestQuiet) {
+    return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
+           " of at least " + std::to_string(kFewestQuiet);
   }
   return {};
 }

@@ -85,7 +85,12 @@ void add_variants(const Effect& effect, const std::string& gauge, const Campaign
         continue;
       }
       variant.per_shot = per_shot;
+      variant.alike = false;
       list.push_back({variant, false, one_sided(variant)});
+      if (about.each_gauge) {
+        variant.alike = true;
+        list.push_back({variant, false, one_sided(variant)});
+      }
     }
   }
 }

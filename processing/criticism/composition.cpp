@@ -81,7 +81,8 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
     const EffectParameter& parameter = about.parameters[p];
     const ModelValue& value = use.values[p];
     const std::size_t by_shot = use.per_shot && !parameter.auxiliary() ? shots_ : 1;
-    const std::size_t by_gauge = about.each_gauge && !parameter.auxiliary() ? gauges_ : 1;
+    const std::size_t by_gauge =
+        about.each_gauge && !use.alike && !parameter.auxiliary() ? gauges_ : 1;
     Slots own{by_shot, by_gauge, std::vector<Slot>(by_shot * by_gauge)};
     for (std::size_t place = 0; place < own.of.size(); ++place) {
       Slot& slot = own.of[place];

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/first_pulse.hpp"
 
 namespace kolsky {
 
@@ -197,10 +197,8 @@ namespace {
 
 /// Half-height crossing of a gauge's first pulse [s from the first sample]; negative for none.
 double arrival_s(const CampaignShot& shot, std::size_t gauge, double period_s) {
-  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(5e-6 / period_s));
-  const auto reach = static_cast<std::size_t>(500e-6 / period_s);
-  const auto rise = find_first_pulse(shot.strain[gauge], width, reach);
-  return rise ? static_cast<double>(rise->index) * period_s : -1.0;
+  const auto pulse = first_pulse(shot.strain[gauge], 1.0 / period_s);
+  return pulse ? static_cast<double>(pulse->rise) * period_s : -1.0;
 }
 
 /// Wave speed on the input bar from the first gauge to the last, 0 where it cannot be told.

@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/criticism/composition.hpp"
 #include "processing/criticism/residuals.hpp"
-#include "processing/criticism/workers.hpp"
 
 namespace kolsky {
 

@@ -6,6 +6,7 @@
 
 #include "processing/criticism/campaign.hpp"
 #include "processing/criticism/composition.hpp"
+#include "processing/models/transfers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -40,7 +41,8 @@ class WhiteResiduals {
   WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers);
   ~WhiteResiduals();
 
-  /// Takes from this composition how residuals are shared out among the gauges.
+  /// Takes from this composition how residuals are shared out among the gauges, and what they say
+  /// of each gauge's noise.
   void freeze(const Composition& composition, const std::vector<double>& theta);
 
   /// Corrects the whitener by what the residuals of a fit show of the noise: at each frequency the
@@ -95,8 +97,9 @@ class WhiteResiduals {
   struct Workspace;
   using Spectrum = std::vector<Complex>;
 
-  [[nodiscard]] std::vector<Complex> plain_ratios(const Scene& like, const Composition& composition,
-                                                  const std::vector<double>& theta) const;
+  [[nodiscard]] Transfers ratios_of(const Scene& scene) const;
+  [[nodiscard]] std::vector<Complex> ratios_within_record(Workspace& work,
+                                                          const Transfers& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(std::span<const Complex> ratios, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
@@ -106,7 +109,9 @@ class WhiteResiduals {
   void prepare_spectra();
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
-  void shape_records(Workspace& work, const RecordScene& record, const CampaignShot& shot) const;
+  void shape_records(Workspace& work, const RecordScene& record, std::size_t shot) const;
+  [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
+  void estimate_noise(const Eigen::VectorXd& white);
   void plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const;
 
   const Campaign& campaign_;
@@ -120,6 +125,8 @@ class WhiteResiduals {
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
   std::vector<std::vector<double>> correction_;  ///< of the noise's power, by bin and component
   std::vector<Eigen::MatrixXcd> spread_;         ///< whitened residual to deviations of all gauges
+  /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
+  std::vector<std::vector<std::vector<double>>> own_noise_;
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;
 };

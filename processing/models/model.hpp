@@ -21,6 +21,7 @@ struct EffectUse {
   const Effect* effect = nullptr;
   std::string gauge;               ///< for effects of one gauge
   bool per_shot = false;           ///< strengths of their own for every shot
+  bool alike = false;              ///< the same at all gauges, where each could have its own
   std::vector<ModelValue> values;  ///< one per parameter; of strengths per shot or gauge the mean
 
   /// "gauge-position:g3".

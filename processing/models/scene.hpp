@@ -39,7 +39,7 @@ struct BarScene {
   double area_m2 = 0.0;
   double density_kg_m3 = 0.0;
   double poisson_ratio = 0.0;
-  bool elastic = false;  ///< its modulus is filed, no model of its material applies
+  bool elastic = false;  ///< its modulus is filed, not a model's
   Solid solid{};
   /// Stress reflection of its far end; 0: no wave comes back.
   double far_reflection = 0.0;
@@ -87,7 +87,8 @@ struct ShotFacts {
 
 /// Memoryless maps and additions between strain and what was recorded.
 struct RecordScene {
-  double bridge_b = 0.0;                         ///< reading = e (1 + b e)
+  double bridge_b = 0.0;  ///< reading = e (1 + b e + c e^2)
+  double bridge_c = 0.0;
   std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
 };
 

@@ -3,6 +3,7 @@
 namespace kolsky::cli {
 
 Command import_csv_command();
+Command calibrate_command();
 Command identify_bar_command();
 Command identify_specimen_command();
 Command plan_command();
@@ -41,6 +42,7 @@ std::vector<Command> all_commands() {
   // clang-format off
   return {
       import_csv_command(),
+      calibrate_command(),
       identify_bar_command(),
       identify_specimen_command(),
       plan_command(),

@@ -8,6 +8,7 @@
 #include "clients/cli/criticism_text.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 

@@ -11,6 +11,7 @@
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"

@@ -8,6 +8,7 @@
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/criticism/study.hpp"
@@ -25,9 +26,9 @@ struct Settings {
 
 int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  const Workers executor = all_cores();
+  const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), executor);
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), workers);
   const Studied studied = study.fit(file.model);
   begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
   file.history.back().data_sha256 = digest_of(settings.captures);

@@ -4,6 +4,7 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/cli/waterfall_text.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"

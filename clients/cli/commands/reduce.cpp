@@ -4,7 +4,7 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
-#include "clients/cli/thread_executor.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/capture.hpp"
@@ -149,9 +149,8 @@ int run(const Settings& settings, Context& context) {
   reduced.stress = settings.stress.value_or(reduced.stress);
   reduced.corrections = names_of(options.corrections);
   if (settings.uncertainty || settings.draws.has_value()) {
-    reduced.uncertainty =
-        propagate(reduced.shot, options, reduced.reduction,
-                  uncertainty_options(settings, bars, reduced.shot), thread_executor());
+    reduced.uncertainty = propagate(reduced.shot, options, reduced.reduction,
+                                    uncertainty_options(settings, bars, reduced.shot), all_cores());
   }
   write_files(settings, reduced);
   context.out << (context.json ? to_text(describe(reduced, settings.with_true)) + "\n"

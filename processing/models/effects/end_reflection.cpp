@@ -15,6 +15,7 @@ class EndReflection final : public Effect {
             .kinds = {BenchKind::bar},
             .parameters = {{"present", "-", 0.0, 0.0, 1.0, 0.02, {}, true},
                            {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0}}},
+            .strength = 1,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

@@ -23,6 +23,7 @@ class MainsHum final : public Effect {
                  {"f", "Hz", 0.0, 45.0, 1000.0, 1.0, {50.0, 60.0, 100.0, 120.0, 150.0, 180.0}}},
             .each_gauge = true,
             .per_shot = true,
+            .quadrature = true,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
