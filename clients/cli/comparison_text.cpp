@@ -142,7 +142,17 @@ std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& 
   const double to = panel.series[0].x.back();
   panel.series[1].x = {from, to, NAN, from, to};
   panel.series[1].y = {noise, noise, NAN, -noise, -noise};
-  return plot_text(panel, {std::min(terminal.columns, kPlotColumns), kPlotRows}, terminal.colour);
+  Panel above{fmt::format("{} in {}: prediction over measurement",
+                          campaign.bench.gauges[gauge].name, campaign.shots[shot].id),
+              {"time", "s"},
+              {"strain", "strain"},
+              {{"measured", panel.series[0].x, record.measured},
+               {"predicted", panel.series[0].x, record.measured}}};
+  for (std::size_t n = 0; n < record.deviation.size(); ++n) {
+    above.series[1].y[n] -= record.deviation[n];
+  }
+  const PlotSize size{std::min(terminal.columns, kPlotColumns), kPlotRows};
+  return plot_text(above, size, terminal.colour) + plot_text(panel, size, terminal.colour);
 }
 
 }  // namespace kolsky::cli

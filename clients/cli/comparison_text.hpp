@@ -22,8 +22,8 @@ namespace kolsky::cli {
 /// The places that fail, as a table.
 [[nodiscard]] std::string places_table(const Comparison& comparison, const Campaign& campaign);
 
-/// The deviation of the gauge and shot that fail most (the first ones where none does), with the
-/// noise's two deviations to either side.
+/// Prediction over measurement at the gauge and shot that fail most (the first ones where none
+/// does), and below it the deviation with the noise's two deviations to either side.
 [[nodiscard]] std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& study,
                                      const Eigen::VectorXd& white, const Terminal& terminal);
 

@@ -46,6 +46,10 @@ std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
   return shots;
 }
 
+std::size_t count_of(const std::vector<std::string>& captures) {
+  return files_of(captures).size();
+}
+
 std::string digest_of(const std::vector<std::string>& captures) {
   return digest_of_files(files_of(captures));
 }

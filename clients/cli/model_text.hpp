@@ -13,6 +13,9 @@ namespace kolsky::cli {
 /// Captures named on the command line (files or folders), read. @throws InputError
 [[nodiscard]] std::vector<Shot> read_shots(const std::vector<std::string>& captures);
 
+/// How many captures the command line names.
+[[nodiscard]] std::size_t count_of(const std::vector<std::string>& captures);
+
 /// SHA-256 over the captures' own digests, in the order given.
 [[nodiscard]] std::string digest_of(const std::vector<std::string>& captures);
 

@@ -128,6 +128,9 @@ std::string render_html(const Page& page) {
     for (const std::string& paragraph : section.text) {
       out += "<p>" + escaped(paragraph) + "</p>\n";
     }
+    for (const std::string& picture : section.pictures) {
+      out += picture;
+    }
     out += bars_html(section.bars);
     if (!section.maps.empty()) {
       out += "<div class=\"maps\">\n";

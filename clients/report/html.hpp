@@ -44,6 +44,7 @@ struct PageSection {
   std::vector<HeatMap> maps{};
   std::vector<PageTable> tables{};
   std::vector<PanelGroup> groups{};
+  std::vector<std::string> pictures{};  ///< <svg> elements, as they are
 };
 
 struct Page {

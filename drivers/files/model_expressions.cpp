@@ -158,10 +158,10 @@ void require_admissible(const TomlTable& table, const ExpressionEffect& effect,
 }
 
 std::string format_expression(const ExpressionText& text) {
-  std::string out = "\n[[expressions]]\nid = " + toml_text(text.id) + "\nstage = \"" +
-                    name_of(text.stage) + "\"\nformula = " + toml_text(text.formula) + "\n";
+  std::string out = "\n[[expressions]]\nid = " + toml_quoted(text.id) + "\nstage = \"" +
+                    name_of(text.stage) + "\"\nformula = " + toml_quoted(text.formula) + "\n";
   if (!text.note.empty()) {
-    out += "note = " + toml_text(text.note) + "\n";
+    out += "note = " + toml_quoted(text.note) + "\n";
   }
   if (text.per_gauge) {
     out += "per_gauge = true\n";
@@ -170,7 +170,7 @@ std::string format_expression(const ExpressionText& text) {
     out += "per_shot = true\n";
   }
   for (const EffectParameter& own : text.parameters) {
-    out += "[expressions.parameters." + own.name + "]\nunit = " + toml_text(own.unit) +
+    out += "[expressions.parameters." + own.name + "]\nunit = " + toml_quoted(own.unit) +
            "\nbounds = [" + toml_number(own.lower) + ", " + toml_number(own.upper) +
            "]\ntypical = " + toml_number(own.typical) + "\n";
     if (own.auxiliary()) {

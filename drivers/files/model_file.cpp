@@ -112,16 +112,6 @@ EffectUse read_use(const TomlTable& table, const Model& model) {
   return use;
 }
 
-ModelStep read_step(const TomlTable& table) {
-  table.expect({"action", "when", "note", "data_sha256", "parent", "before"});
-  return {table.text("action"),
-          table.text("when"),
-          table.optional_text("note").value_or(""),
-          table.optional_text("data_sha256").value_or(""),
-          table.text("parent"),
-          table.text("before")};
-}
-
 ModelFile read(const TomlTable& table) {
   table.expect({"kolsky_model", "kind", "bar_source", "expressions", "effects", "history"});
   if (table.integer("kolsky_model") != kFormat) {
@@ -159,7 +149,7 @@ ModelFile read(const TomlTable& table) {
 }
 
 std::string format_use(const EffectUse& use) {
-  std::string text = "\n[[effects]]\nid = " + toml_text(use.id()) + "\n";
+  std::string text = "\n[[effects]]\nid = " + toml_quoted(use.id()) + "\n";
   if (use.alike) {
     text += "alike = true\n";
   }
@@ -185,7 +175,7 @@ std::string format_use(const EffectUse& use) {
       text += "prior_mean = " + toml_number(value.prior_mean) +
               "\nprior_sd = " + toml_number(value.prior_sd) + "\n";
     }
-    text += "unit = " + toml_text(parameters[p].unit) + "\n";
+    text += "unit = " + toml_quoted(parameters[p].unit) + "\n";
     text += std::string("free = ") + (value.free ? "true" : "false") + "\n";
   }
   return text;
@@ -206,7 +196,7 @@ std::string format_model(const ModelFile& file, bool with_history) {
   std::string text = fmt::format("kolsky_model = {}\nkind = \"{}\"\n", kFormat,
                                  kinds.at(static_cast<std::size_t>(file.model.kind)));
   if (!file.bar_source.empty()) {
-    text += "bar_source = " + toml_text(file.bar_source) + "\n";
+    text += "bar_source = " + toml_quoted(file.bar_source) + "\n";
   }
   for (const auto& expression : file.model.expressions) {
     text += format_expression(expression->text());
@@ -216,15 +206,7 @@ std::string format_model(const ModelFile& file, bool with_history) {
   }
   if (with_history) {
     for (const ModelStep& step : file.history) {
-      text += "\n[[history]]\naction = " + toml_text(step.action) +
-              "\nwhen = " + toml_text(step.when) + "\n";
-      if (!step.note.empty()) {
-        text += "note = " + toml_text(step.note) + "\n";
-      }
-      if (!step.data_sha256.empty()) {
-        text += "data_sha256 = " + toml_text(step.data_sha256) + "\n";
-      }
-      text += "parent = " + toml_text(step.parent) + "\nbefore = " + toml_text(step.before) + "\n";
+      text += format_step(step);
     }
   }
   return text;
@@ -244,6 +226,7 @@ void begin_step(ModelFile& file, const std::string& action, const std::string& w
   ModelStep step;
   step.action = action;
   step.when = when;
+  step.software = KOLSKY_VERSION;
   step.before = format_model(file, false);
   step.parent = sha256_hex(std::as_bytes(std::span(step.before)));
   file.history.push_back(std::move(step));

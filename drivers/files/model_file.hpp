@@ -4,19 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "drivers/files/model_step.hpp"
 #include "processing/models/model.hpp"
 
 namespace kolsky {
-
-/// A step in a model's life: what was done, and the model as it was before.
-struct ModelStep {
-  std::string action;       ///< "add geometric-dispersion", "fit 8 captures"
-  std::string when;         ///< UTC, ISO 8601
-  std::string note;         ///< figures and seeds that belong to the step, for people
-  std::string data_sha256;  ///< of the captures a fit saw; empty for other steps
-  std::string parent;       ///< SHA-256 of the text below
-  std::string before;       ///< the whole model file before the step, without its own history
-};
 
 /// A model with the lineage that its file carries along: nothing that it once was is lost.
 struct ModelFile {

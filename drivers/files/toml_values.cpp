@@ -17,7 +17,7 @@ std::string toml_number(double value) {
   return result;
 }
 
-std::string toml_text(const std::string& text) {
+std::string toml_quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {

@@ -8,6 +8,6 @@ namespace kolsky {
 [[nodiscard]] std::string toml_number(double value);
 
 /// A text as TOML has it, in quotes.
-[[nodiscard]] std::string toml_text(const std::string& text);
+[[nodiscard]] std::string toml_quoted(const std::string& text);
 
 }  // namespace kolsky

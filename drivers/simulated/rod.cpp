@@ -44,6 +44,10 @@ Rod::Rod(const RodShape& shape, double time_step_s)
     return;
   }
   const RodMaterial& m = shape.material;
+  if (!m.plain()) {
+    prepare_chain(m);
+    return;
+  }
   const double x = (m.E1_Pa + m.E2_Pa) / m.eta2_Pa_s * time_step_s;
   const double settled = m.E1_Pa / (m.E1_Pa + m.E2_Pa);
   const double mean_decay = -std::expm1(-x) / x;
@@ -64,9 +68,25 @@ void Rod::advance_velocities() {
   }
 }
 
+void Rod::prepare_chain(const RodMaterial& material) {
+  std::vector<RodRelaxation> all = material.relaxations;
+  all.push_back({1.0 / material.E2_Pa, material.eta2_Pa_s / material.E2_Pa});
+  for (const RodRelaxation& own : all) {
+    const double half = 0.5 * step_s_ / own.tau_s;
+    chain_.push_back({(1.0 - half) / (1.0 + half), own.D_per_Pa * half / (1.0 + half),
+                      std::vector<double>(strain_.size(), 0.0)});
+  }
+  if (material.phi_per_Pa_s != 0.0) {
+    chain_.push_back(
+        {1.0, 0.5 * step_s_ * material.phi_per_Pa_s, std::vector<double>(strain_.size(), 0.0)});
+  }
+}
+
 void Rod::advance_strains() {
   if (elastic_) {
     advance_elastic_strains();
+  } else if (!chain_.empty()) {
+    advance_chain_strains();
   } else {
     advance_viscous_strains();
   }
@@ -98,6 +118,27 @@ void Rod::advance_viscous_strains() {
     strain[i] = after;
     internal[i] = q;
     stress[i] = modulus * (after - q);
+  }
+}
+
+void Rod::advance_chain_strains() {
+  const double per_cell = step_s_ / cell_m_;
+  double taken = 0.0;
+  for (const Element& element : chain_) {
+    taken += element.take;
+  }
+  const double answer = 1.0 / (1.0 / E1_Pa_ + taken);
+  for (std::size_t i = 0; i < strain_.size(); ++i) {
+    strain_[i] += (velocity_[i] - velocity_[i + 1]) * per_cell;
+    const double before = stress_[i];
+    double held = 0.0;
+    for (const Element& element : chain_) {
+      held += element.keep * element.strain[i] + element.take * before;
+    }
+    stress_[i] = (strain_[i] - held) * answer;
+    for (Element& element : chain_) {
+      element.strain[i] = element.keep * element.strain[i] + element.take * (before + stress_[i]);
+    }
   }
 }
 

@@ -5,15 +5,25 @@
 
 namespace kolsky {
 
+/// A spring and a dashpot side by side: strain D (1 - exp(-t/tau)) after a unit of stress.
+struct RodRelaxation {
+  double D_per_Pa = 0.0;
+  double tau_s = 0.0;
+};
+
 /// What a rod is made of: a spring E1 in series with a spring E2 and a dashpot eta2 in parallel;
-/// elastic with modulus E1 where eta2 is 0.
+/// elastic with modulus E1 where eta2 is 0. In series with a viscoelastic one, where given, further
+/// relaxations and a dashpot of fluidity phi.
 struct RodMaterial {
   double density_kg_m3 = 0.0;
   double E1_Pa = 0.0;
   double E2_Pa = 0.0;
   double eta2_Pa_s = 0.0;
+  std::vector<RodRelaxation> relaxations{};
+  double phi_per_Pa_s = 0.0;
 
   [[nodiscard]] bool elastic() const noexcept { return eta2_Pa_s == 0.0; }
+  [[nodiscard]] bool plain() const noexcept { return relaxations.empty() && phi_per_Pa_s == 0.0; }
   /// Speed of a wave's very front.
   [[nodiscard]] double front_speed_m_per_s() const;
 };
@@ -32,7 +42,8 @@ struct RodShape {
 ///
 /// The cell's internal strain q, that of the spring and dashpot in parallel, obeys
 ///   eta2 dq/dt = E1 (strain - q) - E2 q,   stress = E1 (strain - q),
-/// and is advanced exactly for a strain that is linear over the step.
+/// and is advanced exactly for a strain that is linear over the step. Where there are further
+/// relaxations, the strains of all of them obey tau dq/dt = D stress - q, by the trapezoidal rule.
 class Rod {
  public:
   /// @throws std::invalid_argument where the step is longer than the rod's transit time
@@ -62,6 +73,15 @@ class Rod {
  private:
   void advance_viscous_strains();
   void advance_elastic_strains();
+  void advance_chain_strains();
+  void prepare_chain(const RodMaterial& material);
+
+  /// One element of a chain: its strain a step on is keep q + take (stress before + stress after).
+  struct Element {
+    double keep = 0.0;
+    double take = 0.0;
+    std::vector<double> strain{};
+  };
 
   double cell_m_;
   double step_s_;
@@ -76,6 +96,7 @@ class Rod {
   double from_after_;   ///< of the strain at its end
   std::vector<double> strain_;
   std::vector<double> internal_;
+  std::vector<Element> chain_;  ///< empty for a plain material
   std::vector<double> stress_;
   std::vector<double> velocity_;
 };

@@ -15,6 +15,9 @@ enum class DiagnosisVerdict { named, tied, unknown, adequate, untestable, bad_da
 
 [[nodiscard]] std::string name_of(DiagnosisVerdict verdict);
 
+/// Of the generator that the search's simulated repeats are drawn from.
+inline constexpr std::uint64_t kSearchSeed = 20260101;
+
 /// What became of one effect of the library.
 struct CandidateResult {
   std::string effect;

@@ -29,7 +29,9 @@ ALLOWED = {
 }
 
 # Results leave through the exports: they know what a reduction holds, and link no more than that.
+# The tour shows a simulated campaign.
 EXCEPTIONS = {
+    "clients/cli/commands/tour": ["drivers/simulated/hidden_campaign.hpp"],
     "drivers/files/export": ["processing/reduction/reduction.hpp"],
     "drivers/files/model_file": ["processing/models/model.hpp"],
 }

@@ -16,9 +16,13 @@ Command model_show_command();
 Command model_history_command();
 Command model_revert_command();
 Command model_check_command();
+Command model_diff_command();
+Command model_waterfall_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
+Command selftest_command();
+Command tour_command();
 Command impact_command();
 Command chain_command();
 Command verify_command();
@@ -53,9 +57,13 @@ std::vector<Command> all_commands() {
       model_history_command(),
       model_revert_command(),
       model_check_command(),
+      model_diff_command(),
+      model_waterfall_command(),
       fit_command(),
       compare_command(),
       diagnose_command(),
+      selftest_command(),
+      tour_command(),
       impact_command(),
       chain_command(),
       verify_command(),

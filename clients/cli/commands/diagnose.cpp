@@ -10,6 +10,7 @@
 #include "clients/cli/criticism_text.hpp"
 #include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
@@ -27,6 +28,7 @@ struct Settings {
   std::string model;
   std::optional<std::string> output;
   std::optional<std::string> report;
+  std::optional<std::string> note;
   std::optional<double> band_limit_Hz;
 };
 
@@ -159,7 +161,12 @@ int run(const Settings& settings, Context& context) {
                "diagnose:" + (added.empty() ? " " + kolsky::name_of(diagnosis.verdict) : added),
                utc_now());
     file.history.back().data_sha256 = digest_of(settings.captures);
-    file.model = *diagnosis.model;
+    file.history.back().note = settings.note.value_or("");
+    keep(diagnosis, count_of(settings.captures), file.history.back());
+    if (diagnosis.verdict != DiagnosisVerdict::unknown) {
+      // What was tried and rejected has no place in the model.
+      file.model = *diagnosis.model;
+    }
     replace_file(*settings.output, format_model(file));
   }
   context.out << (context.json ? to_text(describe(diagnosis)) + "\n" : report(diagnosis));
@@ -185,6 +192,7 @@ Command diagnose_command() {
       needed("--model", "M.toml", "the model to diagnose", &s.model),
       option("-o,--output", "M2.toml", "where to write the model with what was found, fitted",
              &s.output),
+      option("--note", "TEXT", "kept in the history of the model that is written", &s.note),
       option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
              &s.report),
       option("--band-limit", "HZ",

@@ -7,6 +7,7 @@
 #include "clients/cli/criticism_text.hpp"
 #include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
@@ -20,6 +21,7 @@ struct Settings {
   std::vector<std::string> captures;
   std::string model;
   std::string output;
+  std::optional<std::string> note;
   std::optional<double> band_limit_Hz;
 };
 
@@ -40,9 +42,8 @@ int run(const Settings& settings, Context& context) {
       fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);
   begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
   file.history.back().data_sha256 = digest_of(settings.captures);
-  file.history.back().note =
-      fmt::format("chi2 {:.4f} over {:.0f} degrees of freedom", studied.misfit.chi2_reduced,
-                  studied.misfit.degrees_of_freedom);
+  file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());
+  file.history.back().note = settings.note.value_or("");
   file.model = studied.model;
   replace_file(settings.output, format_model(file));
   if (context.json) {
@@ -74,6 +75,7 @@ Command fit_command() {
       needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
       needed("--model", "M.toml", "the model to fit", &s.model),
       needed("-o,--output", "M2.toml", "where the fitted model goes", &s.output),
+      option("--note", "TEXT", "kept in the model's history", &s.note),
       option("--band-limit", "HZ",
              "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
   command.run = [settings](Context& context) { return run(*settings, context); };

@@ -8,6 +8,7 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/json_value.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
 #include "drivers/files/bench_file.hpp"
 #include "drivers/files/material_file.hpp"
@@ -165,6 +166,7 @@ int add(const EditSettings& settings, Context& context) {
   }
   use.per_shot = settings.per_shot;
   begin_step(file, "add " + use.id(), utc_now());
+  file.history.back().added = {use.id()};
   file.history.back().note = settings.note.value_or("");
   file.model.effects.push_back(std::move(use));
   const std::string output = settings.output.value_or(settings.model);
@@ -224,13 +226,9 @@ int history(const EditSettings& settings, Context& context) {
   if (context.json) {
     JsonList steps;
     for (const ModelStep& step : file.history) {
-      steps.push_back(JsonObject{
-          {"action", step.action},
-          {"when", step.when},
-          {"note", step.note},
-          {"data_sha256", step.data_sha256},
-          {"parent", step.parent},
-          {"effects_before", describe_effects(parse_model(step.before, "before").model)}});
+      JsonObject own = std::get<JsonObject>(describe(step).content());
+      own.push_back({"effects_before", describe_effects(parse_model(step.before, "before").model)});
+      steps.push_back(std::move(own));
     }
     context.out << to_text(JsonObject{{"history", std::move(steps)},
                                       {"effects", describe_effects(file.model)},
@@ -245,7 +243,8 @@ int history(const EditSettings& settings, Context& context) {
                             ? parse_model(file.history[i + 1].before, "before").model
                             : file.model;
     context.out << fmt::format("{:>3}  {}  {}\n", i + 1, step.when, step.action)
-                << (step.note.empty() ? "" : "      " + step.note + "\n") << changes(before, after);
+                << (step.note.empty() ? "" : "      " + step.note + "\n") << ledger_text(step)
+                << changes(before, after);
   }
   if (file.history.empty()) {
     context.out << "no steps yet\n";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "drivers/files/model_file.hpp"
@@ -185,6 +186,50 @@ TEST(ModelFile, ReadsBackTheSameBitsAndKeepsItsHistory) {
   const ModelFile before = parse_model(again.history.front().before, "before");
   EXPECT_EQ(before.model.find("gauge-position:g2"), nullptr);
   EXPECT_NE(before.model.find("three-element-bar"), nullptr);
+}
+
+TEST(ModelFile, KeepsTheWholeLedgerOfAStep) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  begin_step(file, "diagnose: temperature", "2026-01-02T03:04:05Z");
+  ModelStep& step = file.history.back();
+  step.note = "after the \"new\" cable";
+  step.data_sha256 = "abc";
+  step.verdict = "tied";
+  step.added = {"temperature"};
+  step.seeds = {20260101.0};
+  step.fit = StepFit{8, 1.0123456789012345, 3411.5, 8e-8, 6.7e-6};
+  step.held_out = StepHeldOut{15.25, 1.02, 1.003};
+  step.tests = {{"temperature", 3e-3, 1.7e-5, "1/K", -7133.0, 49268.3, "tied", {"bar-modulus"}},
+                {"gauge-length:g1", INFINITY, 1.0, "m", 0.0, 0.0, "untestable", {}}};
+  const ModelFile again = parse_model(format_model(file), "m.toml");
+  ASSERT_EQ(again.history.size(), 1U);
+  const ModelStep& read = again.history.front();
+  EXPECT_EQ(read.note, step.note);
+  EXPECT_EQ(read.verdict, "tied");
+  EXPECT_EQ(read.added, step.added);
+  EXPECT_EQ(read.seeds, step.seeds);
+  EXPECT_FALSE(read.software.empty());
+  EXPECT_EQ(read.fit->chi2_reduced, 1.0123456789012345);
+  EXPECT_EQ(read.fit->captures, 8);
+  EXPECT_EQ(read.held_out->before, 15.25);
+  // What is not finite says nothing of an effect and is left out.
+  ASSERT_EQ(read.tests.size(), 1U);
+  EXPECT_EQ(read.tests.front().log_p, -7133.0);
+  EXPECT_EQ(read.tests.front().tied_with, (std::vector<std::string>{"bar-modulus"}));
+}
+
+TEST(ModelFile, RefusesAHistoryThatWasEdited) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  begin_step(file, "add temperature", "2026-01-02T03:04:05Z");
+  file.history.back().before += "# a better past\n";
+  try {
+    (void)parse_model(format_model(file), "m.toml");
+    FAIL() << "an edited history was taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("history"), std::string::npos) << error.what();
+  }
 }
 
 TEST(ModelFile, ReadsBackThePapersModelOfEveryBench) {

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
+#include "clients/cli/waterfall_text.hpp"
+#include "drivers/files/model_file.hpp"
+#include "drivers/files/new_file.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+struct Settings {
+  std::string model;
+  std::vector<std::string> captures;
+  std::optional<std::string> report;
+  std::optional<std::string> svg;
+  std::optional<double> band_limit_Hz;
+};
+
+/// Effects in the order in which the ledger has them come in.
+std::vector<std::string> order_of(const ModelFile& file) {
+  std::vector<std::string> order;
+  for (const ModelStep& step : file.history) {
+    order.insert(order.end(), step.added.begin(), step.added.end());
+  }
+  return order;
+}
+
+std::vector<std::string> notes_of(const Settings& settings, const ModelFile& file,
+                                  const Waterfall& fall) {
+  std::vector<std::string> notes;
+  const std::string digest = digest_of(settings.captures);
+  const bool seen = std::any_of(file.history.begin(), file.history.end(),
+                                [&](const ModelStep& step) { return step.data_sha256 == digest; });
+  notes.emplace_back(seen
+                         ? "the captures that the model's ledger names; every model of the lineage "
+                           "is fitted to them again, under one measure of the noise"
+                         : "not the captures that the model's ledger names: every model of the "
+                           "lineage is fitted to these");
+  if (fall.shots < 2) {
+    notes.emplace_back("one shot: nothing is held out; repeat the shot to certify");
+  }
+  if (fall.steps.size() == 1) {
+    notes.emplace_back("the model holds no effect that its first model did not hold");
+  }
+  return notes;
+}
+
+int run(const Settings& settings, Context& context) {
+  const ModelFile file = read_model(settings.model);
+  const Model first =
+      file.history.empty()
+          ? file.model
+          : parse_model(file.history.front().before, settings.model + ": history").model;
+  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
+  const Waterfall fall = waterfall(study, lineage(first, file.model, order_of(file)));
+  const std::vector<std::string> notes = notes_of(settings, file, fall);
+  const std::string title = "How the misfit of " + settings.model + " fell";
+  if (settings.report) {
+    replace_file(*settings.report, render_html(waterfall_page(fall, title, notes)));
+  }
+  if (settings.svg) {
+    replace_file(*settings.svg, cascade_svg(cascade_of(fall, title)));
+  }
+  if (context.json) {
+    JsonObject object = std::get<JsonObject>(describe(fall).content());
+    object.insert(object.begin(), {"model", settings.model});
+    object.push_back({"notes", notes});
+    context.out << to_text(std::move(object)) << "\n";
+    return kDone;
+  }
+  context.out << settings.model << ": " << notes.front() << "\n"
+              << waterfall_text(fall, context.terminal);
+  for (std::size_t i = 1; i < notes.size(); ++i) {
+    context.out << "  note: " << notes[i] << "\n";
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command model_waterfall_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "model waterfall";
+  command.purpose =
+      "how the misfit fell, effect by effect, from a model's first form to the noise\n"
+      "Every model of the lineage is fitted to the captures; drops are those on shots that the "
+      "fits "
+      "did\nnot see. Then how the moduli moved and, beside a specimen, its stress-strain curve.";
+  command.examples =
+      "  kolsky model waterfall m2.toml shots/*.h5\n"
+      "  kolsky model waterfall m2.toml shots --report fall.html --svg fall.svg\n";
+  command.arguments = {
+      needed("MODEL", "", "the model file, with its lineage", &s.model),
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      option("--report", "R.html", "a page with the picture to write: one file, opens anywhere",
+             &s.report),
+      option("--svg", "FILE", "the picture alone", &s.svg),
+      option("--band-limit", "HZ",
+             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli
