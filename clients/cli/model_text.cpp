@@ -6,15 +6,12 @@
 #include <ctime>
 
 #include "drivers/files/capture.hpp"
-#include "drivers/files/file_bytes.hpp"
-#include "drivers/files/sha256.hpp"
+#include "drivers/files/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 
 namespace {
-
-constexpr std::size_t kMostBytes = std::size_t{1} << 32U;
 
 std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
   std::vector<std::filesystem::path> files;
@@ -50,13 +47,7 @@ std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
 }
 
 std::string digest_of(const std::vector<std::string>& captures) {
-  Sha256 all;
-  for (const auto& file : files_of(captures)) {
-    const std::string bytes = read_file_bytes(file, kMostBytes);
-    const std::string own = sha256_hex(std::as_bytes(std::span(bytes)));
-    all.add(std::as_bytes(std::span(own)));
-  }
-  return all.hex();
+  return digest_of_files(files_of(captures));
 }
 
 double band_limit_of(std::optional<double> asked_Hz) {

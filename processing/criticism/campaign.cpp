@@ -102,6 +102,29 @@ void set_temperatures(const std::vector<Shot>& shots, Campaign& campaign) {
   }
 }
 
+/// A ball's speeds from the capture's facts. The force follows the speed: without it nothing can be
+/// foretold.
+void set_speeds(const Shot& shot, ShotFacts& facts) {
+  const char* const incident = "incident_speed_m_per_s";
+  facts.incident_speed_m_per_s = logged(shot, incident);
+  if (!facts.incident_speed_m_per_s) {
+    const bool there = shot.meta.count(incident) > 0;
+    throw InputError("capture " + shot.id + ": meta." + incident,
+                     there ? "is not a number: \"" + shot.meta.at(incident) + "\"" : "is missing",
+                     "import it with --meta incident_speed_m_per_s=V");
+  }
+  constexpr double kFastest_m_per_s = 300.0;
+  if (!(*facts.incident_speed_m_per_s > 0.0) || *facts.incident_speed_m_per_s > kFastest_m_per_s) {
+    throw InputError("capture " + shot.id + ": meta." + incident,
+                     "is " + shot.meta.at(incident) + ", outside 0 to 300 m/s",
+                     "give the ball's speed in m/s, towards the bar positive");
+  }
+  facts.incident_speed_sd_m_per_s =
+      std::abs(logged(shot, "incident_speed_m_per_s_sd").value_or(0.0));
+  facts.rebound_speed_m_per_s = logged(shot, "rebound_speed_m_per_s");
+  facts.rebound_speed_sd_m_per_s = std::abs(logged(shot, "rebound_speed_m_per_s_sd").value_or(0.0));
+}
+
 CampaignShot read_shot(const Shot& shot, std::size_t reference) {
   const Bench& bench = shot.bench;
   CampaignShot out;
@@ -126,7 +149,8 @@ CampaignShot read_shot(const Shot& shot, std::size_t reference) {
 }
 
 void require_gauges(const Bench& bench) {
-  if (bench.gauges.size() < 2) {
+  // The ball's force is foretold; a source that is free is known by another gauge only.
+  if (bench.kind != BenchKind::impact && bench.gauges.size() < 2) {
     throw InputError("gauges", "are too few: a model is judged by what one gauge says of another",
                      "record the wave with at least two gauges");
   }
@@ -170,10 +194,6 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
   }
   Campaign campaign;
   campaign.bench = shots.front().bench;
-  if (campaign.bench.kind == BenchKind::impact) {
-    throw InputError("captures", "are of an impact, which is not compared with its model yet",
-                     "foretell it with `kolsky impact` and hold the force beside the record");
-  }
   require_gauges(campaign.bench);
   campaign.period_s = shots.front().rate.period_s();
   campaign.reference = reference_of(campaign.bench);
@@ -186,6 +206,9 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
       throw InputError("capture " + shot.id, reason, "repeat the shot, or leave this capture out");
     }
     campaign.shots.push_back(read_shot(shot, campaign.reference));
+    if (campaign.bench.kind == BenchKind::impact) {
+      set_speeds(shot, campaign.shots.back().facts);
+    }
     campaign.shots.back().facts.shot = campaign.shots.size() - 1;
   }
   set_temperatures(shots, campaign);

@@ -28,13 +28,6 @@ constexpr double kEdge = 8.0;
 constexpr double kWrapDamping = 1e-8;
 constexpr std::size_t kFewestJudged = 64;
 
-/// Undoes reading = e (1 + b e + c e^2), for c to first order.
-double strain_of(double reading, const RecordScene& record) {
-  const double root = 1.0 + 4.0 * record.bridge_b * reading;
-  const double e = 2.0 * reading / (1.0 + std::sqrt(std::max(root, 0.0)));
-  return e - record.bridge_c * e * e * e;
-}
-
 std::size_t small_factors(std::size_t n) {
   for (;; ++n) {
     std::size_t left = n;
@@ -317,12 +310,17 @@ void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
         work.shaped[n] -= addition[n] - before;
       }
     }
-    if (record.bridge_b != 0.0 || record.bridge_c != 0.0) {
-      // What the bridge added follows from the reading without its noise: bent straight with the
-      // signal, noise would shrink under every b > 0, and any record would ask for some.
-      for (std::size_t n = 0; n < work.shaped.size(); ++n) {
-        const double read = work.shaped[n] - own_noise_[of_shot][j][n];
-        work.shaped[n] -= read - strain_of(read, record);
+    if (record.bends(j)) {
+      // What was bent follows from the reading without its noise: bent straight with the signal,
+      // noise would shrink under every b > 0, and any record would ask for some.
+      std::vector<double> read = work.shaped;
+      for (std::size_t n = 0; n < read.size(); ++n) {
+        read[n] -= own_noise_[of_shot][j][n];
+      }
+      std::vector<double> straight = read;
+      record.straighten(j, straight);
+      for (std::size_t n = 0; n < read.size(); ++n) {
+        work.shaped[n] -= read[n] - straight[n];
       }
     }
     transform_record(work, work.shaped, work.records[j]);

@@ -6,6 +6,7 @@
 
 #include "processing/criticism/campaign.hpp"
 #include "processing/criticism/composition.hpp"
+#include "processing/criticism/shot_residuals.hpp"
 #include "processing/models/transfers.hpp"
 #include "processing/waves/transform.hpp"
 
@@ -34,12 +35,12 @@ struct JudgedBand {
 /// the covariance follows the parameters, or what is noise in y_ref would pull at them.
 ///
 /// Work space is per worker; evaluations in different workers may run at once.
-class WhiteResiduals {
+class WhiteResiduals : public ShotResiduals {
  public:
   /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where surface gauges
   /// go blind
   WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers);
-  ~WhiteResiduals();
+  ~WhiteResiduals() override;
 
   /// Takes from this composition how residuals are shared out among the gauges, and what they say
   /// of each gauge's noise.
@@ -54,14 +55,15 @@ class WhiteResiduals {
 
   /// All shots' residuals, shot by shot, of unit variance under the true model.
   [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
-                                         const std::vector<double>& theta, std::size_t worker = 0);
+                                         const std::vector<double>& theta,
+                                         std::size_t worker = 0) override;
   /// Those of one shot.
   [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t shot,
-                                              std::size_t worker);
+                                              std::size_t worker) override;
 
   [[nodiscard]] std::size_t size() const { return per_shot() * campaign_.shots.size(); }
-  [[nodiscard]] std::size_t per_shot() const;
+  [[nodiscard]] std::size_t per_shot() const override;
   [[nodiscard]] const JudgedBand& band() const { return band_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
 

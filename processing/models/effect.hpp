@@ -30,6 +30,7 @@ struct EffectParameter {
   /// whole.
   bool is_switch = false;
   double difference = 2e-3;  ///< step of numeric derivatives, in typical sizes
+  bool chosen = false;       ///< one of its starts and nothing between (a neighbour, a harmonic)
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };

@@ -182,7 +182,7 @@ std::vector<BallPrediction> foretell_impacts(
   }
   const std::size_t each = draws.size() + 2;
   std::atomic<std::size_t> done = 0;
-  workers.run(each * speeds.size(), [&](std::size_t task, std::size_t) {
+  workers.run(each * speeds.size(), [&](std::size_t task, std::size_t /*worker*/) {
     const ForetoldSpeed& asked = speeds[task / each];
     Runs& speed = runs[task / each];
     const std::size_t which = task % each;

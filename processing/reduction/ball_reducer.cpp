@@ -27,6 +27,11 @@ constexpr double kFootClearance_s = 10e-6;
 constexpr double kBaseline_s = 1e-3;
 /// Beyond it gauges show how the bar rings, not what the ball does (docs/impact.md).
 constexpr double kHighestLowPass_Hz = 50e3;
+/// The low-pass looks ahead: what it looks for before the record's start wraps round to the end of
+/// the transform, where undamping raises it. Elastic waves need little damping, and room keeps it
+/// apart.
+constexpr double kWrapDamping = 1e-2;
+constexpr double kPadding_s = 0.5e-3;
 constexpr double kLeastThreshold = 0.01;
 constexpr double kThresholdOverNoise = 4.0;
 constexpr double kAfterContact_s = 50e-6;
@@ -120,7 +125,8 @@ struct Plans {
 
   explicit Plans(const PlanKey& k)
       : key(k),
-        transform(k.samples + k.delay, k.rate.period_s()),
+        transform(k.samples + k.delay + static_cast<std::size_t>(kPadding_s * k.rate.Hz()),
+                  k.rate.period_s(), kWrapDamping),
         band(transform, k.longest_pulse),
         path(transform.bins()),
         spectrum(transform.bins()) {

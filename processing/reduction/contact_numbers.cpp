@@ -40,7 +40,8 @@ ContactNumbers contact_numbers(std::span<const double> force_N, double interval_
       static_cast<std::size_t>(std::ceil(4.0 * BandLimit::smear_s(low_pass_Hz) / interval_s)) + 8;
   std::vector<double> padded(force_N.size() + 2 * margin, 0.0);
   std::copy(force_N.begin(), force_N.end(), padded.begin() + static_cast<std::ptrdiff_t>(margin));
-  DampedTransform transform(padded.size(), interval_s);
+  // Undamped: the low-pass looks ahead, and what wraps round must not grow.
+  DampedTransform transform(padded.size(), interval_s, 1.0);
   BandLimit band(transform, padded.size());
   std::vector<Complex> spectrum(transform.bins());
   transform.forward(padded, spectrum);

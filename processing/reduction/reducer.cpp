@@ -202,7 +202,8 @@ Reduction not_reducible(std::string reason) {
 void require_reducible_bench(const Shot& shot) {
   if (shot.bench.kind != BenchKind::shpb || !shot.bench.output || !shot.bench.specimen) {
     throw InputError("kind", "is not \"shpb\", so there is no specimen to reduce",
-                     "use a bench file of kind \"shpb\" with bars.output and specimen");
+                     "use a bench file of kind \"shpb\" with bars.output and specimen, or "
+                     "\"impact\" with a ball");
   }
   if (shot.channels.size() != shot.bench.gauges.size()) {
     throw InputError("gauges",

@@ -47,6 +47,13 @@ void say(const std::string& text) {
   std::cerr << "kolsky chain: " << text << std::endl;
 }
 
+// For who watches; a log gets only what takes long.
+void say_to_a_person(const std::string& text) {
+  if (terminal_of(2).interactive) {
+    say(text);
+  }
+}
+
 std::vector<Shot> read_shots(const std::vector<std::string>& places) {
   std::vector<Shot> shots;
   for (const std::string& place : places) {
@@ -117,7 +124,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   }
   const std::vector<Shot> shots = read_shots(settings.bar_shots);
   require_kind(shots, BenchKind::bar, "--bar-shots", "bar");
-  say(fmt::format("identifying the bar from {} shots", shots.size()));
+  say_to_a_person(fmt::format("identifying the bar from {} shots", shots.size()));
   run.bar = identify_bar(shots, {});
   const BarFit& fit = run.bar->three_element;
   Material material;
@@ -139,7 +146,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
 
 SpecimenFit fit_of(const std::vector<Shot>& shots, const Settings& settings, const Bars& bars,
                    const char* part) {
-  say(fmt::format("identifying the {} from {} shots", part, shots.size()));
+  say_to_a_person(fmt::format("identifying the {} from {} shots", part, shots.size()));
   const bool own = settings.bar_shots.empty() && !settings.bar_model;
   const BarPrior prior =
       own && shots.front().bar_model ? BarPrior(*shots.front().bar_model) : bars.prior;
@@ -148,21 +155,26 @@ SpecimenFit fit_of(const std::vector<Shot>& shots, const Settings& settings, con
   return fit_specimen(shots, prior, options);
 }
 
-MaterialPosterior posterior_of(const SpecimenFit& fit, const std::vector<Shot>& shots,
-                               const char* option) {
+/// What the specimens' bench says of the material before anything is identified.
+Material filed_material(const std::vector<Shot>& shots, const char* option) {
   const Specimen& specimen = *shots.front().bench.specimen;
   if (!specimen.density_kg_m3 || !specimen.poisson_ratio) {
     throw InputError(shots.front().id + ": specimen",
                      "lacks the density or Poisson's ratio that a ball of it needs",
                      std::string("file both in the bench of ") + option);
   }
-  MaterialPosterior posterior;
-  posterior.material = {*specimen.density_kg_m3,
-                        *specimen.poisson_ratio,
-                        {fit.parameters[0].value, fit.parameters[0].sd},
-                        {fit.parameters[1].value, fit.parameters[1].sd},
-                        {fit.parameters[2].value, fit.parameters[2].sd},
-                        option};
+  Material material;
+  material.density_kg_m3 = *specimen.density_kg_m3;
+  material.poisson_ratio = *specimen.poisson_ratio;
+  material.source = option;
+  return material;
+}
+
+MaterialPosterior posterior_of(const SpecimenFit& fit, Material material) {
+  MaterialPosterior posterior{std::move(material), {}};
+  posterior.material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
+  posterior.material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
+  posterior.material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       posterior.covariance[i][j] = fit.covariance[i][j];
@@ -320,7 +332,7 @@ class Progress {
   void show(std::size_t done, std::size_t of) {
     const std::scoped_lock hold(lock_);
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_ > std::chrono::seconds(2) || done == of) {
+    if (now - last_ > every_) {
       last_ = now;
       say(fmt::format("{} of {} impacts computed", done, of));
     }
@@ -328,6 +340,7 @@ class Progress {
 
  private:
   std::mutex lock_;
+  std::chrono::seconds every_{terminal_of(2).interactive ? 1 : 20};
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
@@ -355,15 +368,18 @@ int run_command(const Settings& settings, Context& context) {
   require_kind(cover, BenchKind::shpb, "--cover-shots", "shpb");
   require_kind(balls, BenchKind::impact, "--ball-shots", "impact");
   const Bench bench = ball_bench(settings, balls);
+  const Material core_filed = filed_material(core, "--core-shots");
+  const Material cover_filed = filed_material(cover, "--cover-shots");
+  static_cast<void>(impact::check_mass(*bench.ball, core_filed, cover_filed));
   const std::vector<ForetoldSpeed> speeds = measure(settings, balls, run);
   const Bars bars = bars_of(settings, run);
   run.core = fit_of(core, settings, bars, "core");
   run.cover = fit_of(cover, settings, bars, "cover");
   Progress progress;
-  const std::vector<BallPrediction> predictions = foretell_impacts(
-      bench, posterior_of(run.core, core, "--core-shots"),
-      posterior_of(run.cover, cover, "--cover-shots"), speeds, run.options, all_cores(),
-      [&progress](std::size_t done, std::size_t of) { progress.show(done, of); });
+  const std::vector<BallPrediction> predictions =
+      foretell_impacts(bench, posterior_of(run.core, core_filed),
+                       posterior_of(run.cover, cover_filed), speeds, run.options, all_cores(),
+                       [&progress](std::size_t done, std::size_t of) { progress.show(done, of); });
   for (std::size_t i = 0; i < predictions.size(); ++i) {
     run.speeds[i].foretold = predictions[i];
     compare(run.speeds[i], run.impacts);

@@ -15,6 +15,7 @@ Command model_remove_command();
 Command model_show_command();
 Command model_history_command();
 Command model_revert_command();
+Command model_check_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
@@ -51,6 +52,7 @@ std::vector<Command> all_commands() {
       model_show_command(),
       model_history_command(),
       model_revert_command(),
+      model_check_command(),
       fit_command(),
       compare_command(),
       diagnose_command(),

@@ -12,7 +12,7 @@ class EndReflection final : public Effect {
             .stage = Stage::boundary,
             .definition = "the far end sends waves back, stress x (-1 + r)",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar},
+            .kinds = {BenchKind::bar, BenchKind::impact},
             .parameters = {{"present", "-", 0.0, 0.0, 1.0, 0.02, {}, true},
                            {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0}}},
             .strength = 1,

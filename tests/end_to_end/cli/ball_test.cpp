@@ -66,6 +66,24 @@ double sd(const json& number) {
   return number.at("sd").get<double>();
 }
 
+/// Rms over the first 400 us of measured less computed force, of the peak.
+double history_error(const std::vector<double>& times, const std::vector<double>& forces,
+                     double shift_s, const BallHistory& truth) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < times.size() && times[i] < 400e-6; ++i) {
+    const double place = (times[i] + shift_s - truth.time_s.front()) * 1e6;
+    if (place >= 0.0) {
+      const auto n = static_cast<std::size_t>(place);
+      const double share = place - static_cast<double>(n);
+      const double force_N = (1.0 - share) * truth.force_N[n] + share * truth.force_N[n + 1];
+      squares += std::pow(forces[i] - force_N, 2);
+      ++count;
+    }
+  }
+  return std::sqrt(squares / static_cast<double>(count)) / truth.peak_force_N;
+}
+
 class BallAtSpeed : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BallAtSpeed, IsMeasuredLiveAsTheFiniteElementsHaveIt) {
@@ -90,21 +108,19 @@ TEST_P(BallAtSpeed, IsMeasuredLiveAsTheFiniteElementsHaveIt) {
   EXPECT_EQ(got["speed_source"], "photo-sensors");
   EXPECT_EQ(got["time_s"].size(), got["force_N"].size());
 
-  // The whole history, moved to where the reduction put first touch.
-  const double peak_at = got["peak_time_s"];
-  const auto peak = std::max_element(truth.force_N.begin(), truth.force_N.end());
-  double squares = 0.0;
-  std::size_t count = 0;
-  const auto& times = got["time_s"];
-  for (std::size_t i = 0; i < times.size() && times[i].get<double>() < 400e-6; ++i) {
-    // First touch is found some microseconds late, where the force has begun to rise.
-    const double place = times[i].get<double>() + 4e-6 - truth.time_s.front();
-    const auto n = static_cast<std::size_t>(std::max(0.0, place * 1e6));
-    squares += std::pow(got["force_N"][i].get<double>() - truth.force_N[n], 2);
-    ++count;
+  // The whole history, at whatever first touch fits it best: within some microseconds of the
+  // truth's.
+  const std::vector<double> times = got["time_s"];
+  const std::vector<double> forces = got["force_N"];
+  double best = 1.0;
+  double best_shift_s = 0.0;
+  for (double shift_s = -8e-6; shift_s <= 8e-6; shift_s += 0.25e-6) {
+    const double error = history_error(times, forces, shift_s, truth);
+    best_shift_s = error < best ? shift_s : best_shift_s;
+    best = std::min(best, error);
   }
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.015 * *peak)
-      << "peak at " << peak_at;
+  EXPECT_LT(best, 5e-3);
+  EXPECT_LT(std::abs(best_shift_s), 7e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, BallAtSpeed, ::testing::Values("impact", "impact-51"));
@@ -140,6 +156,12 @@ TEST(BallLive, GetIsReduceToTheByteAndEveryViewShowsIt) {
   std::ifstream page_file(svg);
   EXPECT_NE(std::string(std::istreambuf_iterator<char>(page_file), {}).find("contact force"),
             std::string::npos);
+  for (const std::string format : {"hdf5", "mat", "csv"}) {
+    const std::string file = lab.folder() / ("exported." + format);
+    const Answer exported = kolsky({"export", capture, "--format", format, "-o", file});
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    EXPECT_EQ(exported.out.find("gauges only"), std::string::npos) << exported.out;
+  }
   EXPECT_TRUE(
       refused(kolsky({"reduce", capture, "--uncertainty"}), {"--uncertainty", "specimens"}));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--stress", "one-wave"}), {"--stress"}));
@@ -231,6 +253,43 @@ TEST_F(BallTables, RepeatsAreGroupedBySpeed) {
   EXPECT_EQ(slow["restitution"]["by_speed"]["count"], 0);
   EXPECT_EQ(slow["restitution"]["by_impulse"]["count"], 2);
   EXPECT_EQ(kolsky({"reduce", folder_ / "a.h5", folder_ / "c.h5"}).code, 0);
+}
+
+// The ball's surface is at the gap g from the face; it blocks a beam at d from g = d - 42.7 mm to g
+// = d.
+TEST_F(BallTables, PhotoSensorsAreColumnsByTheirNames) {
+  std::ifstream file(folder_ / "bench.toml");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  folder_.write("beams.toml", text +
+                                  "[[photo_sensors]]\nname = \"p1\"\ndistance_m = 0.09\n"
+                                  "[[photo_sensors]]\nname = \"p2\"\ndistance_m = 0.06\n");
+  constexpr double kIn = 31.0;
+  constexpr double kOut = 25.0;
+  constexpr double kContact_s = 450e-6;
+  std::ofstream table(folder_ / "beams.csv");
+  table.precision(9);
+  table << "time_s,p2/mV,g1,p1/mV\n";
+  for (int n = 0; n < 8500; ++n) {
+    const double time_s = 1e-6 * n - 3.6e-3;
+    const double gap_m = time_s < 0.0 ? -kIn * time_s : std::max(0.0, kOut * (time_s - kContact_s));
+    const auto beam_mV = [&](double d) { return gap_m > d - 0.0427 && gap_m < d ? 120.0 : 4800.0; };
+    const double phase = time_s / kContact_s;
+    const double push_N =
+        phase > 0.0 && phase < 1.0 ? 9300.0 * std::pow(std::sin(M_PI * phase), 1.5) : 0.0;
+    table << 1e-6 * n << ',' << beam_mV(0.06) << ',' << push_N / (113e9 * 5.7255526e-4) << ','
+          << beam_mV(0.09) << '\n';
+  }
+  table.close();
+  const std::string capture = folder_ / "beams.h5";
+  const Answer imported = kolsky(
+      {"import", "csv", folder_ / "beams.csv", "--bench", folder_ / "beams.toml", "-o", capture});
+  ASSERT_EQ(imported.code, 0) << imported.err;
+  const json told = json_of(kolsky({"reduce", capture, "--json"}));
+  EXPECT_EQ(told["speed_source"], "photo-sensors");
+  EXPECT_NEAR(value(told["incident_speed_m_per_s"]), kIn, 0.05);
+  EXPECT_NEAR(value(told["rebound_speed_m_per_s"]), kOut, 0.05);
+  EXPECT_NEAR(value(told["restitution"]["by_speed"]), kOut / kIn,
+              4.0 * sd(told["restitution"]["by_speed"]));
 }
 
 TEST_F(BallTables, BenchCanBeCorrectedAndSaved) {
