@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <mutex>
-#include <thread>
 
 #include "clients/cli/impact_run.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/figure/impact_figure.hpp"
 #include "clients/report/field_svg.hpp"
 #include "clients/report/svg.hpp"
@@ -41,42 +39,20 @@ struct Pair {
   ImpactHistory fine;
 };
 
-// Every job is its own; whichever thread is free takes the next.
 void run_all(std::vector<Pair>& pairs) {
-  std::atomic<std::size_t> next{0};
   std::mutex guard;
-  std::exception_ptr failure;
   std::size_t done = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < pairs.size(); i = next++) {
-      try {
-        pairs[i].coarse = impact::simulate(pairs[i].model);
-        ImpactModel finer = pairs[i].model;
-        finer.elements = kFineElements;
-        finer.field_at_turn = false;
-        pairs[i].fine = impact::simulate(finer);
-      } catch (...) {
-        const std::lock_guard lock(guard);
-        failure = std::current_exception();
-        return;
-      }
-      const std::lock_guard lock(guard);
-      if (++done % kTellEvery == 0) {
-        std::cerr << "kolsky impact: " << done << " of " << pairs.size() << " done" << std::endl;
-      }
+  all_cores().run(pairs.size(), [&](std::size_t i, std::size_t) {
+    pairs[i].coarse = impact::simulate(pairs[i].model);
+    ImpactModel finer = pairs[i].model;
+    finer.elements = kFineElements;
+    finer.field_at_turn = false;
+    pairs[i].fine = impact::simulate(finer);
+    const std::lock_guard lock(guard);
+    if (++done % kTellEvery == 0) {
+      std::cerr << "kolsky impact: " << done << " of " << pairs.size() << " done" << std::endl;
     }
-  };
-  std::vector<std::thread> threads;
-  const unsigned count = std::max(1U, std::thread::hardware_concurrency());
-  for (unsigned i = 0; i < count; ++i) {
-    threads.emplace_back(work);
-  }
-  for (std::thread& thread : threads) {
-    thread.join();
-  }
-  if (failure) {
-    std::rethrow_exception(failure);
-  }
+  });
 }
 
 class Paper {
