@@ -9,8 +9,8 @@ namespace kolsky {
 
 /// One line of a bench file to be written, replaced or dropped.
 struct BenchEdit {
-  std::string table;                ///< "bars.input" or "gauges"
-  std::size_t index = 0;            ///< which of several tables of that name
+  std::string table;      ///< "bars.input" or "gauges"
+  std::size_t index = 0;  ///< which of several tables of that name
   std::string key;
   std::optional<std::string> text;  ///< what stands right of "="; none: the line goes
 };
