@@ -19,8 +19,12 @@ std::size_t index_of(const Bench& bench, const std::string& gauge) {
   return static_cast<std::size_t>(found - bench.gauges.begin());
 }
 
-std::string value_text(double value) { return fmt::format("{:.10g}", value); }
-std::string sd_text(double sd) { return fmt::format("{:.3g}", sd); }
+std::string value_text(double value) {
+  return fmt::format("{:.10g}", value);
+}
+std::string sd_text(double sd) {
+  return fmt::format("{:.3g}", sd);
+}
 
 BenchKey key_of(std::string table, std::size_t index, const std::string& shown,
                 const std::string& key, const Measured& value) {
@@ -64,9 +68,9 @@ void exchange(const Bench& bench, const std::pair<std::string, std::string>& nam
     const Gauge& other = bench.gauges[from];
     edits.push_back({"gauges", to, "bar", "\"" + other.bar + "\""});
     edits.push_back({"gauges", to, "position_m", value_text(other.position_m.value)});
-    edits.push_back({"gauges", to, "position_m_sd",
-                     other.position_m.sd > 0.0 ? std::optional(sd_text(other.position_m.sd))
-                                               : std::nullopt});
+    edits.push_back(
+        {"gauges", to, "position_m_sd",
+         other.position_m.sd > 0.0 ? std::optional(sd_text(other.position_m.sd)) : std::nullopt});
   }
 }
 
@@ -78,8 +82,7 @@ bool worth_filing(const CalibratedNumber& number) {
 
 }  // namespace
 
-std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay,
-                                  const Bench& bench) {
+std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay, const Bench& bench) {
   using Of = CalibratedNumber::Of;
   const std::string bar = lay == BarsLay::output_alone ? "bars.output" : "bars.input";
   switch (number.of) {

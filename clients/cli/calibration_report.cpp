@@ -149,9 +149,9 @@ std::string part_text(const PartResult& part, const Bench& bench) {
       part.shots, part.two_passes ? ", two passes at one gauge" : "",
       part.exact_waves ? "exact" : "elementary", part.far_end_seen ? ", free far end" : "",
       part.chi2_reduced, part.chi2_reduced_as_filed);
-  text += fmt::format("  wave speed {:.2f} ± {:.2g} m/s at {:.0f} kHz\n",
-                      part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd,
-                      part.wave_speed_at_Hz / 1e3);
+  text +=
+      fmt::format("  wave speed {:.2f} ± {:.2g} m/s at {:.0f} kHz\n", part.wave_speed_m_per_s.value,
+                  part.wave_speed_m_per_s.sd, part.wave_speed_at_Hz / 1e3);
   text += "  number                       filed                   by the shots        deviations\n";
   for (const CalibratedNumber& number : part.numbers) {
     text += row(number, part.lay, bench);

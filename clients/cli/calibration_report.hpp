@@ -12,8 +12,8 @@ namespace kolsky::cli {
 
 /// A key of the bench file and what belongs there.
 struct BenchKey {
-  std::string name;   ///< "gauges.g3.position_m"
-  BenchEdit edit;     ///< of its value
+  std::string name;  ///< "gauges.g3.position_m"
+  BenchEdit edit;    ///< of its value
   Measured value;
 };
 

@@ -38,7 +38,8 @@ std::optional<Arrival> arrival_of(const ChannelRecord& channel, double rate_Hz) 
   if (!rise) {
     return std::nullopt;
   }
-  const double baseline = quiet_before(readings, std::max<std::size_t>(1, rise->index / 2)).baseline;
+  const double baseline =
+      quiet_before(readings, std::max<std::size_t>(1, rise->index / 2)).baseline;
   Arrival arrival;
   const std::size_t end = std::min(readings.size(), rise->index + reach);
   for (std::size_t n = rise->index; n < end; ++n) {
@@ -214,8 +215,9 @@ void split_passes(Shot& shot, const BarPrior& bars) {
   for (std::size_t n = 0; n < end; ++n) {
     // Noise of before the pulse, to and fro, stands where the first pass was.
     const std::size_t phase = n % (2 * quiet);
-    returned.codes[n] = n < back ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
-                                 : static_cast<std::int32_t>(std::lround(2.0 * baseline)) - codes[n];
+    returned.codes[n] = n < back
+                            ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
+                            : static_cast<std::int32_t>(std::lround(2.0 * baseline)) - codes[n];
   }
   Gauge second = gauge;
   second.name += " returned";

@@ -54,6 +54,8 @@ std::string name_of(Standing standing) {
       return "agrees";
     case Standing::differs:
       return "differs";
+    case Standing::doubtful:
+      return "doubtful";
     case Standing::tied:
       return "tied";
     case Standing::unseen:
@@ -88,6 +90,11 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
     for (const CalibratedNumber& number : fitted.numbers) {
       differs = differs || number.standing == Standing::differs;
       undecided = undecided || number.standing == Standing::tied;
+      if (number.standing == Standing::doubtful) {
+        result.warnings.push_back(name_of(part.lay) + ": " + number.id + " is " +
+                                  std::to_string(number.deviations).substr(0, 4) +
+                                  " deviations off, which among so many numbers may be chance");
+      }
     }
     for (const auto& [one, other] : fitted.swapped) {
       differs = true;
@@ -104,10 +111,9 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
       const Measured& gain = fitted.areas.momentum->gain;
       if (std::abs(fitted.areas.momentum_left) > kDeviations) {
         undecided = true;
-        result.reasons.push_back("the striker's momentum gives gauge " +
-                                 fitted.areas.momentum->gauge + " the gain " +
-                                 std::to_string(gain.value) +
-                                 ": all gains together, or the striker's numbers, are off");
+        result.reasons.push_back(
+            "the striker's momentum gives gauge " + fitted.areas.momentum->gauge + " the gain " +
+            std::to_string(gain.value) + ": all gains together, or the striker's numbers, are off");
       }
     }
     compare_areas(fitted, result.warnings);

@@ -15,10 +15,11 @@ namespace kolsky {
 /// How a filed number stands beside the shots.
 enum class Standing {
   agrees,
-  differs,  ///< by more than three deviations, and nothing explains the records as simply
-  tied,     ///< it or one of `tied_with` differs: the shots cannot tell which
-  unseen,   ///< the shots say less of it than is filed
-  unfiled,  ///< nothing is filed of it: found by the shots
+  differs,   ///< and nothing explains the records as simply
+  doubtful,  ///< by more than three deviations, as chance does to one of so many numbers
+  tied,      ///< it or one of `tied_with` differs: the shots cannot tell which
+  unseen,    ///< the shots say less of it than is filed
+  unfiled,   ///< nothing is filed of it: found by the shots
 };
 
 [[nodiscard]] std::string name_of(Standing standing);
@@ -27,11 +28,11 @@ enum class Standing {
 struct CalibratedNumber {
   enum class Of { gain, position, delay, bar_length, elastic_modulus, E1, E2, eta2 };
   Of of = Of::gain;
-  std::string id;      ///< as the effect that would name it: "gauge-position:g3"
-  std::string gauge;   ///< of gain, position and delay
-  Measured filed;      ///< gain: 1, delay: 0, else the number itself; sd 0 where filed as exact
-  Measured measured;   ///< by the shots and all other filed numbers, without its own
-  Measured combined;   ///< by shots and its own filed number; where it differs, `measured`
+  std::string id;     ///< as the effect that would name it: "gauge-position:g3"
+  std::string gauge;  ///< of gain, position and delay
+  Measured filed;     ///< gain: 1, delay: 0, else the number itself; sd 0 where filed as exact
+  Measured measured;  ///< by the shots and all other filed numbers, without its own
+  Measured combined;  ///< by shots and its own filed number; where it differs, `measured`
   double deviations = 0.0;  ///< measured from filed
   Standing standing = Standing::agrees;
   std::vector<std::string> tied_with;
@@ -60,7 +61,7 @@ enum class Certificate { pass, fail, undecided };
 struct Calibration {
   Certificate certificate = Certificate::pass;
   std::vector<PartResult> parts;
-  std::vector<std::string> reasons;   ///< what keeps the certificate from being a pass
+  std::vector<std::string> reasons;  ///< what keeps the certificate from being a pass
   std::vector<std::string> warnings;
 };
 
@@ -74,7 +75,8 @@ struct CalibrationOptions {
 };
 
 /// Holds a bench file against shots that were fired to check it. Each shot's source is free at all
-/// times. Filed numbers move within their deviations; where that does not do, the one whose release
+/// times. Filed numbers move within their deviations; where one is off by more than three, reckoned
+/// for the whole bench (with n numbers, as rare as three are for one), the one whose release
 /// explains most is named and set free, and so on until what is filed agrees with the rest.
 /// @throws InputError as arrange and read_campaign, and where the bench lacks a trusted gauge
 [[nodiscard]] Calibration calibrate(const std::vector<Shot>& shots,

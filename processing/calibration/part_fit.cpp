@@ -18,7 +18,7 @@ namespace kolsky {
 
 namespace {
 
-/// What differs by more of its deviations is named.
+/// What differs by more of its deviations is named, for one number; see `named_from`.
 constexpr double kNamed = 3.0;
 /// Explanations whose objectives lie nearer to each other are not told apart.
 constexpr double kTie = 9.0;
@@ -29,6 +29,21 @@ constexpr std::size_t kMostRefits = 8;
 /// Shots that are enough to tell waves and far end.
 constexpr std::size_t kShotsToChoose = 2;
 constexpr double kSpeedAt_Hz = 1e4;
+
+/// Deviations that the worst of so many numbers exceeds by chance as rarely as one number does
+/// three.
+double named_from(std::size_t numbers) {
+  const double allowed = -std::expm1(std::log1p(-std::erfc(kNamed / std::numbers::sqrt2)) /
+                                     static_cast<double>(std::max<std::size_t>(1, numbers)));
+  double low = kNamed;
+  double high = 2.0 * kNamed;
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (std::erfc(middle / std::numbers::sqrt2) > allowed ? low : high) = middle;
+  }
+  return high;
+}
 
 /// What the data by themselves, with all other priors, say of one number of a fit.
 struct Alone {
@@ -105,7 +120,8 @@ class PartFit {
                                             const ModelNumber& number) {
     for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
       const FreeNumber& free = composition.numbers()[i];
-      if (composition.uses()[free.use].id() == number.effect && free.parameter == number.parameter) {
+      if (composition.uses()[free.use].id() == number.effect &&
+          free.parameter == number.parameter) {
         return i;
       }
     }
@@ -144,8 +160,7 @@ class PartFit {
     const double shifted = at + variance / fitted.widening() * own * (at - mean);
     result.value = shifted * free.scale;
     result.sd = std::sqrt(variance) * free.scale;
-    result.deviations =
-        own > 0.0 ? (shifted - mean) / std::sqrt(variance + 1.0 / own) : 0.0;
+    result.deviations = own > 0.0 ? (shifted - mean) / std::sqrt(variance + 1.0 / own) : 0.0;
     return result;
   }
 
@@ -200,15 +215,16 @@ class PartFit {
 
   void release_what_differs() {
     for (std::size_t round = 0;; ++round) {
-      fitted_ = std::make_unique<Fitted>(campaign_, options_,
-                                         model(variant_, numbers_, released_, 0.0));
+      fitted_ =
+          std::make_unique<Fitted>(campaign_, options_, model(variant_, numbers_, released_, 0.0));
       if (round == 0) {
         result_.chi2_reduced_as_filed = fitted_->studied.misfit.chi2_reduced;
       }
+      const double named = named_from(numbers_.size());
       std::vector<std::pair<double, const ModelNumber*>> suspects;
       for (const ModelNumber& number : numbers_) {
         const double z = std::abs(alone(*fitted_, number).deviations);
-        if (number.believed && released_.count(number.id) == 0 && z > kNamed) {
+        if (number.believed && released_.count(number.id) == 0 && z > named) {
           suspects.emplace_back(z, &number);
         }
       }
@@ -268,13 +284,11 @@ class PartFit {
     out.id = number.id;
     out.gauge = number.gauge;
     out.filed = number.filed;
-    const auto& [composition, fit] =
-        std::tie(fitted_->studied.composition, fitted_->studied.fit);
+    const auto& [composition, fit] = std::tie(fitted_->studied.composition, fitted_->studied.fit);
     const std::size_t place = place_of(composition, number);
     const auto at = static_cast<Eigen::Index>(place);
     const double scale = composition.numbers()[place].scale;
-    const double posterior_sd =
-        std::sqrt(fit.covariance(at, at) * fitted_->widening()) * scale;
+    const double posterior_sd = std::sqrt(fit.covariance(at, at) * fitted_->widening()) * scale;
     out.combined = number_from(number, fit.theta[place] * scale, posterior_sd);
     Alone own = alone(*fitted_, number);
     const auto tied = ties_.find(number.id);
@@ -285,8 +299,8 @@ class PartFit {
     out.measured = number_from(number, own.value, own.sd);
     const bool released = released_.count(number.id) > 0;
     if (number.believed) {
-      out.deviations = (out.measured.value - out.filed.value) /
-                       std::hypot(out.measured.sd, out.filed.sd);
+      out.deviations =
+          (out.measured.value - out.filed.value) / std::hypot(out.measured.sd, out.filed.sd);
     }
     const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
     if (!number.believed) {
@@ -297,6 +311,8 @@ class PartFit {
     } else if (released) {
       out.standing = Standing::differs;
       out.combined = out.measured;
+    } else if (std::abs(out.deviations) > kNamed) {
+      out.standing = Standing::doubtful;
     } else if (own.sd > kNamed * std::max(filed_sd, number.step)) {
       out.standing = Standing::unseen;
     }
@@ -349,8 +365,7 @@ class PartFit {
       const std::size_t place = place_of(composition, number);
       const double scale = composition.numbers()[place].scale;
       places.push_back(static_cast<Eigen::Index>(place));
-      values.push_back(
-          number_from(number, fitted_->studied.fit.theta[place] * scale, 0.0).value);
+      values.push_back(number_from(number, fitted_->studied.fit.theta[place] * scale, 0.0).value);
       per_theta.push_back(number.relative ? number.filed.value * scale : scale);
     }
     values.push_back(1.0);
@@ -373,8 +388,8 @@ class PartFit {
       moved[i] += step;
       slope[a] = (speed(moved) - at) / step * per_theta[i];
       for (Eigen::Index b = 0; b < count; ++b) {
-        covariance(a, b) = fitted_->studied.fit.covariance(places[i],
-                                                           places[static_cast<std::size_t>(b)]);
+        covariance(a, b) =
+            fitted_->studied.fit.covariance(places[i], places[static_cast<std::size_t>(b)]);
       }
     }
     result_.wave_speed_at_Hz = kSpeedAt_Hz;

@@ -73,8 +73,7 @@ EffectUse specimen_use(const Bench& bench, const BarPrior& bars) {
 }  // namespace
 
 std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& bench,
-                                    const CalibrationOptions& options,
-                                    const PartVariant& variant) {
+                                    const CalibrationOptions& options, const PartVariant& variant) {
   using Of = CalibratedNumber::Of;
   std::vector<ModelNumber> list;
   for (const Gauge& gauge : bench.gauges) {
@@ -113,10 +112,9 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
   return list;
 }
 
-Model part_model(const CalibrationPart& part, const Bench& bench,
-                 const CalibrationOptions& options, const PartVariant& variant,
-                 const std::vector<ModelNumber>& numbers, const std::set<std::string>& released,
-                 double loosen) {
+Model part_model(const CalibrationPart& part, const Bench& bench, const CalibrationOptions& options,
+                 const PartVariant& variant, const std::vector<ModelNumber>& numbers,
+                 const std::set<std::string>& released, double loosen) {
   const BarPrior bars = options.bars.value_or(BarPrior(paper_pmma()));
   Model model;
   model.kind = bench.kind;
@@ -174,8 +172,7 @@ Model part_model(const CalibrationPart& part, const Bench& bench,
     value.value = value.prior_mean = number.origin;
     const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
     const bool held = number.believed && released.count(number.id) == 0;
-    value.prior_sd =
-        held ? std::max({filed_sd, number.least_sd, loosen * number.step}) : 0.0;
+    value.prior_sd = held ? std::max({filed_sd, number.least_sd, loosen * number.step}) : 0.0;
   }
   return model;
 }

@@ -17,8 +17,8 @@ struct ModelNumber {
   std::string gauge;
   std::string effect;  ///< id of the effect's use
   std::size_t parameter = 0;
-  Measured filed;        ///< as CalibratedNumber
-  double origin = 0.0;   ///< `filed` + the effect's value - `origin` is the number
+  Measured filed;       ///< as CalibratedNumber
+  double origin = 0.0;  ///< `filed` + the effect's value - `origin` is the number
   double per_value = 1.0;
   bool relative = false;  ///< the effect's value is a relative change of the number
   bool believed = true;   ///< something is filed of it

@@ -59,8 +59,7 @@ Area area_of(const std::vector<double>& strain, std::size_t quiet, std::size_t f
   }
   const double noise = quiet_before(strain, quiet).noise_rms;
   const auto samples = static_cast<double>(end - first);
-  area.sd =
-      noise * period_s * std::sqrt(samples * (1.0 + samples / static_cast<double>(quiet)));
+  area.sd = noise * period_s * std::sqrt(samples * (1.0 + samples / static_cast<double>(quiet)));
   const std::size_t tail = std::max<std::size_t>(8, (end - first) / 20);
   double rest = 0.0;
   for (std::size_t n = end - tail; n < end; ++n) {
@@ -103,9 +102,9 @@ double modulus_at_rest(const Bar& bar, const BarPrior& bars) {
 }
 
 double relative_sd_at_rest(const Bar& bar, const BarPrior& bars) {
-  return bar.youngs_modulus_Pa ? relative_sd(*bar.youngs_modulus_Pa)
-                               : std::max(relative_sd(bars.material.E1_Pa),
-                                          relative_sd(bars.material.E2_Pa));
+  return bar.youngs_modulus_Pa
+             ? relative_sd(*bar.youngs_modulus_Pa)
+             : std::max(relative_sd(bars.material.E1_Pa), relative_sd(bars.material.E2_Pa));
 }
 
 /// Absolute gain of the first gauge from its areas and the strikers' momenta.
@@ -127,22 +126,22 @@ std::optional<MomentumCheck> momentum(const CalibrationPart& part, const Bench& 
     none_because = "the striker is not of the bar's material, its impedance is not known";
     return std::nullopt;
   }
-  const double ratio =
-      std::pow(*striker->diameter_m / bench.input.diameter_m.value, 2.0) * share;
+  const double ratio = std::pow(*striker->diameter_m / bench.input.diameter_m.value, 2.0) * share;
   const double area_m2 = std::acos(-1.0) * std::pow(striker->diameter_m->value, 2.0) / 4.0;
   const double mass_kg = density * area_m2 * *striker->length_m;
   const double passed = ratio < 1.0 ? 2.0 / (1.0 + ratio) : 1.0;
   std::vector<Measured> gains;
-  double common = std::hypot(relative_sd(*striker->length_m), 2.0 * relative_sd(*striker->diameter_m),
-                             relative_sd(*striker->density_kg_m3));
+  double common =
+      std::hypot(relative_sd(*striker->length_m), 2.0 * relative_sd(*striker->diameter_m),
+                 relative_sd(*striker->density_kg_m3));
   common = std::hypot(common, relative_sd_at_rest(bench.input, bars),
                       2.0 * relative_sd(bench.input.diameter_m));
   double of_speed = 0.0;
   for (std::size_t n = 0; n < part.shots.size(); ++n) {
     const auto speed = striker_speed(part.shots[n]);
     if (speed && areas[n].over) {
-      const double strain_s = passed * mass_kg * *speed /
-                              (bench.input.area_m2() * modulus_at_rest(bench.input, bars));
+      const double strain_s =
+          passed * mass_kg * *speed / (bench.input.area_m2() * modulus_at_rest(bench.input, bars));
       gains.push_back({areas[n].value / strain_s, areas[n].sd / strain_s});
       of_speed = std::max(of_speed, relative_sd(*speed));
     }
@@ -202,9 +201,8 @@ PulseAreas pulse_areas(const CalibrationPart& part, const Campaign& campaign,
       const auto first = static_cast<std::size_t>(
           std::max(0.0, (shot.foot_s + delay_s - kMargin_s) / campaign.period_s));
       const std::size_t end = std::min(first + samples, shot.strain[j].size());
-      areas[j].push_back(
-          area_of(shot.strain[j], std::max<std::size_t>(1, shot.quiet_samples), first, end,
-                  campaign.period_s));
+      areas[j].push_back(area_of(shot.strain[j], std::max<std::size_t>(1, shot.quiet_samples),
+                                 first, end, campaign.period_s));
     }
   }
   const auto& reference = areas[campaign.reference];

@@ -29,7 +29,7 @@ struct PulseAreas {
   std::vector<AreaRatio> ratios;
   double window_s = 0.0;  ///< after the foot at each gauge; ends before anything comes back
   std::optional<MomentumCheck> momentum;
-  double momentum_left = 0.0;  ///< deviations from the gain as calibrated
+  double momentum_left = 0.0;       ///< deviations from the gain as calibrated
   std::string none_because;         ///< why there are no ratios
   std::string no_momentum_because;  ///< why there is no absolute gain
 };

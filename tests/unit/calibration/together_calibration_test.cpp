@@ -61,8 +61,7 @@ TEST(BarsTogether, RightBenchPasses) {
   EXPECT_EQ(calibration.certificate, Certificate::pass);
   EXPECT_NEAR(part.chi2_reduced, 1.0, 0.15);
   ASSERT_EQ(part.areas.ratios.size(), 1U);
-  EXPECT_NEAR(part.areas.ratios.front().ratio.value, 1.0,
-              4.0 * part.areas.ratios.front().ratio.sd);
+  EXPECT_NEAR(part.areas.ratios.front().ratio.value, 1.0, 4.0 * part.areas.ratios.front().ratio.sd);
   // Speed of the paper's PMMA at 10 kHz, physics.md.
   EXPECT_NEAR(part.wave_speed_m_per_s.value, 2173.72, 0.05);
 }
