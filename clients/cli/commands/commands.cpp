@@ -18,6 +18,7 @@ Command model_check_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
+Command diagnose_live_command();
 Command impact_command();
 Command verify_command();
 Command export_command();
@@ -53,6 +54,7 @@ std::vector<Command> all_commands() {
       fit_command(),
       compare_command(),
       diagnose_command(),
+      diagnose_live_command(),
       impact_command(),
       verify_command(),
       export_command(),
