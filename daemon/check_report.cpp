@@ -55,14 +55,16 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
       "window     {} + {} samples ({:.4g} + {:.4g} ms)\n"
       "ring       {} samples ({:.4g} s)\n"
       "store      {}\n"
+      "model      {}\n"
       "endpoints  results {}, preview {}, control {}\n",
       config.bench.string(), name_of(apparatus.bench.kind), rate_Hz * 1e-6, model,
       gauges_line(config, apparatus), config.digitiser.uri, block, milliseconds(block),
       trigger.channel, trigger.level_sigma, 1e3 * milliseconds(options.minimum_width_samples),
       milliseconds(options.hold_off_samples), trigger.pre_samples, trigger.post_samples,
       milliseconds(trigger.pre_samples), milliseconds(trigger.post_samples), ring,
-      1e-3 * milliseconds(ring), config.store.string(), config.endpoints.results,
-      config.endpoints.preview, config.endpoints.control);
+      1e-3 * milliseconds(ring), config.store.string(),
+      config.model ? config.model->string() : "none, shots are not compared",
+      config.endpoints.results, config.endpoints.preview, config.endpoints.control);
 }
 
 }  // namespace kolsky

@@ -193,7 +193,7 @@ std::size_t whole_samples(double duration_s, double sample_rate_Hz) {
 DaemonConfig read_config(const std::filesystem::path& path) {
   const TomlTable root = TomlTable::open(path);
   root.expect({"bench", "bar_model", "auto_arm", "digitiser", "trigger", "store", "endpoints",
-               "ring", "meta"});
+               "ring", "meta", "model"});
   DaemonConfig config;
   config.file = path;
   config.bench = beside(path, root.text("bench"));
@@ -214,6 +214,14 @@ DaemonConfig read_config(const std::filesystem::path& path) {
   if (const auto ring = root.optional_table("ring")) {
     ring->expect({"seconds"});
     config.ring_s = number_within(*ring, "seconds", 2.0, 1e-6, 3600.0);
+  }
+  if (const auto model = root.optional_table("model")) {
+    model->expect({"file", "green_chi2", "amber_share"});
+    config.model = beside(path, model->text("file"));
+    config.light.green_chi2 =
+        number_within(*model, "green_chi2", config.light.green_chi2, 1.0, 1e6);
+    config.light.amber_share =
+        number_within(*model, "amber_share", config.light.amber_share, 0.0, 1.0);
   }
   if (const auto meta = root.optional_table("meta")) {
     config.meta = read_meta(*meta);

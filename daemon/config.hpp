@@ -47,12 +47,22 @@ struct EndpointConfig {
   friend bool operator==(const EndpointConfig&, const EndpointConfig&) = default;
 };
 
+/// By what each shot's comparison with the active model is shown in a colour.
+struct LightRule {
+  double green_chi2 = 1.5;    ///< green up to this chi2 per degree of freedom
+  double amber_share = 1e-3;  ///< else amber up to this misfit beyond noise, of the signal's energy
+
+  friend bool operator==(const LightRule&, const LightRule&) = default;
+};
+
 /// What KOLSKYD.toml says. Paths are absolute; in the file
 /// they are relative to the file.
 struct DaemonConfig {
   std::filesystem::path file;
   std::filesystem::path bench;
   std::optional<std::filesystem::path> bar_model;
+  std::optional<std::filesystem::path> model;  ///< what shots are compared with as they come
+  LightRule light;
   std::filesystem::path store;
   std::int64_t journal_limit_bytes = 16 << 20;  ///< length at which a journal is ended
   DigitiserConfig digitiser;

@@ -83,6 +83,31 @@ void Controller::status(v1::Status& status) {
     timing.set_duration_s(lap.duration_s);
   }
   fill_channels(status);
+  fill_criticism(status);
+}
+
+void Controller::fill_criticism(v1::Status& status) {
+  if (const auto model = station_.critic().model()) {
+    status.set_model_path(model->path.string());
+  }
+  v1::Comparison comparison;
+  if (station_.critic().last(comparison)) {
+    *status.mutable_comparison() = std::move(comparison);
+  }
+  v1::Diagnosis diagnosis;
+  if (station_.diagnoses().last(diagnosis)) {
+    *status.mutable_diagnosis() = diagnosis.summary();
+  }
+}
+
+void Controller::diagnose(const v1::Diagnose& request, v1::Diagnosis& diagnosis) {
+  station_.diagnoses().begin(station_.critic().model(), request, diagnosis);
+}
+
+void Controller::diagnosis(v1::Diagnosis& diagnosis) {
+  if (!station_.diagnoses().last(diagnosis)) {
+    throw InputError("diagnosis", "none was asked for yet", "`kolsky diagnose-live` asks for one");
+  }
 }
 
 void Controller::fill_channels(v1::Status& status) {

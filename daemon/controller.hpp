@@ -27,6 +27,9 @@ class Controller : public ControlHandler {
   void stop() override { stop_requested_.store(true); }
   void list_shots(std::size_t most, v1::ShotList& shots) override;
   void get_shot(const std::string& id, v1::ShotAndResult& shot) override;
+  void diagnose(const v1::Diagnose& request, v1::Diagnosis& diagnosis) override;
+  void cancel_diagnosis() override { station_.diagnoses().cancel(); }
+  void diagnosis(v1::Diagnosis& diagnosis) override;
 
   /// Arms if the preflight passes. @return its items
   std::vector<PreflightItem> try_arm();
@@ -40,6 +43,7 @@ class Controller : public ControlHandler {
  private:
   [[nodiscard]] PreflightFacts facts();
   void fill_channels(v1::Status& status);
+  void fill_criticism(v1::Status& status);
   void need_stream(const char* command) const;
 
   Station& station_;

@@ -101,6 +101,8 @@ Station::Station(DaemonConfig config)
       ring_(make_ring(config_, stream_)),
       acquirer_(*digitiser_, ring_, events_, plan(config_, apparatus_.trigger_channel)),
       archivist_(store_, journal_, [this](const std::string& text) { fault(text); }),
+      critic_(publisher_),
+      diagnoses_(publisher_, archivist_, store_),
       recorder_({.ring = ring_,
                  .events = events_,
                  .acquirer = acquirer_,
@@ -108,8 +110,11 @@ Station::Station(DaemonConfig config)
                  .archivist = archivist_,
                  .publisher = publisher_,
                  .store = store_,
-                 .real_time = !stream_.ends},
-                settings_) {}
+                 .real_time = !stream_.ends,
+                 .published = [this](const auto& shot) { critic_.compare(shot); }},
+                settings_) {
+  critic_.change(read_active_model(config_, apparatus_.bench));
+}
 
 Station::~Station() {
   stop();
@@ -117,6 +122,7 @@ Station::~Station() {
 
 void Station::start() {
   archivist_.start();
+  critic_.start();
   recorder_.start();
   digitiser_->start();
   acquirer_.start();
@@ -130,6 +136,8 @@ void Station::stop() {
   acquirer_.stop();
   events_.close();
   recorder_.stop();
+  critic_.stop();
+  diagnoses_.stop();
   archivist_.stop();
 }
 
@@ -154,7 +162,9 @@ void Station::reload() {
                      "cannot change while the daemon runs", "restart kolskyd to take it");
   }
   auto settings = make_settings(config, apparatus, stream_);
+  auto model = read_active_model(config, apparatus.bench);
   recorder_.change(settings);
+  critic_.change(std::move(model));
   acquirer_.change_plan(plan(config, apparatus.trigger_channel));
   config_ = std::move(config);
   apparatus_ = std::move(apparatus);

@@ -8,6 +8,8 @@
 #include "daemon/acquisition/acquirer.hpp"
 #include "daemon/acquisition/sample_ring.hpp"
 #include "daemon/config.hpp"
+#include "daemon/critic/diagnosis_desk.hpp"
+#include "daemon/critic/shot_critic.hpp"
 #include "daemon/publish/publisher.hpp"
 #include "daemon/shots/archivist.hpp"
 #include "daemon/shots/recorder.hpp"
@@ -36,7 +38,9 @@ class Station {
   /// A replay is over, and all its shots are recorded.
   [[nodiscard]] bool ended() const { return recorder_.seen_end(); }
   /// ... and stored.
-  [[nodiscard]] bool finished() const { return ended() && !recorder_.busy() && archivist_.idle(); }
+  [[nodiscard]] bool finished() const {
+    return ended() && !recorder_.busy() && archivist_.idle() && critic_.idle();
+  }
   [[nodiscard]] bool started() const { return started_.load(); }
 
   [[nodiscard]] const EndpointConfig& endpoints() const { return endpoints_; }
@@ -48,12 +52,14 @@ class Station {
   [[nodiscard]] Acquirer& acquirer() { return acquirer_; }
   [[nodiscard]] ShotRecorder& recorder() { return recorder_; }
   [[nodiscard]] Archivist& archivist() { return archivist_; }
+  [[nodiscard]] ShotCritic& critic() { return critic_; }
+  [[nodiscard]] DiagnosisDesk& diagnoses() { return diagnoses_; }
   /// What the next shots are made from; replaced whole.
   [[nodiscard]] std::shared_ptr<const ShotSettings> settings() const;
 
   /// Reads configuration and bench again and takes what can change while the digitiser runs: bench,
-  /// bar model, trigger, window, meta. @throws InputError where it is wrong or asks for what needs
-  /// a restart
+  /// bar model, model, trigger, window, meta. @throws InputError where it is wrong or asks for what
+  /// needs a restart
   void reload();
 
  private:
@@ -75,6 +81,8 @@ class Station {
   AcquisitionQueue events_;
   Acquirer acquirer_;
   Archivist archivist_;
+  ShotCritic critic_;
+  DiagnosisDesk diagnoses_;
   ShotRecorder recorder_;
   std::atomic<bool> started_{false};
   bool stopped_ = false;

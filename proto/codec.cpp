@@ -491,6 +491,7 @@ bool changes_state(const v1::ControlRequest& request) {
     case v1::ControlRequest::kListShots:
     case v1::ControlRequest::kGetShot:
     case v1::ControlRequest::kSnapshot:
+    case v1::ControlRequest::kDiagnosis:
     case v1::ControlRequest::COMMAND_NOT_SET:
       return false;
     default:

@@ -41,7 +41,7 @@ void parse(std::string_view bytes, const std::string& place,
            google::protobuf::MessageLite& message);
 
 /// Whether the command changes what the daemon does, and so takes the lease. `status`,
-/// `list_shots`, `get_shot` and `snapshot` do not.
+/// `list_shots`, `get_shot`, `snapshot` and `diagnosis` do not.
 [[nodiscard]] bool changes_state(const v1::ControlRequest& request);
 
 }  // namespace kolsky::wire

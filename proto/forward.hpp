@@ -7,8 +7,11 @@ class MessageLite;
 }
 
 namespace kolsky::v1 {
+class Comparison;
 class ControlReply;
 class ControlRequest;
+class Diagnose;
+class Diagnosis;
 class Envelope;
 class Fault;
 class GapInfo;

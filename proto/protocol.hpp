@@ -13,6 +13,8 @@ inline constexpr const char* kStatusTopic = "status";
 inline constexpr const char* kShotTopic = "shot";
 inline constexpr const char* kResultTopic = "result";
 inline constexpr const char* kFaultTopic = "fault";
+inline constexpr const char* kComparisonTopic = "comparison";
+inline constexpr const char* kDiagnosisTopic = "diagnosis";
 inline constexpr const char* kPreviewTopic = "preview";
 
 inline constexpr const char* kDefaultResultsEndpoint = "tcp://127.0.0.1:5600";

@@ -125,6 +125,73 @@ std::string shot_line(const v1::ShotSummary& shot, bool colour) {
   return shot.id() + "  " + verdict + outcome;
 }
 
+std::string light_name(v1::Comparison::Light light) {
+  switch (light) {
+    case v1::Comparison::GREEN:
+      return "green";
+    case v1::Comparison::AMBER:
+      return "amber";
+    case v1::Comparison::RED:
+      return "red";
+    default:
+      return "none";
+  }
+}
+
+std::string comparison_line(const v1::Comparison& comparison, bool colour) {
+  if (!comparison.comparable()) {
+    return "model: not compared: " + comparison.reason();
+  }
+  const Ink ink = comparison.light() == v1::Comparison::GREEN ? Ink::good
+                  : comparison.light() == v1::Comparison::RED ? Ink::bad
+                                                              : Ink::doubtful;
+  std::string text =
+      "model: " + inked(light_name(comparison.light()), ink, colour) +
+      fmt::format(", chi2/N {:.3g}, {:.2g} % of the signal beyond noise",
+                  comparison.misfit().chi2_reduced(), 100.0 * comparison.excess_share());
+  if (comparison.trend_size() > 1) {
+    text += ", last shots";
+    constexpr int kShown = 6;
+    for (int n = std::max(0, comparison.trend_size() - kShown); n < comparison.trend_size(); ++n) {
+      text += fmt::format(" {:.3g}", comparison.trend(n));
+    }
+  }
+  if (comparison.places_size() > 0) {
+    const v1::MisfitPlace& worst = comparison.places(0);
+    text +=
+        fmt::format(", most at {} {} {:.3g}-{:.3g} kHz ({:.2g} sigma)", worst.gauge(),
+                    worst.window(), worst.low_hz() * 1e-3, worst.high_hz() * 1e-3, worst.sigma());
+  }
+  return text;
+}
+
+std::string diagnosis_state(v1::DiagnosisSummary::State state) {
+  switch (state) {
+    case v1::DiagnosisSummary::RUNNING:
+      return "running";
+    case v1::DiagnosisSummary::DONE:
+      return "done";
+    case v1::DiagnosisSummary::CANCELLED:
+      return "cancelled";
+    case v1::DiagnosisSummary::FAILED:
+      return "failed";
+    default:
+      return "none";
+  }
+}
+
+std::string diagnosis_line(const v1::DiagnosisSummary& diagnosis) {
+  std::string text = "diagnosis " + diagnosis.id() + ": ";
+  if (diagnosis.state() != v1::DiagnosisSummary::DONE) {
+    return text + diagnosis_state(diagnosis.state()) + ", " + diagnosis.step();
+  }
+  text += diagnosis.verdict();
+  for (const std::string& id : diagnosis.effects()) {
+    text += " " + id;
+  }
+  return text;
+}
+
 std::string preflight_text(const v1::Preflight& preflight, bool colour) {
   std::string text;
   for (const v1::PreflightCheck& check : preflight.checks()) {

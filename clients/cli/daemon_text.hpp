@@ -18,6 +18,10 @@ namespace kolsky::cli {
 [[nodiscard]] JsonValue describe(const v1::Status& status);
 [[nodiscard]] JsonValue describe(const v1::ShotSummary& shot);
 [[nodiscard]] JsonValue describe(const v1::Preflight& preflight);
+[[nodiscard]] JsonValue describe(const v1::Comparison& comparison);
+[[nodiscard]] JsonValue describe(const v1::DiagnosisSummary& summary);
+/// As `kolsky diagnose --json` has it, with what it is of.
+[[nodiscard]] JsonValue describe(const v1::Diagnosis& diagnosis);
 
 /// One line: state, digitiser, operator.
 [[nodiscard]] std::string headline(const v1::Status& status, bool colour);
@@ -35,6 +39,11 @@ namespace kolsky::cli {
 [[nodiscard]] std::string shot_line(const v1::ShotSummary& shot, bool colour);
 
 /// One line per check.
+[[nodiscard]] std::string light_name(v1::Comparison::Light light);
+/// The last shot beside the model: light, misfit, trend and where it fails most.
+[[nodiscard]] std::string comparison_line(const v1::Comparison& comparison, bool colour);
+[[nodiscard]] std::string diagnosis_state(v1::DiagnosisSummary::State state);
+[[nodiscard]] std::string diagnosis_line(const v1::DiagnosisSummary& diagnosis);
 [[nodiscard]] std::string preflight_text(const v1::Preflight& preflight, bool colour);
 
 }  // namespace kolsky::cli

@@ -118,6 +118,17 @@ std::vector<std::string> LiveView::loop_lines(const Terminal& terminal, int rows
       plot_text(panel, {std::min(terminal.columns, 100), rows - kLoopFrame}, terminal.colour));
 }
 
+std::vector<std::string> LiveView::model_lines(bool colour) const {
+  std::vector<std::string> lines;
+  if (status_.has_comparison()) {
+    lines.push_back(comparison_line(status_.comparison(), colour));
+  }
+  if (status_.has_diagnosis()) {
+    lines.push_back(diagnosis_line(status_.diagnosis()));
+  }
+  return lines;
+}
+
 std::string LiveView::loss_line(bool colour) const {
   std::string text = fmt::format("messages lost on the way here: {}", lost_messages());
   for (const auto& [topic, count] : lost_) {
@@ -136,6 +147,7 @@ std::string LiveView::screen(const Terminal& terminal) const {
   std::vector<std::string> lines = {headline(status_, terminal.colour),
                                     counters_line(status_, terminal.colour), store_line(status_),
                                     loss_line(terminal.colour)};
+  append(lines, model_lines(terminal.colour));
   append(lines, trace_lines(terminal));
   append(lines, shot_lines(terminal));
   append(lines, loop_lines(terminal, terminal.rows - static_cast<int>(lines.size()) - 1));

@@ -92,6 +92,12 @@ std::string LiveView::take_message(const Received& message) {
   if (message.topic == wire::kFaultTopic) {
     return take_fault(message);
   }
+  if (message.topic == wire::kComparisonTopic) {
+    return take_comparison(message);
+  }
+  if (message.topic == wire::kDiagnosisTopic) {
+    return take_diagnosis(message);
+  }
   if (message.topic == wire::kPreviewTopic) {
     take_preview(message);
   }
@@ -155,6 +161,27 @@ std::string LiveView::take_fault(const Received& message) {
   event.push_back({"samples", static_cast<std::uint64_t>(fault.samples())});
   events_.emplace_back(std::move(event));
   return "fault " + last_fault_;
+}
+
+std::string LiveView::take_comparison(const Received& message) {
+  v1::Comparison comparison;
+  wire::parse(message.payload, "comparison", comparison);
+  JsonObject event = event_of("comparison", message.utc_ns);
+  event.push_back({"comparison", describe(comparison)});
+  events_.emplace_back(std::move(event));
+  std::string line = comparison_line(comparison, false);
+  *status_.mutable_comparison() = std::move(comparison);
+  return line;
+}
+
+std::string LiveView::take_diagnosis(const Received& message) {
+  v1::Diagnosis diagnosis;
+  wire::parse(message.payload, "diagnosis", diagnosis);
+  JsonObject event = event_of("diagnosis", message.utc_ns);
+  event.push_back({"diagnosis", describe(diagnosis.summary())});
+  events_.emplace_back(std::move(event));
+  *status_.mutable_diagnosis() = diagnosis.summary();
+  return diagnosis_line(diagnosis.summary());
 }
 
 void LiveView::take_preview(const Received& message) {

@@ -50,6 +50,8 @@ class LiveView {
   std::string take_shot(const Received& message);
   std::string take_result(const Received& message);
   std::string take_fault(const Received& message);
+  std::string take_comparison(const Received& message);
+  std::string take_diagnosis(const Received& message);
   void take_preview(const Received& message);
   std::string take_lost(const Lost& lost);
   std::string take_unreadable(const std::string& reason);
@@ -61,6 +63,7 @@ class LiveView {
   [[nodiscard]] std::vector<std::string> shot_lines(const Terminal& terminal) const;
   [[nodiscard]] std::vector<std::string> loop_lines(const Terminal& terminal, int rows) const;
   [[nodiscard]] std::string loss_line(bool colour) const;
+  [[nodiscard]] std::vector<std::string> model_lines(bool colour) const;
 
   v1::Status status_;
   std::map<std::string, Trace> traces_;  ///< by gauge

@@ -48,8 +48,9 @@ using SubscriberEvent = std::variant<Received, Lost, Restarted, Unreadable, Sile
 
 struct SubscriberOptions {
   std::string endpoint = wire::kDefaultResultsEndpoint;
-  std::vector<std::string> topics{wire::kShotTopic, wire::kResultTopic, wire::kFaultTopic,
-                                  wire::kStatusTopic};
+  std::vector<std::string> topics{wire::kShotTopic,      wire::kResultTopic,
+                                  wire::kFaultTopic,     wire::kComparisonTopic,
+                                  wire::kDiagnosisTopic, wire::kStatusTopic};
   int receive_queue = 1000;  ///< messages held while the program does something else
 };
 

@@ -36,10 +36,15 @@ class ControlHandler {
   virtual void reload() = 0;
   /// Asks the daemon to end. Must not destroy the server itself.
   virtual void stop() = 0;
+  /// Begins; `diagnosis` says under which id. @throws InputError where none can begin
+  virtual void diagnose(const v1::Diagnose& request, v1::Diagnosis& diagnosis);
+  virtual void cancel_diagnosis();
 
   // In the reading thread, one after the other; as long as they need.
   virtual void list_shots(std::size_t most, v1::ShotList& shots) = 0;
   virtual void get_shot(const std::string& id, v1::ShotAndResult& shot) = 0;
+  /// The diagnosis under way, or the last. @throws InputError where there is none
+  virtual void diagnosis(v1::Diagnosis& diagnosis);
 };
 
 struct ControlServerOptions {

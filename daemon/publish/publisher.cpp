@@ -103,8 +103,8 @@ struct Publisher::State {
       : results(context, "endpoints.results", options.results_endpoint, options.results_queue,
                 kLinger_ms),
         preview(context, "endpoints.preview", options.preview_endpoint, options.preview_queue, 0) {
-    for (const char* name :
-         {wire::kStatusTopic, wire::kShotTopic, wire::kResultTopic, wire::kFaultTopic}) {
+    for (const char* name : {wire::kStatusTopic, wire::kShotTopic, wire::kResultTopic,
+                             wire::kFaultTopic, wire::kComparisonTopic, wire::kDiagnosisTopic}) {
       results.topic(name);
     }
   }
@@ -171,6 +171,14 @@ std::uint64_t Publisher::publish_fault(const v1::Fault& fault) {
   return state_->send(state_->results, wire::kFaultTopic, fault);
 }
 
+std::uint64_t Publisher::publish_comparison(const v1::Comparison& comparison) {
+  return state_->send(state_->results, wire::kComparisonTopic, comparison);
+}
+
+std::uint64_t Publisher::publish_diagnosis(const v1::Diagnosis& diagnosis) {
+  return state_->send(state_->results, wire::kDiagnosisTopic, diagnosis);
+}
+
 std::uint64_t Publisher::publish_preview(const v1::Preview& preview) {
   return state_->send(state_->preview, wire::kPreviewTopic, preview);
 }
@@ -193,6 +201,8 @@ void Publisher::snapshot(v1::Snapshot& snapshot) const {
   restore(wire::kShotTopic, [&] { return snapshot.mutable_last_shot(); });
   restore(wire::kResultTopic, [&] { return snapshot.mutable_last_result(); });
   restore(wire::kFaultTopic, [&] { return snapshot.mutable_last_fault(); });
+  restore(wire::kComparisonTopic, [&] { return snapshot.mutable_last_comparison(); });
+  restore(wire::kDiagnosisTopic, [&] { return snapshot.mutable_last_diagnosis(); });
 }
 
 }  // namespace kolsky

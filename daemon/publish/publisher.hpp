@@ -43,6 +43,8 @@ class Publisher {
   std::uint64_t publish_shot(const v1::Shot& shot);
   std::uint64_t publish_result(const v1::Result& result);
   std::uint64_t publish_fault(const v1::Fault& fault);
+  std::uint64_t publish_comparison(const v1::Comparison& comparison);
+  std::uint64_t publish_diagnosis(const v1::Diagnosis& diagnosis);
   /// The preview may lose messages whatever the subscriber does; nobody keeps them.
   std::uint64_t publish_preview(const v1::Preview& preview);
 

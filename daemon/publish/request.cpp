@@ -64,6 +64,12 @@ void dispatch(const v1::ControlRequest& request, ControlHandler& handler, v1::Co
       return handler.reload();
     case v1::ControlRequest::kStop:
       return handler.stop();
+    case v1::ControlRequest::kDiagnose:
+      return handler.diagnose(request.diagnose(), *reply.mutable_diagnosis());
+    case v1::ControlRequest::kCancelDiagnosis:
+      return handler.cancel_diagnosis();
+    case v1::ControlRequest::kDiagnosis:
+      return handler.diagnosis(*reply.mutable_diagnosis());
     case v1::ControlRequest::kSnapshot:
       return handler.snapshot(*reply.mutable_snapshot());
     case v1::ControlRequest::kRelease:
@@ -80,6 +86,18 @@ void drop_answer(v1::ControlReply& reply) {
 }
 
 }  // namespace
+
+void ControlHandler::diagnose(const v1::Diagnose& /*request*/, v1::Diagnosis& /*diagnosis*/) {
+  throw InputError("diagnose", "is not done here", "ask a kolskyd that compares its shots");
+}
+
+void ControlHandler::cancel_diagnosis() {
+  throw InputError("cancel_diagnosis", "there is none under way", "nothing needs to be done");
+}
+
+void ControlHandler::diagnosis(v1::Diagnosis& /*diagnosis*/) {
+  throw InputError("diagnosis", "there is none", "ask for one with `kolsky diagnose-live`");
+}
 
 void refuse(v1::Refusal refusal, const InputError& error, v1::ControlReply& reply) {
   reply.set_ok(false);

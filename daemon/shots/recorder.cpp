@@ -229,6 +229,9 @@ void ShotRecorder::record(const Window& window) {
     last_shot_id_ = shot->id;
     last_timings_ = watch.laps();
   }
+  if (parts_.published) {
+    parts_.published(shot);
+  }
   const CatalogueEntry entry = summarise(*shot, reduction, "");
   parts_.archivist.store(shot, entry);
   log::info(fmt::format("shot {}: {}{}", shot->id, entry.verdict,

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -51,6 +52,8 @@ class ShotRecorder {
     Publisher& publisher;
     const StoreLayout& store;
     bool real_time = false;  ///< ask for real-time scheduling
+    /// Told of every shot once its result is out, by the recorder's thread: must not wait.
+    std::function<void(const std::shared_ptr<const Shot>&)> published{};
   };
   ShotRecorder(const Parts& parts, std::shared_ptr<const ShotSettings> settings);
   ~ShotRecorder();

@@ -23,6 +23,7 @@ Command compare_command();
 Command diagnose_command();
 Command selftest_command();
 Command tour_command();
+Command diagnose_live_command();
 Command impact_command();
 Command chain_command();
 Command verify_command();
@@ -64,6 +65,7 @@ std::vector<Command> all_commands() {
       diagnose_command(),
       selftest_command(),
       tour_command(),
+      diagnose_live_command(),
       impact_command(),
       chain_command(),
       verify_command(),

@@ -31,6 +31,16 @@ int show_status(Context& context) {
   if (!status.last_shot_id().empty()) {
     context.out << "last shot " << status.last_shot_id() << "\n";
   }
+  if (!status.model_path().empty()) {
+    context.out << "compares with " << status.model_path() << "\n";
+  }
+  if (status.has_comparison()) {
+    context.out << comparison_line(status.comparison(), colour) << "\n"
+                << "  " << status.comparison().rule() << "\n";
+  }
+  if (status.has_diagnosis()) {
+    context.out << diagnosis_line(status.diagnosis()) << "\n";
+  }
   return kDone;
 }
 

@@ -64,6 +64,19 @@ testing::AssertionResult holds(const std::string& text, std::initializer_list<co
              : testing::AssertionFailure() << "more than one line: " << text;
 }
 
+TEST_F(ConfigTest, TakesTheModelThatShotsAreComparedWith) {
+  const std::string least = kLeast;
+  EXPECT_FALSE(read(least).model);
+  const DaemonConfig config = read(least + "[model]\nfile = \"m.toml\"\ngreen_chi2 = 2\n");
+  EXPECT_EQ(config.model, folder_ / "m.toml");
+  EXPECT_EQ(config.light.green_chi2, 2.0);
+  EXPECT_EQ(config.light.amber_share, 1e-3);
+  EXPECT_TRUE(holds(error_of(least + "[model]\n"), {"model.file"}));
+  EXPECT_TRUE(holds(error_of(least + "[model]\nfile = \"m\"\ngreen_chi2 = 0.5\n"),
+                    {"model.green_chi2"}));
+  EXPECT_TRUE(holds(error_of(least + "[model]\nfile = \"m\"\nlight = 1\n"), {"model.light"}));
+}
+
 TEST_F(ConfigTest, TakesTheDefaultsWhereTheFileIsSilent) {
   const DaemonConfig config = read(kLeast);
   EXPECT_EQ(config.bench, folder_ / "bench.toml");

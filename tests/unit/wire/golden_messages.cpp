@@ -259,6 +259,72 @@ v1::Fault fault() {
   return fault;
 }
 
+v1::Comparison comparison() {
+  v1::Comparison comparison;
+  comparison.set_shot_id("20240102T030405.678901-1");
+  comparison.set_model_path("m.toml");
+  comparison.set_model_sha256("00ff");
+  comparison.set_comparable(true);
+  comparison.set_reason("none");
+  comparison.mutable_misfit()->set_chi2_reduced(1.25);
+  comparison.mutable_misfit()->set_repeatable_share(0.5);
+  comparison.mutable_misfit()->set_noise_floor_share(0.125);
+  comparison.set_excess_share(0.0625);
+  comparison.set_light(v1::Comparison::AMBER);
+  comparison.set_rule("by rule");
+  v1::MisfitPlace& place = *comparison.add_places();
+  place.set_gauge("g1");
+  place.set_window("incident");
+  place.set_low_hz(1e3);
+  place.set_high_hz(2e3);
+  place.set_sigma(4.5);
+  place.set_share(0.75);
+  comparison.add_trend(1.0);
+  comparison.add_trend(1.25);
+  comparison.set_duration_s(5e-4);
+  return comparison;
+}
+
+v1::Diagnosis diagnosis() {
+  v1::Diagnosis diagnosis;
+  v1::DiagnosisSummary& summary = *diagnosis.mutable_summary();
+  summary.set_id("d1");
+  summary.set_state(v1::DiagnosisSummary::DONE);
+  summary.set_step("done");
+  summary.set_verdict("tied");
+  summary.add_effects("gauge-position:g3");
+  diagnosis.add_shots("20240102T030405.678901-1");
+  diagnosis.set_model_path("m.toml");
+  diagnosis.set_model_sha256("00ff");
+  (*diagnosis.mutable_tied_with())["gauge-position:g3"].add_items("channel-delay:g3");
+  diagnosis.mutable_misfit()->mutable_before()->set_chi2_reduced(3.5);
+  diagnosis.mutable_misfit()->mutable_after()->set_chi2_reduced(1.0);
+  diagnosis.mutable_misfit()->mutable_held_out()->set_before(3.0);
+  diagnosis.mutable_misfit()->mutable_held_out()->set_after(1.5);
+  diagnosis.mutable_misfit()->mutable_held_out()->set_floor(1.25);
+  v1::DiagnosisCandidate& candidate = *diagnosis.add_candidates();
+  candidate.set_effect("gauge-position:g3");
+  candidate.set_parameter("delta");
+  candidate.set_unit("m");
+  candidate.set_strength(0.005);
+  candidate.set_sd(0.0005);
+  candidate.set_p_value(1e-9);
+  candidate.set_log_p(-20.75);
+  candidate.set_gain(100.5);
+  candidate.set_held_out_gain(90.5);
+  candidate.set_smallest_detectable(0.003);
+  candidate.set_smallest_identifiable(0.006);
+  candidate.set_nearest_rival("channel-delay:g3");
+  candidate.set_verdict("tied");
+  v1::NextExperiment& next = *diagnosis.add_next_experiment();
+  next.set_change("swap channels");
+  next.add_separates("gauge-position:g3");
+  diagnosis.add_notes("a note");
+  diagnosis.set_unexplained_log_p(-1.5);
+  diagnosis.set_stored_as("d1.json");
+  return diagnosis;
+}
+
 template <class Choose>
 v1::ControlRequest request(const Choose& choose) {
   v1::ControlRequest request;
@@ -335,6 +401,12 @@ std::vector<Fixture> request_fixtures() {
       fixture("request_stop", request([](auto& r) { r.mutable_stop(); })),
       fixture("request_release", request([](auto& r) { r.mutable_release(); })),
       fixture("request_snapshot", request([](auto& r) { r.mutable_snapshot(); })),
+      fixture("request_diagnose", request([](auto& r) {
+                r.mutable_diagnose()->set_shots(5);
+                r.mutable_diagnose()->add_ids("s1");
+              })),
+      fixture("request_cancel_diagnosis", request([](auto& r) { r.mutable_cancel_diagnosis(); })),
+      fixture("request_diagnosis", request([](auto& r) { r.mutable_diagnosis(); })),
   };
 }
 
@@ -349,6 +421,7 @@ std::vector<Fixture> reply_fixtures() {
               })),
       fixture("reply_refusal", reply(fill_refusal)),
       fixture("reply_snapshot", reply(fill_snapshot)),
+      fixture("reply_diagnosis", reply([](auto& r) { *r.mutable_diagnosis() = diagnosis(); })),
   };
 }
 
@@ -394,6 +467,7 @@ std::vector<Fixture> fixtures() {
       fixture("preview", preview()),         fixture("shot", shot()),
       fixture("result", result()),           fixture("result_irreducible", irreducible()),
       fixture("result_ball", ball_result()), fixture("fault", fault()),
+      fixture("comparison", comparison()),   fixture("diagnosis", diagnosis()),
   };
   std::ranges::move(request_fixtures(), std::back_inserter(all));
   std::ranges::move(reply_fixtures(), std::back_inserter(all));

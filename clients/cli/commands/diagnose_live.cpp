@@ -1,0 +1,140 @@
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <ostream>
+#include <thread>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/daemon_shot.hpp"
+#include "clients/cli/daemon_text.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(200);
+constexpr std::uint64_t kMostShots = 256;
+
+struct Settings {
+  std::vector<std::string> ids;
+  std::optional<std::uint64_t> shots;
+  bool no_wait = false;
+  bool cancel = false;
+  bool last = false;
+};
+
+v1::ControlReply ask(ControlClient& client, const v1::ControlRequest& request) {
+  v1::ControlReply reply = client.request(request);
+  if (!reply.ok()) {
+    throw InputError(reply.problem().place(), reply.problem().what(), reply.problem().mend());
+  }
+  return reply;
+}
+
+v1::Diagnosis look(ControlClient& client) {
+  v1::ControlRequest request;
+  request.mutable_diagnosis();
+  return ask(client, request).diagnosis();
+}
+
+/// Until it ends; its steps go to stderr.
+v1::Diagnosis wait(ControlClient& client, v1::Diagnosis diagnosis, bool tell) {
+  const std::string id = diagnosis.summary().id();
+  std::string step;
+  while (diagnosis.summary().state() == v1::DiagnosisSummary::RUNNING) {
+    if (tell && diagnosis.summary().step() != step) {
+      step = diagnosis.summary().step();
+      std::cerr << "kolsky: " << step << "\n";
+    }
+    std::this_thread::sleep_for(kPause);
+    diagnosis = look(client);
+    if (diagnosis.summary().id() != id) {
+      throw InputError("diagnosis " + id, "was followed by another, " + diagnosis.summary().id(),
+                       "its outcome is in the store's folder diagnoses");
+    }
+  }
+  return diagnosis;
+}
+
+void print(const v1::Diagnosis& diagnosis, Context& context) {
+  if (context.json) {
+    context.out << to_text(describe(diagnosis)) << "\n";
+    return;
+  }
+  context.out << diagnosis_line(diagnosis.summary()) << "\n";
+  for (const std::string& note : diagnosis.notes()) {
+    context.out << "  note: " << note << "\n";
+  }
+  for (const v1::NextExperiment& next : diagnosis.next_experiment()) {
+    context.out << "  next: " << next.change() << "\n";
+  }
+  if (!diagnosis.stored_as().empty()) {
+    context.out << "  stored as " << diagnosis.stored_as() << "\n";
+  }
+}
+
+v1::Diagnosis begin(const Settings& settings, ControlClient& client) {
+  v1::ControlRequest request;
+  v1::Diagnose& asked = *request.mutable_diagnose();
+  if (settings.shots && (*settings.shots == 0 || *settings.shots > kMostShots)) {
+    throw InputError("--shots", "is not from 1 to 256", "give how many of the last shots");
+  }
+  asked.set_shots(static_cast<std::uint32_t>(settings.shots.value_or(0)));
+  asked.mutable_ids()->Add(settings.ids.begin(), settings.ids.end());
+  return ask(client, request).diagnosis();
+}
+
+int run(const Settings& settings, Context& context) {
+  if (settings.shots && !settings.ids.empty()) {
+    throw InputError("--shots", "is given beside names of shots", "give one of the two");
+  }
+  ControlClient client = connect_patiently(context.endpoint);
+  if (settings.cancel) {
+    v1::ControlRequest request;
+    request.mutable_cancel_diagnosis();
+    (void)ask(client, request);
+    print(wait(client, look(client), false), context);
+    return kDone;
+  }
+  v1::Diagnosis diagnosis = settings.last ? look(client) : begin(settings, client);
+  if (!settings.no_wait && !settings.last) {
+    diagnosis = wait(client, std::move(diagnosis), !context.json);
+  }
+  print(diagnosis, context);
+  const auto state = diagnosis.summary().state();
+  if (state == v1::DiagnosisSummary::FAILED) {
+    throw InputError("diagnosis " + diagnosis.summary().id(), diagnosis.summary().step(),
+                     "choose other shots, or mend what it names");
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command diagnose_live_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "diagnose-live";
+  command.purpose =
+      "has the daemon find what its active model lacks, from shots in its store\n"
+      "Off the way of the shots, at the lowest priority; one at a time. The outcome is filed "
+      "beside "
+      "the\n"
+      "captures and printed as `kolsky diagnose` prints it.";
+  command.examples =
+      "  kolsky diagnose-live --shots 8\n"
+      "  kolsky diagnose-live 20250117T101530123Z-1f3a-0001 20250117T101612456Z-1f3a-0002 --json\n"
+      "  kolsky diagnose-live --cancel\n";
+  command.uses_daemon = true;
+  command.arguments = {
+      {"ID", "", "shots to diagnose; else the newest", &s.ids, false, {}},
+      option("--shots", "N", "so many of the newest; 8 if nothing is said", &s.shots),
+      flag("--no-wait", "print under which id it has begun, and end", &s.no_wait),
+      flag("--last", "begin nothing: print the one under way, or the last", &s.last),
+      flag("--cancel", "end the one under way at its next step", &s.cancel)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli
