@@ -23,6 +23,10 @@ constexpr double kUnexplained = -9.2;   ///< ln of the chance that noise leaves 
 constexpr double kSpeedsDiffer = -9.2;  ///< ln of the chance of strengths so different
 constexpr double kPart = 0.02;  ///< of what an effect explains: no matter where speeds differ
 constexpr std::size_t kMostRefits = 12;
+/// Another solver of the same ball differs by up to three of the deviations allowed for the
+/// solver's error, and in the same way at all speeds: a square of a normal deviate counts by this
+/// less.
+constexpr double kSolverDoubt = 6.0;
 
 const char* const kReading = "three-dimensional-reading";
 constexpr std::array kReadingNames{"full", "bulk-E1", "bulk-Einf", "exact"};
@@ -189,8 +193,8 @@ class Diagnostician {
           direction_of(own.candidate, current, study_.campaign(), study_.residuals(), worker);
       own.testable = !beyond_reach(own);
       if (own.testable) {
-        own.evidence = equivalent_square(
-            log_tail(own.direction.gain, own.direction.freedom, own.candidate.one_sided));
+        own.evidence = equivalent_square(log_tail(own.direction.gain / kSolverDoubt,
+                                                  own.direction.freedom, own.candidate.one_sided));
       }
     });
     trials_ = 1.0;
@@ -226,7 +230,7 @@ class Diagnostician {
     std::vector<const Tested*> chosen;
     for (const Tested* own : ranked) {
       const double margin = std::max(25.0, 0.6 * ranked.front()->evidence);
-      if (chosen.size() < kMostRefits && own->evidence > 1.0 &&
+      if (chosen.size() < kMostRefits && own->evidence > 0.3 &&
           own->evidence > ranked.front()->evidence - margin) {
         chosen.push_back(own);
       }
@@ -269,7 +273,7 @@ class Diagnostician {
                            out.studied.fit.degrees_of_freedom(out.studied.composition);
     out.gain =
         (current.fit.objective() - out.studied.fit.objective()) / std::max(1.0, misfit.noise_scale);
-    out.log_p = log_tail(out.gain, candidate.frees_prior ? 1.0 : std::round(freedom),
+    out.log_p = log_tail(out.gain / kSolverDoubt, candidate.frees_prior ? 1.0 : std::round(freedom),
                          candidate.one_sided && freedom < 1.5);
     out.evidence = equivalent_square(out.log_p);
     if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign())) {
@@ -311,7 +315,8 @@ class Diagnostician {
     const std::string id = refit.tested->candidate.id();
     const auto [q, freedom] =
         disagreement(refit.studied, id, records(), study_.residuals().per_shot());
-    const bool agrees = log_chi2_tail(q, freedom) > kSpeedsDiffer || q < kPart * refit.gain;
+    const bool agrees =
+        log_chi2_tail(q / kSolverDoubt, freedom) > kSpeedsDiffer || q < kPart * refit.gain;
     return with_search(refit.log_p) <= options_.log_alpha && agrees &&
            gain_on_shots(current, refit.studied) > 0.0 &&
            (records().groups.size() < 2 || gain_on_speeds(current, refit.studied) > 0.0);
@@ -382,7 +387,7 @@ class Diagnostician {
         best = r;
       }
     }
-    const double ahead = objective[best] - current.fit.objective();
+    const double ahead = (objective[best] - current.fit.objective()) / kSolverDoubt;
     if (best == now || ahead > kTie) {
       return;
     }
@@ -413,10 +418,10 @@ class Diagnostician {
     diagnosis_.before = first.misfit;
     diagnosis_.after = current.misfit;
     diagnosis_.model = current.model;
-    diagnosis_.unexplained_log_p = current.misfit.repeatable_log_p;
     const auto [chi2, freedom] = study_.repeated(current.fit.residual);
     const double explained = first.fit.objective() - current.fit.objective();
-    const bool rest = current.misfit.repeatable_log_p < kUnexplained &&
+    diagnosis_.unexplained_log_p = log_chi2_tail(chi2 / kSolverDoubt, freedom);
+    const bool rest = diagnosis_.unexplained_log_p < kUnexplained &&
                       chi2 - freedom > kAllowedRest * std::max(0.0, explained);
     set_held_out(first, current);
     if (rest || overruled_) {
@@ -537,11 +542,11 @@ class Diagnostician {
         const double scale =
             own.candidate.frees_prior && prior_sd > 0.0 ? prior_sd : parameter.typical;
         result.gain = own.direction.gain;
-        result.log_p = with_search(
-            log_tail(own.direction.gain, own.direction.freedom, own.candidate.one_sided));
+        result.log_p = with_search(log_tail(own.direction.gain / kSolverDoubt,
+                                            own.direction.freedom, own.candidate.one_sided));
         result.strength = parameter.null_value + own.direction.step[0] * scale;
         result.sd = scale / std::sqrt(own.direction.information(0, 0));
-        result.detectable = kDetected * result.sd;
+        result.detectable = kDetected * std::sqrt(kSolverDoubt) * result.sd;
         set_identifiable(all, i, current, result);
       }
       const auto known = std::find_if(diagnosis_.candidates.begin(), diagnosis_.candidates.end(),
@@ -578,8 +583,9 @@ class Diagnostician {
         result.nearest_rival = other.candidate.id();
       }
     }
-    result.identifiable = std::max(
-        result.detectable, kToldApart * result.sd / std::sqrt(std::max(1e-12, 1.0 - closest)));
+    result.identifiable =
+        std::max(result.detectable, kToldApart * std::sqrt(kSolverDoubt) * result.sd /
+                                        std::sqrt(std::max(1e-12, 1.0 - closest)));
   }
 
   void note_refits(const std::vector<Refit>& refits, const Studied& current) {

@@ -109,7 +109,9 @@ Model paper_ball() {
   model.effects.push_back(use_named("three-dimensional-reading"));
   model.effects.back().values[0].free = false;
   model.effects.push_back(use_named("finite-strain-law"));
-  model.effects.back().values[0].prior_sd = 1.0;
+  // Anywhere between the two.
+  model.effects.back().values[0].prior_mean = 0.5;
+  model.effects.back().values[0].prior_sd = 0.5;
   model.effects.push_back(use_named("elementary-waves"));
   model.effects.push_back(use_named("contact-friction"));
   ModelValue& mu = model.effects.back().values[0];

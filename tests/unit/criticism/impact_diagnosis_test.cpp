@@ -57,7 +57,8 @@ TEST(ImpactDiagnosis, ALinearBallIsAdequate) {
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
 }
 
-TEST(ImpactDiagnosis, FindsACoreThatStiffens) {
+/// Half a minute each: by --gtest_also_run_disabled_tests.
+TEST(ImpactDiagnosis, DISABLED_FindsACoreThatStiffens) {
   testing::ImpactWishes own = wishes(12);
   own.core_b = 0.6;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
@@ -70,14 +71,14 @@ TEST(ImpactDiagnosis, FindsACoreThatStiffens) {
   EXPECT_GT(diagnosis.held_out.before, 3.0 * diagnosis.held_out.after);
 }
 
-TEST(ImpactDiagnosis, FindsACoreThatSoftens) {
+TEST(ImpactDiagnosis, DISABLED_FindsACoreThatSoftens) {
   testing::ImpactWishes own = wishes(13);
   own.core_b = -0.4;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
   EXPECT_TRUE(holds(diagnosis, "core-nonlinearity")) << told(diagnosis);
 }
 
-TEST(ImpactDiagnosis, FindsASecondRelaxationOfTheCore) {
+TEST(ImpactDiagnosis, DISABLED_FindsASecondRelaxationOfTheCore) {
   testing::ImpactWishes own = wishes(14);
   own.core_D_per_Pa = 2e-9;
   own.core_tau_s = 1.5e-4;
@@ -85,7 +86,7 @@ TEST(ImpactDiagnosis, FindsASecondRelaxationOfTheCore) {
   EXPECT_TRUE(holds(diagnosis, "core-second-relaxation")) << told(diagnosis);
 }
 
-TEST(ImpactDiagnosis, TellsABridgeFromTheBall) {
+TEST(ImpactDiagnosis, DISABLED_TellsABridgeFromTheBall) {
   testing::ImpactWishes own = wishes(15);
   own.bridge_b = 240.0;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
@@ -94,7 +95,7 @@ TEST(ImpactDiagnosis, TellsABridgeFromTheBall) {
 
 /// Fitted to the two lower speeds, the stiffening core foretells the third; the linear ball does
 /// not.
-TEST(ImpactDiagnosis, ForetellsASpeedThatWasHeldOut) {
+TEST(ImpactDiagnosis, DISABLED_ForetellsASpeedThatWasHeldOut) {
   testing::ImpactWishes own = wishes(16);
   own.core_b = 0.6;
   std::vector<Shot> all = testing::impact_shots(own);
