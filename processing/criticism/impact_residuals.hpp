@@ -8,7 +8,7 @@
 #include "processing/criticism/ball_runs.hpp"
 #include "processing/criticism/impact_records.hpp"
 #include "processing/criticism/shot_residuals.hpp"
-#include "processing/criticism/workers.hpp"
+#include "processing/base/workers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
