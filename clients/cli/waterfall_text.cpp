@@ -227,6 +227,9 @@ std::string left_words(const Waterfall& fall) {
   const WaterfallStep& last = fall.steps.back();
   std::string text =
       fmt::format("Of what stood over the noise, {:.4g} % is gone.", 100.0 * fall.closed());
+  if (fall.closed() >= 1.0) {
+    text = "All that stood over the noise is gone.";
+  }
   if (fall.steps.front().held_out <= fall.floor) {
     text = "The first model already stands at the noise: there was nothing to take off.";
   }

@@ -19,6 +19,7 @@ Command model_waterfall_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
+Command selftest_command();
 Command tour_command();
 Command impact_command();
 Command verify_command();
@@ -56,6 +57,7 @@ std::vector<Command> all_commands() {
       fit_command(),
       compare_command(),
       diagnose_command(),
+      selftest_command(),
       tour_command(),
       impact_command(),
       verify_command(),

@@ -215,38 +215,31 @@ class Tour {
 
   void import() {
     chapter("1. Tables become captures");
+    fs::create_directory("shots");
     for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
       const HiddenShot& shot = campaign_.shots[n];
       command(
           {"import", "csv", shot_name(n) + ".csv", "--bench", "bench.toml", "-o",
            shot_name(n) + ".h5", "--meta", fmt::format("temperature_K={:.2f}", shot.temperature_K)},
           n == 0);
-      captures_.push_back(shot_name(n) + ".h5");
     }
     say(fmt::format("The same for shot02 to {}, each with its own temperature.",
                     shot_name(campaign_.shots.size() - 1)));
   }
 
-  [[nodiscard]] std::vector<std::string> on_captures(
-      std::vector<std::string> words, const std::vector<std::string>& options) const {
-    words.insert(words.end(), captures_.begin(), captures_.end());
-    words.insert(words.end(), options.begin(), options.end());
-    return words;
-  }
-
   void begin_model() {
     chapter("2. The model that everybody starts from");
     command({"model", "new", "--kind", "bar", "--bench", "bench.toml", "-o", "m.toml"});
-    command(on_captures({"fit"}, {"--model", "m.toml", "-o", "m1.toml"}));
+    command({"fit", "shots", "--model", "m.toml", "-o", "m1.toml"});
     chapter("3. Where does it fail?");
-    command(on_captures({"compare"}, {"--model", "m1.toml", "--report", "before.html"}));
+    command({"compare", "shots", "--model", "m1.toml", "--report", "before.html"});
     say("The page before.html in the folder has every gauge and shot.");
   }
 
   ModelStep diagnose() {
     chapter("4. What is missing?");
-    command(on_captures({"diagnose"},
-                        {"--model", "m1.toml", "-o", "m2.toml", "--report", "diagnosis.html"}));
+    command(
+        {"diagnose", "shots", "--model", "m1.toml", "-o", "m2.toml", "--report", "diagnosis.html"});
     const ModelStep step = read_model("m2.toml").history.back();
     say(verdict_words(step));
     return step;
@@ -257,8 +250,8 @@ class Tour {
       return;
     }
     chapter("5. With it, does the error fall to the noise?");
-    command(on_captures({"compare"}, {"--model", "m2.toml"}));
-    command(on_captures({"model", "waterfall", "m2.toml"}, {"--report", "waterfall.html"}));
+    command({"compare", "shots", "--model", "m2.toml"});
+    command({"model", "waterfall", "m2.toml", "shots", "--report", "waterfall.html"});
     command({"model", "diff", "m1.toml", "m2.toml"});
   }
 
@@ -326,7 +319,6 @@ class Tour {
   Workplace place_;
   HiddenCampaign campaign_;
   Hidden hidden_;
-  std::vector<std::string> captures_;
   std::vector<std::string> commands_;
 };
 

@@ -1,0 +1,283 @@
+#include "processing/criticism/selftest.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "processing/base/error.hpp"
+#include "processing/criticism/planting.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// One diagnosis to be made.
+struct Case {
+  EffectUse use;
+  std::size_t effect = 0;  ///< of the result's list
+  std::size_t size = 0;
+  bool null = false;
+  std::uint64_t seed = 0;
+};
+
+Diagnosis diagnosed(const std::vector<Shot>& shots, const Model& model, double band_limit_Hz) {
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, band_limit_Hz, Workers{});
+  return diagnose(study, model, {});
+}
+
+bool holds(const std::vector<std::string>& list, const std::string& id) {
+  return std::find(list.begin(), list.end(), id) != list.end();
+}
+
+PlantOutcome outcome_of(const Diagnosis& diagnosis, const std::string& id,
+                        const std::vector<std::string>& before) {
+  if (diagnosis.verdict == DiagnosisVerdict::unknown) {
+    return PlantOutcome::unknown;
+  }
+  if (diagnosis.verdict == DiagnosisVerdict::bad_data) {
+    return PlantOutcome::unusable;
+  }
+  bool own = false;
+  bool tied = false;
+  bool other = false;
+  for (const std::string& claimed : diagnosis.effects) {
+    const auto ties = diagnosis.tied_with.find(claimed);
+    const bool among = ties != diagnosis.tied_with.end() && holds(ties->second, id);
+    own = own || claimed == id;
+    tied = tied || among;
+    other = other || (claimed != id && !among && !holds(before, claimed));
+  }
+  if (own || tied) {
+    return other ? PlantOutcome::beside : (own ? PlantOutcome::named : PlantOutcome::tied);
+  }
+  return other ? PlantOutcome::wrong : PlantOutcome::unseen;
+}
+
+class Run {
+ public:
+  Run(const std::vector<Shot>& shots, const Model& model, const SelftestOptions& options,
+      const Workers& workers)
+      : shots_(shots),
+        options_(options),
+        workers_(workers),
+        campaign_(read_campaign(shots)),
+        study_(campaign_, options.band_limit_Hz, workers),
+        model_(model),
+        studied_(study_.fit(model)),
+        planter_(shots_, study_, studied_) {}
+
+  Selftest operator()() {
+    Study again(campaign_, options_.band_limit_Hz, workers_);
+    const Diagnosis untouched = diagnose(again, model_, {});
+    result_.untouched = untouched.verdict;
+    result_.untouched_effects = untouched.effects;
+    choose_effects(untouched);
+    add_nulls();
+    options_.progress(1, cases_.size() + 1);
+    std::vector<Diagnosis> said(cases_.size());
+    std::atomic<std::size_t> done{1};
+    workers_.run(cases_.size(), [&](std::size_t i, std::size_t) {
+      const Case& own = cases_[i];
+      const std::vector<Shot> shots =
+          own.null ? planter_.drawn_anew(own.seed) : planter_.planted(own.use);
+      if (std::none_of(shots.begin(), shots.end(),
+                       [](const Shot& shot) { return !bad_data(shot).empty(); })) {
+        said[i] = diagnosed(shots, model_, options_.band_limit_Hz);
+      } else {
+        said[i].verdict = DiagnosisVerdict::bad_data;
+      }
+      options_.progress(++done, cases_.size() + 1);
+    });
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      take(cases_[i], said[i]);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// All that first-order theory can tell on these shots; of effects of one gauge those of the
+  /// last.
+  void choose_effects(const Diagnosis& untouched) {
+    const std::string& last = campaign_.bench.gauges.back().name;
+    std::vector<std::string> ids = options_.effects;
+    std::map<std::string, double> identifiable;
+    for (const CandidateResult& candidate : untouched.candidates) {
+      identifiable[candidate.effect] = candidate.identifiable;
+      const EffectUse use = use_named(candidate.effect);
+      if (options_.effects.empty() && std::isfinite(candidate.identifiable) &&
+          (use.gauge.empty() || use.gauge == last)) {
+        ids.push_back(candidate.effect);
+      }
+    }
+    for (const std::string& id : ids) {
+      const auto known = identifiable.find(id);
+      add_effect(id, known == identifiable.end() ? std::numeric_limits<double>::infinity()
+                                                 : known->second);
+    }
+  }
+
+  void add_effect(const std::string& id, double identifiable) {
+    EffectUse use = use_named(id);
+    const EffectParameter& parameter = use.effect->about().parameters.front();
+    PlantedEffect planted{id, parameter.name, parameter.unit, identifiable, {}, {}};
+    use.values.front().value = parameter.null_value + parameter.typical;
+    planted.skipped = planter_.impossible_because(use);
+    std::vector<std::pair<double, double>> sizes;  ///< with its multiple
+    for (const double size : options_.sizes) {
+      sizes.emplace_back(size, std::isfinite(identifiable) ? size / identifiable : 0.0);
+    }
+    if (options_.sizes.empty() && planted.skipped.empty()) {
+      if (!std::isfinite(identifiable)) {
+        planted.skipped = "cannot be told apart on these shots at any size";
+      }
+      for (const double multiple : options_.multiples) {
+        sizes.emplace_back(multiple * identifiable, multiple);
+      }
+    }
+    const std::size_t at = result_.effects.size();
+    double sign = use.effect->about().parameters.front().upper > parameter.null_value ? 1.0 : -1.0;
+    for (const auto& [size, multiple] : sizes) {
+      const double value = parameter.null_value + sign * size;
+      // Beyond what is physical nothing is planted.
+      if (!planted.skipped.empty() || value < parameter.lower || value > parameter.upper) {
+        continue;
+      }
+      use.values.front().value = value;
+      cases_.push_back({use, at, planted.sizes.size(), false, 0});
+      planted.sizes.push_back({sign * size, multiple, PlantOutcome::unseen, {}, 0.0, 0.0});
+      sign = two_sided(use) ? -sign : sign;
+    }
+    if (planted.sizes.empty() && planted.skipped.empty()) {
+      planted.skipped = "every size asked for is beyond its bounds";
+    }
+    result_.effects.push_back(std::move(planted));
+  }
+
+  void add_nulls() {
+    result_.nulls = options_.nulls;
+    for (std::size_t i = 0; i < options_.nulls; ++i) {
+      cases_.push_back({{}, 0, 0, true, options_.seed + i});
+    }
+  }
+
+  void take(const Case& own, const Diagnosis& diagnosis) {
+    if (own.null) {
+      result_.false_claims += diagnosis.effects.empty() ? 0 : 1;
+      result_.false_unknown += diagnosis.verdict == DiagnosisVerdict::unknown ? 1 : 0;
+      for (const std::string& id : diagnosis.effects) {
+        result_.falsely_claimed.push_back(id);
+      }
+      return;
+    }
+    PlantedEffect& effect = result_.effects[own.effect];
+    PlantedSize& size = effect.sizes[own.size];
+    size.outcome = outcome_of(diagnosis, effect.id, result_.untouched_effects);
+    size.said = diagnosis.effects;
+    const auto candidate =
+        std::find_if(diagnosis.candidates.begin(), diagnosis.candidates.end(),
+                     [&](const CandidateResult& c) { return c.effect == effect.id; });
+    if (size.found() && candidate != diagnosis.candidates.end()) {
+      size.strength = candidate->strength;
+      size.sd = candidate->sd;
+    }
+  }
+
+  const std::vector<Shot>& shots_;
+  const SelftestOptions& options_;
+  const Workers& workers_;
+  Campaign campaign_;
+  Study study_;
+  const Model& model_;
+  Studied studied_;
+  Planter planter_;
+  std::vector<Case> cases_;
+  Selftest result_;
+};
+
+}  // namespace
+
+std::string name_of(PlantOutcome outcome) {
+  switch (outcome) {
+    case PlantOutcome::named:
+      return "named";
+    case PlantOutcome::tied:
+      return "tied";
+    case PlantOutcome::beside:
+      return "named beside another";
+    case PlantOutcome::unknown:
+      return "unknown";
+    case PlantOutcome::wrong:
+      return "wrong";
+    case PlantOutcome::unseen:
+      return "unseen";
+    case PlantOutcome::unusable:
+      return "bad data";
+  }
+  return {};
+}
+
+bool PlantedSize::found() const {
+  return outcome == PlantOutcome::named || outcome == PlantOutcome::tied ||
+         outcome == PlantOutcome::beside;
+}
+
+double PlantedEffect::smallest_found() const {
+  std::vector<const PlantedSize*> ordered;
+  for (const PlantedSize& size : sizes) {
+    ordered.push_back(&size);
+  }
+  std::sort(ordered.begin(), ordered.end(), [](const PlantedSize* a, const PlantedSize* b) {
+    return std::abs(a->size) > std::abs(b->size);
+  });
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const PlantedSize* size : ordered) {
+    if (!size->found()) {
+      break;
+    }
+    smallest = std::abs(size->size);
+  }
+  return smallest;
+}
+
+std::vector<Selftest::Power> Selftest::power() const {
+  std::map<double, Power> by_multiple;
+  for (const PlantedEffect& effect : effects) {
+    for (const PlantedSize& size : effect.sizes) {
+      if (size.multiple > 0.0) {
+        Power& power = by_multiple[size.multiple];
+        power.multiple = size.multiple;
+        power.found += size.found() ? 1 : 0;
+        ++power.planted;
+      }
+    }
+  }
+  std::vector<Power> list;
+  for (const auto& [multiple, power] : by_multiple) {
+    list.push_back(power);
+  }
+  return list;
+}
+
+Selftest selftest(const std::vector<Shot>& shots, const Model& model,
+                  const SelftestOptions& options, const Workers& workers) {
+  for (const double size : options.sizes) {
+    if (!(size > 0.0) || !std::isfinite(size)) {
+      throw InputError("sizes", "must be above 0", "give sizes off the effect's null, in its unit");
+    }
+  }
+  for (const std::string& id : options.effects) {
+    if (model.find(id) != nullptr &&
+        std::none_of(model.find(id)->values.begin(), model.find(id)->values.end(),
+                     [](const ModelValue& value) { return value.prior_sd > 0.0; })) {
+      throw InputError("effect " + id, "is in the model already", "plant one that it lacks");
+    }
+    (void)use_named(id);
+  }
+  return Run(shots, model, options, workers)();
+}
+
+}  // namespace kolsky

@@ -1,0 +1,176 @@
+#include "processing/criticism/selftest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/criticism/planting.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+std::vector<Shot> measured(std::uint64_t seed) {
+  testing::CampaignWishes wishes;
+  wishes.seed = seed;
+  wishes.shots = 5;
+  wishes.samples = 1536;
+  wishes.rate_Hz = 1e6;
+  wishes.tolerances = testing::Tolerances::none;
+  return testing::shots_of(testing::draw_campaign(wishes));
+}
+
+class Planting : public ::testing::Test {
+ protected:
+  Planting()
+      : shots_(measured(91)),
+        campaign_(read_campaign(shots_)),
+        study_(campaign_, 0.0, Workers{}),
+        studied_(study_.fit(paper_model(BenchKind::bar, false))),
+        planter_(shots_, study_, studied_) {}
+
+  /// Strain that was added to a record.
+  std::vector<double> added(const std::vector<Shot>& after, std::size_t shot,
+                            std::size_t gauge) const {
+    const Campaign other = read_campaign(after);
+    std::vector<double> difference = other.shots[shot].strain[gauge];
+    for (std::size_t i = 0; i < difference.size(); ++i) {
+      difference[i] -= campaign_.shots[shot].strain[gauge][i];
+    }
+    return difference;
+  }
+
+  std::vector<Shot> shots_;
+  Campaign campaign_;
+  Study study_;
+  Studied studied_;
+  Planter planter_;
+};
+
+TEST_F(Planting, OfAGaugeFactorAddsItsShareOfTheRecordAndTouchesNoOtherGauge) {
+  EffectUse use = use_named("gauge-factor:g2");
+  use.values[0].value = 0.03;
+  const std::vector<Shot> after = planter_.planted(use);
+  for (std::size_t n = 0; n < shots_.size(); ++n) {
+    for (const std::size_t j : {0U, 2U}) {
+      EXPECT_EQ(after[n].channels[j].codes, shots_[n].channels[j].codes);
+    }
+    const std::vector<double> more = added(after, n, 1);
+    const std::vector<double>& strain = campaign_.shots[n].strain[1];
+    double peak = 0.0;
+    double product = 0.0;
+    double square = 0.0;
+    for (std::size_t i = 0; i < strain.size(); ++i) {
+      peak = std::max(peak, std::abs(strain[i]));
+      product += more[i] * strain[i];
+      square += strain[i] * strain[i];
+    }
+    EXPECT_NEAR(product / square, 0.03, 3e-4);
+    for (std::size_t i = 0; i < strain.size(); ++i) {
+      ASSERT_NEAR(more[i], 0.03 * strain[i], 2e-3 * peak) << "sample " << i;
+    }
+  }
+}
+
+TEST_F(Planting, OfADelayMovesTheRecord) {
+  EffectUse use = use_named("channel-delay:g2");
+  const double late_s = 3.0 * campaign_.period_s;
+  use.values[0].value = late_s;
+  const std::vector<Shot> after = planter_.planted(use);
+  const std::vector<double> more = added(after, 0, 1);
+  const std::vector<double>& strain = campaign_.shots[0].strain[1];
+  double missed = 0.0;
+  double moved = 0.0;
+  for (std::size_t i = 3; i < strain.size(); ++i) {
+    const double expected = strain[i - 3] - strain[i];
+    moved += expected * expected;
+    missed += (more[i] - expected) * (more[i] - expected);
+  }
+  EXPECT_LT(missed, 0.05 * moved);
+}
+
+TEST_F(Planting, DrawsNoiseAnewAsItWasBeforeThePulses) {
+  const std::vector<Shot> once = planter_.drawn_anew(7);
+  const std::vector<Shot> again = planter_.drawn_anew(7);
+  const std::vector<Shot> other = planter_.drawn_anew(8);
+  EXPECT_EQ(once[0].channels[1].codes, again[0].channels[1].codes);
+  EXPECT_NE(once[0].channels[1].codes, other[0].channels[1].codes);
+  const auto power = [](const std::vector<Shot>& shots, std::size_t gauge) {
+    const Campaign campaign = read_campaign(shots);
+    double sum = 0.0;
+    double count = 0.0;
+    for (const CampaignShot& shot : campaign.shots) {
+      for (std::size_t i = 0; i < shot.quiet_samples; ++i) {
+        sum += shot.strain[gauge][i] * shot.strain[gauge][i];
+        count += 1.0;
+      }
+    }
+    return sum / count;
+  };
+  for (const std::size_t j : {0U, 1U}) {
+    EXPECT_NEAR(power(once, j) / power(shots_, j), 1.0, 0.15);
+  }
+  const Campaign campaign = read_campaign(once);
+  Study study(campaign, 0.0, Workers{});
+  EXPECT_NEAR(study.fit(paper_model(BenchKind::bar, false)).misfit.chi2_reduced, 1.0, 0.1);
+}
+
+TEST(Selftest, FindsWhatWasPlantedLargeAndNothingFarBelowTheNoise) {
+  SelftestOptions options;
+  options.effects = {"gauge-position:g2"};
+  options.sizes = {2e-5, 5e-3};
+  options.nulls = 1;
+  std::size_t last = 0;
+  options.progress = [&](std::size_t done, std::size_t all) {
+    EXPECT_LE(done, all);
+    last = done;
+  };
+  const Selftest result =
+      selftest(measured(92), paper_model(BenchKind::bar, false), options, Workers{});
+  EXPECT_EQ(last, 4U);
+  EXPECT_EQ(result.untouched, DiagnosisVerdict::adequate);
+  EXPECT_EQ(result.nulls, 1U);
+  EXPECT_EQ(result.false_claims, 0U);
+  ASSERT_EQ(result.effects.size(), 1U);
+  const PlantedEffect& effect = result.effects.front();
+  ASSERT_EQ(effect.sizes.size(), 2U);
+  EXPECT_EQ(effect.sizes[0].outcome, PlantOutcome::unseen);
+  EXPECT_TRUE(effect.sizes[1].found())
+      << name_of(effect.sizes[1].outcome) << " " << ::testing::PrintToString(effect.sizes[1].said);
+  EXPECT_LT(std::abs(effect.sizes[1].strength - effect.sizes[1].size), 4.0 * effect.sizes[1].sd);
+  EXPECT_EQ(effect.smallest_found(), 5e-3);
+  EXPECT_GT(effect.identifiable, 2e-5);
+  EXPECT_LT(effect.identifiable, 5e-3);
+}
+
+TEST(Selftest, RefusesWhatItCannotPlant) {
+  const std::vector<Shot> shots = measured(93);
+  const Model model = paper_model(BenchKind::bar, false);
+  SelftestOptions options;
+  options.effects = {"gauge-positions:g2"};
+  EXPECT_THROW((void)selftest(shots, model, options, Workers{}), InputError);
+  options.effects = {"gauge-position:g2"};
+  options.sizes = {-1e-3};
+  EXPECT_THROW((void)selftest(shots, model, options, Workers{}), InputError);
+  Model holding = model;
+  holding.effects.push_back(use_named("gauge-position:g2"));
+  options.sizes = {1e-3};
+  EXPECT_THROW((void)selftest(shots, holding, options, Workers{}), InputError);
+}
+
+TEST(PlantedEffect, IsFoundFromTheSizeAboveWhichNoneWasMissed) {
+  PlantedEffect effect;
+  const auto add = [&](double size, PlantOutcome outcome) {
+    effect.sizes.push_back({size, 0.0, outcome, {}, 0.0, 0.0});
+  };
+  add(1.0, PlantOutcome::named);
+  add(-2.0, PlantOutcome::wrong);
+  add(4.0, PlantOutcome::tied);
+  EXPECT_EQ(effect.smallest_found(), 4.0);
+  add(8.0, PlantOutcome::unknown);
+  EXPECT_TRUE(std::isinf(effect.smallest_found()));
+}
+
+}  // namespace
+}  // namespace kolsky
