@@ -96,7 +96,7 @@ std::string verdict_words(const ModelStep& step) {
   return text + " It was refitted beside its rivals and foretells shots that the fit did not see.";
 }
 
-std::string truth_words(const Hidden& hidden, const TourVerdict& verdict) {
+std::string truth_words(const Hidden& hidden) {
   std::string text = "The truth: " + hidden.words;
   if (!hidden.id.empty() && hidden.in_library) {
     text += fmt::format(" ({}, {} = {:.4g} {})", hidden.id, hidden.parameter, hidden.strength,
@@ -106,6 +106,11 @@ std::string truth_words(const Hidden& hidden, const TourVerdict& verdict) {
   if (!hidden.id.empty() && !hidden.in_library) {
     text += " No effect of the library describes it.";
   }
+  return text;
+}
+
+std::string truth_words(const Hidden& hidden, const TourVerdict& verdict) {
+  std::string text = truth_words(hidden);
   switch (verdict.end) {
     case TourEnd::found:
       text += " Found.";

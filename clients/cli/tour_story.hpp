@@ -39,6 +39,9 @@ struct TourVerdict {
 /// The verdict in plain words, with what to do next; to be read before the truth is told.
 [[nodiscard]] std::string verdict_words(const ModelStep& step);
 
+/// What was hidden.
+[[nodiscard]] std::string truth_words(const Hidden& hidden);
+
 /// The truth, and how the verdict compares with it.
 [[nodiscard]] std::string truth_words(const Hidden& hidden, const TourVerdict& verdict);
 

@@ -103,7 +103,6 @@ class Drawing {
     std::string out = fmt::format(
         "<rect class=\"left\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", x,
         y, kBar, bottom - y);
-    double label = y;
     if (i > 0) {
       const double before = page_y(cascade_.steps[i - 1].level);
       out += fmt::format(
@@ -114,7 +113,6 @@ class Drawing {
             "<rect class=\"gone\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>"
             "\n",
             x, before, kBar, y - before);
-        label = before;
       }
     }
     return out + fmt::format(
@@ -122,8 +120,8 @@ class Drawing {
                      "<text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n"
                      "<text class=\"small\" x=\"{0:.1f}\" y=\"{5:.1f}\" text-anchor=\"middle\">{6}"
                      "</text>\n",
-                     centre, label - 7.0, step.level, bottom + 20.0, escaped(step.name),
-                     bottom + 38.0, escaped(step.note));
+                     centre, y - 7.0, step.level, bottom + 20.0, escaped(step.name), bottom + 38.0,
+                     escaped(step.note));
   }
 
   const Cascade& cascade_;

@@ -140,10 +140,16 @@ std::vector<Shot> Planter::planted(const EffectUse& use) const {
   std::vector<double> theta = carry(base, studied_.fit.theta, composition);
   const bool filed = std::any_of(base.uses().begin(), base.uses().end(),
                                  [&](const EffectUse& own) { return own.id() == use.id(); });
+  const bool each_gauge = use.effect->about().each_gauge;
+  std::size_t place = 0;
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
     if (composition.uses()[number.use].id() == use.id()) {
-      const double value = use.values[number.parameter].value;
+      // Alike at all gauges it would be a wave's: every other gauge has the opposite.
+      const bool strength =
+          !use.effect->about().parameters[number.parameter].auxiliary() && each_gauge;
+      const double sign = strength && place++ % campaign_.gauges() % 2 == 1 ? -1.0 : 1.0;
+      const double value = sign * use.values[number.parameter].value;
       // A filed number is moved from where the fit has it.
       theta[i] =
           filed ? theta[i] + (value - use.effect->about().parameters[number.parameter].null_value) /

@@ -23,7 +23,8 @@ class Planter {
   /// Why an effect cannot be planted; empty where it can: a specimen whose answer is not linear.
   [[nodiscard]] std::string impossible_because(const EffectUse& use) const;
 
-  /// The measured shots with the effect added, rounded to codes again.
+  /// The measured shots with the effect added, rounded to codes again. An effect with a strength at
+  /// every gauge has the opposite one at every other.
   [[nodiscard]] std::vector<Shot> planted(const EffectUse& use) const;
 
   /// Shots as the fitted model foretells them, with noise drawn anew: it has the spectrum, and the

@@ -104,9 +104,9 @@ class Run {
   void choose_effects(const Diagnosis& untouched) {
     const std::string& last = campaign_.bench.gauges.back().name;
     std::vector<std::string> ids = options_.effects;
-    std::map<std::string, double> identifiable;
+    std::map<std::string, std::pair<double, double>> limits;  ///< detectable, identifiable
     for (const CandidateResult& candidate : untouched.candidates) {
-      identifiable[candidate.effect] = candidate.identifiable;
+      limits[candidate.effect] = {candidate.detectable, candidate.identifiable};
       const EffectUse use = use_named(candidate.effect);
       if (options_.effects.empty() && std::isfinite(candidate.identifiable) &&
           (use.gauge.empty() || use.gauge == last)) {
@@ -114,28 +114,34 @@ class Run {
       }
     }
     for (const std::string& id : ids) {
-      const auto known = identifiable.find(id);
-      add_effect(id, known == identifiable.end() ? std::numeric_limits<double>::infinity()
-                                                 : known->second);
+      constexpr double kNone = std::numeric_limits<double>::infinity();
+      const auto known = limits.find(id);
+      const auto [detectable, identifiable] =
+          known == limits.end() ? std::pair(kNone, kNone) : known->second;
+      add_effect(id, detectable, identifiable);
     }
   }
 
-  void add_effect(const std::string& id, double identifiable) {
+  void add_effect(const std::string& id, double detectable, double identifiable) {
     EffectUse use = use_named(id);
     const EffectParameter& parameter = use.effect->about().parameters.front();
-    PlantedEffect planted{id, parameter.name, parameter.unit, identifiable, {}, {}};
+    PlantedEffect planted{id, parameter.name, parameter.unit, identifiable, detectable, {}, {}};
+    const double bound = std::max(std::abs(parameter.upper - parameter.null_value),
+                                  std::abs(parameter.lower - parameter.null_value));
+    const bool by_identifiable = identifiable < bound;
+    const double unit_size = by_identifiable ? identifiable : detectable;
     use.values.front().value = parameter.null_value + parameter.typical;
     planted.skipped = planter_.impossible_because(use);
     std::vector<std::pair<double, double>> sizes;  ///< with its multiple
     for (const double size : options_.sizes) {
-      sizes.emplace_back(size, std::isfinite(identifiable) ? size / identifiable : 0.0);
+      sizes.emplace_back(size, by_identifiable ? size / identifiable : 0.0);
     }
     if (options_.sizes.empty() && planted.skipped.empty()) {
-      if (!std::isfinite(identifiable)) {
-        planted.skipped = "cannot be told apart on these shots at any size";
+      if (!std::isfinite(unit_size)) {
+        planted.skipped = "cannot be seen on these shots at any size";
       }
       for (const double multiple : options_.multiples) {
-        sizes.emplace_back(multiple * identifiable, multiple);
+        sizes.emplace_back(multiple * unit_size, by_identifiable ? multiple : 0.0);
       }
     }
     const std::size_t at = result_.effects.size();

@@ -13,7 +13,8 @@ namespace kolsky {
 struct SelftestOptions {
   std::vector<std::string> effects;  ///< ids; empty: one of every kind that these shots can show
   std::vector<double> sizes;         ///< in the effect's unit; empty: `multiples`
-  /// Of the smallest size that first-order theory calls identifiable.
+  /// Of the smallest size that first-order theory calls identifiable; of the smallest detectable
+  /// where an effect has a rival so near that the former is beyond its bounds.
   std::vector<double> multiples{0.5, 1.0, 2.0, 4.0};
   std::size_t nulls = 6;  ///< campaigns of fresh noise in which nothing is
   std::uint64_t seed = 1;
@@ -37,7 +38,7 @@ enum class PlantOutcome {
 /// One size of one effect.
 struct PlantedSize {
   double size = 0.0;      ///< off its null, in the parameter's unit
-  double multiple = 0.0;  ///< of the smallest identifiable size; 0 where there is none
+  double multiple = 0.0;  ///< of the smallest identifiable size; 0 where that is beyond bounds
   PlantOutcome outcome = PlantOutcome::unseen;
   std::vector<std::string> said;
   double strength = 0.0;  ///< found, where it was named
@@ -52,6 +53,7 @@ struct PlantedEffect {
   std::string parameter;
   std::string unit;
   double identifiable = 0.0;  ///< as first-order theory has it on these shots
+  double detectable = 0.0;    ///< likewise
   std::string skipped;        ///< why nothing was planted; empty where it was
   std::vector<PlantedSize> sizes;
 

@@ -107,6 +107,7 @@ JsonValue describe(const PlantedEffect& effect) {
   return JsonObject{{"effect", effect.id},
                     {"parameter", effect.parameter},
                     {"unit", effect.unit},
+                    {"smallest_detectable", effect.detectable},
                     {"smallest_identifiable", effect.identifiable},
                     {"smallest_found", effect.smallest_found()},
                     {"skipped", effect.skipped},

@@ -38,6 +38,8 @@ struct Settings {
   bool quick = false;
   bool pause = false;
   bool remove = false;
+  bool shots_only = false;
+  bool truth_only = false;
 };
 
 /// Where the tour happens; the program is in it while this lives.
@@ -83,6 +85,12 @@ Hidden hidden_of(const HiddenTruth& truth) {
   return {truth.id, truth.parameter, truth.unit, truth.strength, truth.words, truth.in_library};
 }
 
+JsonValue describe(const Hidden& hidden) {
+  return JsonObject{{"effect", hidden.id},           {"in_library", hidden.in_library},
+                    {"parameter", hidden.parameter}, {"unit", hidden.unit},
+                    {"strength", hidden.strength},   {"words", hidden.words}};
+}
+
 std::string shot_name(std::size_t shot) {
   return fmt::format("shot{:02}", shot + 1);
 }
@@ -97,6 +105,9 @@ class Tour {
     const std::uint64_t seed = settings_.seed ? *settings_.seed : std::random_device{}() % 100000U;
     campaign_ = draw_hidden_campaign(seed, settings_.quick ? kFewShots : kShots);
     hidden_ = hidden_of(campaign_.truth);
+    if (settings_.shots_only) {
+      return leave_shots(seed);
+    }
     introduce(seed);
     shoot();
     import();
@@ -148,18 +159,42 @@ class Tour {
     if (shown && !silent()) {
       context_.out << inked("$ " + text, Ink::bold, context_.terminal.colour) << std::endl;
     }
+    std::vector<std::string> run = words;
+    if (silent()) {
+      run.emplace_back("--json");  // and nothing of its progress on the terminal
+    }
     std::ostringstream nowhere;
-    const bool quiet = silent() || !shown;
     std::ostringstream errors;
-    const int code = run_program(words, quiet ? nowhere : context_.out,
-                                 silent() ? errors : std::cerr, context_.terminal);
+    const int code =
+        run_program(run, silent() || !shown ? nowhere : context_.out, errors, context_.terminal);
     if (code != kDone) {
-      throw InputError("kolsky tour", "the command \"" + text + "\" failed " + errors.str(),
+      throw InputError("kolsky tour", "the command \"" + text + "\" failed: " + errors.str(),
                        "what it worked on is in " + place_.folder().string());
     }
     if (shown && !silent()) {
       context_.out << "\n";
     }
+  }
+
+  /// What a laboratory would have after a morning: tables, a bench file and a log.
+  int leave_shots(std::uint64_t seed) {
+    write_tables();
+    std::string log = "shot,temperature_K,striker_speed_m_per_s\n";
+    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+      log += fmt::format("{},{:.2f},{:.2f}\n", shot_name(n), campaign_.shots[n].temperature_K,
+                         campaign_.shots[n].striker_speed_m_per_s);
+    }
+    replace_file("log.csv", log);
+    if (silent()) {
+      context_.out << to_text(
+                          JsonObject{{"seed", seed},
+                                     {"folder", place_.folder().string()},
+                                     {"shots", static_cast<std::int64_t>(campaign_.shots.size())}})
+                   << "\n";
+    }
+    say(fmt::format("{} tables of a simulated bar, bench.toml and log.csv are in {}",
+                    campaign_.shots.size(), place_.folder().filename().string()));
+    return kDone;
   }
 
   void introduce(std::uint64_t seed) {
@@ -174,7 +209,7 @@ class Tour {
         campaign_.shots.size()));
   }
 
-  void shoot() {
+  std::vector<std::string> write_tables() {
     std::vector<std::string> tables(campaign_.shots.size());
     all_cores().run(tables.size(), [&](std::size_t shot, std::size_t) {
       tables[shot] = shot_table(campaign_, shot);
@@ -183,6 +218,11 @@ class Tour {
     for (std::size_t n = 0; n < tables.size(); ++n) {
       replace_file(shot_name(n) + ".csv", tables[n]);
     }
+    return tables;
+  }
+
+  void shoot() {
+    const std::vector<std::string> tables = write_tables();
     say("");
     if (!silent()) {
       context_.out << records_plot(tables.front()) << "\n";
@@ -218,10 +258,10 @@ class Tour {
     fs::create_directory("shots");
     for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
       const HiddenShot& shot = campaign_.shots[n];
-      command(
-          {"import", "csv", shot_name(n) + ".csv", "--bench", "bench.toml", "-o",
-           shot_name(n) + ".h5", "--meta", fmt::format("temperature_K={:.2f}", shot.temperature_K)},
-          n == 0);
+      command({"import", "csv", shot_name(n) + ".csv", "--bench", "bench.toml", "-o",
+               "shots/" + shot_name(n) + ".h5", "--meta",
+               fmt::format("temperature_K={:.2f}", shot.temperature_K)},
+              n == 0);
     }
     say(fmt::format("The same for shot02 to {}, each with its own temperature.",
                     shot_name(campaign_.shots.size() - 1)));
@@ -290,12 +330,7 @@ class Tour {
                           {"commands", commands_},
                           {"verdict", step.verdict},
                           {"effects", step.added},
-                          {"truth", JsonObject{{"effect", hidden_.id},
-                                               {"in_library", hidden_.in_library},
-                                               {"parameter", hidden_.parameter},
-                                               {"unit", hidden_.unit},
-                                               {"strength", hidden_.strength},
-                                               {"words", hidden_.words}}},
+                          {"truth", describe(hidden_)},
                           {"end", kEnds[static_cast<std::size_t>(verdict.end)]},
                           {"strength", verdict.strength ? JsonValue(*verdict.strength) : nullptr},
                           {"strength_sd", verdict.sd},
@@ -322,6 +357,30 @@ class Tour {
   std::vector<std::string> commands_;
 };
 
+int tell(const Settings& settings, Context& context) {
+  if (!settings.seed) {
+    throw InputError("kolsky tour: --truth-only", "needs to know which campaign", "give --seed");
+  }
+  const HiddenTruth truth =
+      draw_hidden_campaign(*settings.seed, settings.quick ? kFewShots : kShots).truth;
+  if (context.json) {
+    context.out << to_text(
+                       JsonObject{{"seed", *settings.seed}, {"truth", describe(hidden_of(truth))}})
+                << "\n";
+    return kDone;
+  }
+  context.out << truth_words(hidden_of(truth)) << "\n";
+  return kDone;
+}
+
+int run(const Settings& settings, Context& context) {
+  if (settings.shots_only && (settings.truth_only || settings.remove || !settings.folder)) {
+    throw InputError("kolsky tour: --shots-only", "leaves a campaign in a folder of yours",
+                     "give --folder, and neither --remove nor --truth-only");
+  }
+  return settings.truth_only ? tell(settings, context) : Tour(settings, context).run();
+}
+
 }  // namespace
 
 Command tour_command() {
@@ -335,15 +394,19 @@ Command tour_command() {
       "hidden is\ntold at the end, whether it was found or not.";
   command.examples =
       "  kolsky tour\n"
-      "  kolsky tour --seed 8 --pause\n";
+      "  kolsky tour --seed 8 --pause\n"
+      "  kolsky tour --seed 8 --shots-only --folder campaign\n";
   command.arguments = {
       option("--seed", "N", "which campaign; else any", &s.seed),
       option("--folder", "DIR", "where to work, kept; else a new folder among the temporary ones",
              &s.folder),
       flag("--quick", "four shots in place of six", &s.quick),
       flag("--pause", "wait for Enter before each step", &s.pause),
-      flag("--remove", "remove the folder at the end", &s.remove)};
-  command.run = [settings](Context& context) { return Tour(*settings, context).run(); };
+      flag("--remove", "remove the folder at the end", &s.remove),
+      flag("--shots-only", "write the campaign's tables, bench file and log, and stop",
+           &s.shots_only),
+      flag("--truth-only", "tell what the campaign of this seed hides, and stop", &s.truth_only)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }
 
