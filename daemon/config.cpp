@@ -16,6 +16,7 @@ namespace kolsky {
 namespace {
 
 constexpr std::int64_t kLongestWindow = std::int64_t{1} << 26;
+constexpr std::int64_t kLongestJournal_bytes = std::int64_t{1} << 40;
 constexpr std::string_view kReplay = "replay:";
 
 // Absolute, because clients that run elsewhere are told of it.
@@ -203,8 +204,10 @@ DaemonConfig read_config(const std::filesystem::path& path) {
   config.digitiser = read_digitiser(root.table("digitiser"), path);
   config.trigger = read_trigger(root.table("trigger"));
   const TomlTable store = root.table("store");
-  store.expect({"folder"});
+  store.expect({"folder", "journal_limit_bytes"});
   config.store = beside(path, store.text("folder"));
+  config.journal_limit_bytes = integer_within(
+      store, "journal_limit_bytes", config.journal_limit_bytes, 4096, kLongestJournal_bytes);
   if (const auto endpoints = root.optional_table("endpoints")) {
     config.endpoints = read_endpoints(*endpoints);
   }
@@ -228,11 +231,12 @@ Apparatus read_apparatus(const DaemonConfig& config) {
     apparatus.bar_model = read_material(*config.bar_model);
   }
   const std::size_t asked = config.digitiser.channels.size();
-  const std::size_t gauges = apparatus.bench.gauges.size();
+  const std::size_t gauges = apparatus.bench.channels().size();
   if (asked != 0 && asked != gauges) {
     throw InputError(
         config.file.string() + ": digitiser.channels",
-        fmt::format("names {} channels, {} has {} gauges", asked, config.bench.string(), gauges),
+        fmt::format("names {} channels, {} has {} {}", asked, config.bench.string(), gauges,
+                    apparatus.bench.photo_sensors.empty() ? "gauges" : "gauges and photo-sensors"),
         "name one channel for each gauge, in the bench's order");
   }
   check_gauges(config, apparatus.bench);
@@ -264,7 +268,7 @@ TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_H
 DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench) {
   DigitiserOptions options;
   options.channels = config.digitiser.channels;
-  options.channel_count = bench.gauges.size();
+  options.channel_count = bench.channels().size();
   options.sampling_frequency_Hz = bench.sampling_frequency_Hz;
   options.block_samples = static_cast<std::size_t>(config.digitiser.block_samples);
   options.device = config.digitiser.device;

@@ -54,6 +54,7 @@ struct DaemonConfig {
   std::filesystem::path bench;
   std::optional<std::filesystem::path> bar_model;
   std::filesystem::path store;
+  std::int64_t journal_limit_bytes = 16 << 20;  ///< length at which a journal is ended
   DigitiserConfig digitiser;
   TriggerConfig trigger;
   EndpointConfig endpoints;

@@ -218,6 +218,8 @@ void Controller::list_shots(std::size_t most, v1::ShotList& shots) {
     shot.set_reason(entry.reason);
     shot.set_peak_stress_pa(entry.peak_stress_Pa);
     shot.set_peak_strain(entry.peak_strain);
+    shot.set_peak_force_n(entry.peak_force_N);
+    shot.set_restitution(entry.restitution);
   }
 }
 

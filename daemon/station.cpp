@@ -59,8 +59,8 @@ std::uint64_t recovered(const StoreLayout& store, std::uint64_t boot_id) {
   for (const std::string& id : report.recovered) {
     log::info(fmt::format("shot {} was in a journal only; its capture is written now", id));
   }
-  if (!report.pruned.empty()) {
-    log::info(fmt::format("{} journals removed, whose {} shots are in captures that were read back",
+  if (!report.pruned.empty() && report.journaled_shots != 0) {
+    log::info(fmt::format("removed of journals: {}; shots in them, read back from captures: {}",
                           report.pruned.size(), report.journaled_shots));
   }
   for (const StoreReport::Problem& problem : report.problems) {
@@ -79,6 +79,7 @@ void check_unchanged(const DaemonConfig& was, const DaemonConfig& now) {
   check(was.digitiser == now.digitiser, "digitiser");
   check(was.endpoints == now.endpoints, "endpoints");
   check(was.store == now.store, "store.folder");
+  check(was.journal_limit_bytes == now.journal_limit_bytes, "store.journal_limit_bytes");
   check(was.ring_s == now.ring_s, "ring.seconds");
 }
 
@@ -91,7 +92,8 @@ Station::Station(DaemonConfig config)
       store_(created(config_.store)),
       lock_(store_.root),
       publisher_(publisher_options(config_.endpoints)),
-      journal_(store_, recovered(store_, publisher_.boot_id())),
+      journal_(store_, recovered(store_, publisher_.boot_id()),
+               static_cast<std::uint64_t>(config_.journal_limit_bytes)),
       digitiser_(
           open_digitiser(config_.digitiser.uri, digitiser_options(config_, apparatus_.bench))),
       stream_(digitiser_->info()),

@@ -154,14 +154,25 @@ constexpr History kWaves[] = {
     {"transmitted", "1", &Reduction::transmitted},
 };
 
+struct BallHistory {
+  const char* name;
+  const char* unit;
+  std::vector<double> BallImpact::*values;
+};
+
+constexpr BallHistory kBallHistories[] = {
+    {"time_s", "s", &BallImpact::time_s},
+    {"force_N", "N", &BallImpact::force_N},
+};
+
 using Waveforms = google::protobuf::RepeatedPtrField<v1::Waveform>;
 
-template <std::size_t N>
-void pack_all(const Reduction& reduction, const History (&histories)[N], Waveforms& waveforms) {
+template <class Histories, class Kind, std::size_t N>
+void pack_all(const Histories& reduction, const Kind (&histories)[N], Waveforms& waveforms) {
   const std::vector<double>& time = reduction.time_s;
   const double start_s = time.empty() ? 0.0 : time.front();
   const double step_s = time.size() < 2 ? 0.0 : time[1] - time[0];
-  for (const History& history : histories) {
+  for (const Kind& history : histories) {
     v1::Waveform& waveform = *waveforms.Add();
     pack_values(history.name, history.unit, reduction.*history.values, waveform);
     waveform.set_start_s(start_s);
@@ -170,10 +181,10 @@ void pack_all(const Reduction& reduction, const History (&histories)[N], Wavefor
 }
 
 /// Fills the arrays that are there by name; names this version does not know are a later version's.
-template <std::size_t N>
-void unpack_all(const Waveforms& waveforms, const std::string& list, const History (&histories)[N],
-                Reduction& reduction) {
-  for (const History& history : histories) {
+template <class Histories, class Kind, std::size_t N>
+void unpack_all(const Waveforms& waveforms, const std::string& list, const Kind (&histories)[N],
+                Histories& reduction) {
+  for (const Kind& history : histories) {
     int found = -1;
     for (int i = 0; i < waveforms.size(); ++i) {
       if (waveforms[i].name() != history.name) {
@@ -193,10 +204,10 @@ void unpack_all(const Waveforms& waveforms, const std::string& list, const Histo
 }
 
 /// All arrays of a list have the length of `time_s`.
-template <std::size_t N>
-void check_lengths(const Reduction& reduction, const std::string& list,
-                   const History (&histories)[N]) {
-  for (const History& history : histories) {
+template <class Histories, class Kind, std::size_t N>
+void check_lengths(const Histories& reduction, const std::string& list,
+                   const Kind (&histories)[N]) {
+  for (const Kind& history : histories) {
     const std::size_t length = (reduction.*history.values).size();
     if (length != reduction.time_s.size()) {
       throw InputError(list + " \"" + history.name + "\"",
@@ -205,6 +216,95 @@ void check_lengths(const Reduction& reduction, const std::string& list,
                        "send every history over the same times");
     }
   }
+}
+
+void encode(const ForceStation& station, v1::ForceStation& message) {
+  message.set_gauges(station.gauges);
+  message.set_position_m(station.position_m);
+  message.set_weight(station.weight);
+  message.set_clean_from_s(station.clean_from_s);
+  message.set_clean_until_s(station.clean_until_s);
+  message.set_noise_n(station.noise_N);
+  message.set_impulse_n_s(station.impulse_N_s);
+}
+
+ForceStation decode(const v1::ForceStation& message) {
+  return {message.gauges(),       message.position_m(),    message.weight(),
+          message.clean_from_s(), message.clean_until_s(), message.noise_n(),
+          message.impulse_n_s()};
+}
+
+/// What is not known is not in the message.
+template <class MakePlace>
+void encode_known(const std::optional<Measured>& number, const MakePlace& make_place) {
+  if (number) {
+    encode(*number, *make_place());
+  }
+}
+
+std::optional<Measured> decode_known(bool there, const v1::Measured& message) {
+  return there ? std::optional(decode(message)) : std::nullopt;
+}
+
+void encode(const BallImpact& ball, v1::BallImpact& message) {
+  pack_all(ball, kBallHistories, *message.mutable_histories());
+  message.set_low_pass_hz(ball.low_pass_Hz);
+  message.set_force_noise_n(ball.force_noise_N);
+  message.set_clean_from_s(ball.clean_from_s);
+  message.set_clean_until_s(ball.clean_until_s);
+  encode(ball.peak_force_N, *message.mutable_peak_force_n());
+  message.set_peak_time_s(ball.peak_time_s);
+  encode(ball.contact_time_s, *message.mutable_contact_time_s());
+  message.set_contact_threshold(ball.contact_threshold);
+  message.set_contact_over(ball.contact_over);
+  encode(ball.impulse_N_s, *message.mutable_impulse_n_s());
+  encode_known(ball.mass_kg, [&] { return message.mutable_mass_kg(); });
+  encode_known(ball.incident_speed_m_per_s,
+               [&] { return message.mutable_incident_speed_m_per_s(); });
+  encode_known(ball.rebound_speed_m_per_s, [&] { return message.mutable_rebound_speed_m_per_s(); });
+  message.set_speed_source(ball.speed_source);
+  encode_known(ball.restitution_by_speed, [&] { return message.mutable_restitution_by_speed(); });
+  encode_known(ball.restitution_by_impulse,
+               [&] { return message.mutable_restitution_by_impulse(); });
+  encode_known(ball.restitution_difference,
+               [&] { return message.mutable_restitution_difference(); });
+  encode_known(ball.momentum_excess, [&] { return message.mutable_momentum_excess(); });
+  for (const ForceStation& station : ball.stations) {
+    encode(station, *message.add_stations());
+  }
+}
+
+BallImpact decode(const v1::BallImpact& message) {
+  BallImpact ball;
+  unpack_all(message.histories(), "histories", kBallHistories, ball);
+  check_lengths(ball, "histories", kBallHistories);
+  ball.low_pass_Hz = message.low_pass_hz();
+  ball.force_noise_N = message.force_noise_n();
+  ball.clean_from_s = message.clean_from_s();
+  ball.clean_until_s = message.clean_until_s();
+  ball.peak_force_N = decode(message.peak_force_n());
+  ball.peak_time_s = message.peak_time_s();
+  ball.contact_time_s = decode(message.contact_time_s());
+  ball.contact_threshold = message.contact_threshold();
+  ball.contact_over = message.contact_over();
+  ball.impulse_N_s = decode(message.impulse_n_s());
+  ball.mass_kg = decode_known(message.has_mass_kg(), message.mass_kg());
+  ball.incident_speed_m_per_s =
+      decode_known(message.has_incident_speed_m_per_s(), message.incident_speed_m_per_s());
+  ball.rebound_speed_m_per_s =
+      decode_known(message.has_rebound_speed_m_per_s(), message.rebound_speed_m_per_s());
+  ball.speed_source = message.speed_source();
+  ball.restitution_by_speed =
+      decode_known(message.has_restitution_by_speed(), message.restitution_by_speed());
+  ball.restitution_by_impulse =
+      decode_known(message.has_restitution_by_impulse(), message.restitution_by_impulse());
+  ball.restitution_difference =
+      decode_known(message.has_restitution_difference(), message.restitution_difference());
+  ball.momentum_excess = decode_known(message.has_momentum_excess(), message.momentum_excess());
+  for (const v1::ForceStation& station : message.stations()) {
+    ball.stations.push_back(decode(station));
+  }
+  return ball;
 }
 
 v1::Quality::Verdict overall(const Quality& quality) {
@@ -350,6 +450,9 @@ void encode(const Reduction& reduction, const std::string& shot_id, v1::Result& 
   message.set_arrival_s(reduction.arrival_s);
   message.set_arrival_sigma_s(reduction.arrival_sigma_s);
   message.set_band_limit_hz(reduction.band_limit_Hz);
+  if (reduction.ball) {
+    encode(*reduction.ball, *message.mutable_ball());
+  }
 }
 
 Reduction decode(const v1::Result& message) {
@@ -360,6 +463,9 @@ Reduction decode(const v1::Result& message) {
     unpack_all(message.waves(), "waves", kWaves, reduction);
     check_lengths(reduction, "histories", kHistories);
     check_lengths(reduction, "waves", kWaves);
+    if (message.has_ball()) {
+      reduction.ball = within("ball", [&] { return decode(message.ball()); });
+    }
   });
   reduction.bar_model = message.bar_model();
   reduction.arrival_s = message.arrival_s();

@@ -74,7 +74,9 @@ JsonValue describe(const v1::ShotSummary& shot) {
                     {"reducible", shot.reducible()},
                     {"reason", shot.reason()},
                     {"peak_stress_Pa", shot.peak_stress_pa()},
-                    {"peak_strain", shot.peak_strain()}};
+                    {"peak_strain", shot.peak_strain()},
+                    {"peak_force_N", shot.peak_force_n()},
+                    {"restitution", shot.restitution()}};
 }
 
 JsonValue describe(const v1::Preflight& preflight) {

@@ -113,10 +113,15 @@ std::string channel_line(const v1::ChannelStatus& channel) {
 std::string shot_line(const v1::ShotSummary& shot, bool colour) {
   const std::string verdict =
       inked(padded_right(verdict_name(shot.verdict()), 8), verdict_ink(shot.verdict()), colour);
-  const std::string outcome =
+  std::string outcome =
       shot.reducible() ? fmt::format("{} peak, strain {}", with_unit(shot.peak_stress_pa(), "Pa"),
                                      with_unit(shot.peak_strain(), "strain"))
                        : shot.reason();
+  if (shot.peak_force_n() > 0.0) {
+    outcome = with_unit(shot.peak_force_n(), "N") + " peak" +
+              (shot.restitution() > 0.0 ? fmt::format(", restitution {:.3f}", shot.restitution())
+                                        : std::string());
+  }
   return shot.id() + "  " + verdict + outcome;
 }
 

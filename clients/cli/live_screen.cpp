@@ -6,6 +6,7 @@
 
 #include "clients/cli/daemon_text.hpp"
 #include "clients/cli/live_view.hpp"
+#include "clients/figure/ball_figure.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/terminal/plot.hpp"
@@ -110,7 +111,8 @@ std::vector<std::string> LiveView::loop_lines(const Terminal& terminal, int rows
   if (!last_loop_.has_value() || rows < kLeastLoopRows + kLoopFrame) {
     return {};
   }
-  Panel panel = loop_panel(last_loop_->reduction);
+  const Reduction& reduction = last_loop_->reduction;
+  Panel panel = reduction.ball ? ball_force_panel(*reduction.ball) : loop_panel(reduction);
   panel.title = last_loop_->shot_id;
   return lines_of(
       plot_text(panel, {std::min(terminal.columns, 100), rows - kLoopFrame}, terminal.colour));

@@ -138,6 +138,8 @@ std::string LiveView::take_result(const Received& message) {
   event.push_back({"reason", summary.reason()});
   event.push_back({"peak_stress_Pa", summary.peak_stress_pa()});
   event.push_back({"peak_strain", summary.peak_strain()});
+  event.push_back({"peak_force_N", summary.peak_force_n()});
+  event.push_back({"restitution", summary.restitution()});
   events_.emplace_back(std::move(event));
   return "result " + shot_line(summary, false);
 }
@@ -190,7 +192,11 @@ v1::ShotSummary& LiveView::show_result(const v1::Result& result) {
   summary.set_reason(result.quality().reason());
   summary.set_peak_stress_pa(loop.peak_stress_Pa);
   summary.set_peak_strain(loop.peak_strain);
-  if (!reduction.stress_Pa.empty()) {
+  if (reduction.ball) {
+    summary.set_peak_force_n(reduction.ball->peak_force_N);
+    summary.set_restitution(reduction.ball->restitution().value_or(Measured{}));
+  }
+  if (!reduction.stress_Pa.empty() || reduction.ball) {
     last_loop_ = LastLoop{result.shot_id(), std::move(reduction)};
   }
   return summary;

@@ -3,22 +3,15 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <atomic>
 #include <ctime>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "drivers/files/capture.hpp"
-#include "drivers/files/file_bytes.hpp"
-#include "drivers/files/sha256.hpp"
+#include "drivers/files/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 
 namespace {
-
-constexpr std::size_t kMostBytes = std::size_t{1} << 32U;
 
 std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
   std::vector<std::filesystem::path> files;
@@ -58,13 +51,7 @@ std::size_t count_of(const std::vector<std::string>& captures) {
 }
 
 std::string digest_of(const std::vector<std::string>& captures) {
-  Sha256 all;
-  for (const auto& file : files_of(captures)) {
-    const std::string bytes = read_file_bytes(file, kMostBytes);
-    const std::string own = sha256_hex(std::as_bytes(std::span(bytes)));
-    all.add(std::as_bytes(std::span(own)));
-  }
-  return all.hex();
+  return digest_of_files(files_of(captures));
 }
 
 double band_limit_of(std::optional<double> asked_Hz) {
@@ -72,38 +59,6 @@ double band_limit_of(std::optional<double> asked_Hz) {
     throw InputError("--band-limit", "must be above 0 Hz", "give a positive number in Hz");
   }
   return asked_Hz.value_or(0.0);
-}
-
-Workers all_cores() {
-  Workers executor;
-  executor.workers = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t workers = executor.workers;
-  executor.run = [workers](std::size_t count,
-                           const std::function<void(std::size_t, std::size_t)>& work) {
-    std::atomic<std::size_t> next{0};
-    std::exception_ptr error;
-    std::mutex lock;
-    const auto loop = [&](std::size_t worker) {
-      for (std::size_t index = next++; index < count; index = next++) {
-        try {
-          work(index, worker);
-        } catch (...) {
-          const std::scoped_lock held(lock);
-          error = std::current_exception();
-        }
-      }
-    };
-    std::vector<std::jthread> threads;
-    for (std::size_t worker = 1; worker < std::min(workers, count); ++worker) {
-      threads.emplace_back(loop, worker);
-    }
-    loop(0);
-    threads.clear();
-    if (error) {
-      std::rethrow_exception(error);
-    }
-  };
-  return executor;
 }
 
 std::string utc_now() {
@@ -128,6 +83,7 @@ JsonValue describe_effects(const Model& model) {
         JsonObject{{"id", use.id()},
                    {"stage", kolsky::name_of(about.stage)},
                    {"per_shot", use.per_shot},
+                   {"alike", use.alike},
                    {"known_unknown", !use.values.empty() && use.values[0].prior_sd > 0.0},
                    {"parameters", std::move(parameters)}});
   }

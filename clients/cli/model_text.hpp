@@ -6,7 +6,6 @@
 
 #include "clients/cli/json_value.hpp"
 #include "processing/base/shot.hpp"
-#include "processing/criticism/workers.hpp"
 #include "processing/models/model.hpp"
 
 namespace kolsky::cli {
@@ -23,9 +22,6 @@ namespace kolsky::cli {
 /// What --band-limit asks for; 0, what the noise allows, where it was not given.
 /// @throws InputError where it is not above 0
 [[nodiscard]] double band_limit_of(std::optional<double> asked_Hz);
-
-/// As many threads as the machine has cores.
-[[nodiscard]] Workers all_cores();
 
 /// "2026-11-21T14:00:00Z"
 [[nodiscard]] std::string utc_now();

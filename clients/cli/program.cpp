@@ -14,27 +14,33 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr std::size_t kNameColumns = 16;
-
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
+}
+
+/// One line for each command that `shown` takes.
+template <typename Shown>
+std::string list_of(const std::vector<Command>& commands, const Shown& shown) {
+  std::size_t columns = 0;
+  for (const Command& command : commands) {
+    columns = std::max(columns, command.name.size() + 2);
+  }
+  std::string text;
+  for (const Command& command : commands) {
+    if (shown(command)) {
+      text += "  " + padded_right(command.name, columns) + first_line(command.purpose) + "\n";
+    }
+  }
+  return text;
 }
 
 std::string overview(const std::vector<Command>& commands) {
   std::string text =
       "kolsky: from the strain gauges of a split Hopkinson bar to a stress-strain curve.\n\n"
       "Usage: kolsky COMMAND [OPTIONS]\n\nOn files:\n";
-  const auto list = [&](bool uses_daemon) {
-    for (const Command& command : commands) {
-      if (command.uses_daemon == uses_daemon) {
-        text +=
-            "  " + padded_right(command.name, kNameColumns) + first_line(command.purpose) + "\n";
-      }
-    }
-  };
-  list(false);
+  text += list_of(commands, [](const Command& command) { return !command.uses_daemon; });
   text += "\nWith the daemon (--endpoint, or KOLSKY_ENDPOINT):\n";
-  list(true);
+  text += list_of(commands, [](const Command& command) { return command.uses_daemon; });
   return text +
          "\nEvery command has --help with an example, and --json for scripts. Quantities are in "
          "SI,\n"
@@ -62,6 +68,17 @@ bool begins_with_name(const Words& words, const Command& command) {
 // "import" of "import csv".
 bool is_first_word(const std::string& word, const Command& command) {
   return command.name.starts_with(word + " ");
+}
+
+bool asks_for_help(const std::string& word) {
+  return word == "--help" || word == "-h";
+}
+
+/// What `kolsky model --help` says; empty where no command begins with that word.
+std::string group_overview(const std::string& word, const std::vector<Command>& commands) {
+  const std::string list =
+      list_of(commands, [&](const Command& command) { return is_first_word(word, command); });
+  return list.empty() ? list : "Usage: kolsky " + word + " ... [OPTIONS]\n\n" + list;
 }
 
 [[noreturn]] void refuse_unknown(const Words& words, const std::vector<Command>& commands) {
@@ -109,9 +126,15 @@ int dispatch(const Words& words, std::ostream& out, const Terminal& terminal) {
   if (words.empty()) {
     throw InputError("kolsky", "no command given", "kolsky --help lists them");
   }
-  if (words.front() == "--help" || words.front() == "-h" || words.front() == "help") {
+  if (asks_for_help(words.front()) || words.front() == "help") {
     out << overview(commands);
     return kDone;
+  }
+  if (words.size() == 2 && asks_for_help(words[1])) {
+    if (const std::string group = group_overview(words[0], commands); !group.empty()) {
+      out << group;
+      return kDone;
+    }
   }
   if (words.front() == "--version") {
     out << "kolsky " << KOLSKY_VERSION << "\n";

@@ -24,7 +24,7 @@ bool assumes_bar_model(const Shot& shot, const ReductionOptions& options) {
 
 void rebench(Shot& shot, const std::filesystem::path& path) {
   const BenchFile file = read_bench(path);
-  const auto& gauges = file.bench.gauges;
+  const std::vector<BenchChannel> gauges = file.bench.channels();
   if (gauges.size() != shot.channels.size()) {
     throw InputError(path.string() + ": gauges",
                      std::to_string(gauges.size()) + " are filed but the capture has " +

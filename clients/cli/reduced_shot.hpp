@@ -65,6 +65,14 @@ void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object);
 /// The same for people: numbers, verdicts with their sentences, the loop and the forces drawn.
 [[nodiscard]] std::string report(const ReducedShot& shot, const Terminal& terminal);
 
+/// Parts that a specimen's report and a ball's have in common.
+[[nodiscard]] JsonValue describe_meta(const std::map<std::string, std::string>& meta);
+/// reducible, reason, verdict and checks.
+[[nodiscard]] JsonObject describe_checks(const Quality& quality);
+[[nodiscard]] std::string report_row(const std::string& name, const std::string& text);
+[[nodiscard]] std::string report_head(const ReducedShot& reduced, const Terminal& terminal);
+[[nodiscard]] std::string verdicts_text(const Quality& quality, const Terminal& terminal);
+
 [[nodiscard]] std::string verdict_name(Verdict verdict);
 [[nodiscard]] Ink verdict_ink(Verdict verdict);
 

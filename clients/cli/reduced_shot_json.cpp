@@ -1,3 +1,4 @@
+#include "clients/cli/ball_report.hpp"
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/cli/time_text.hpp"
 #include "processing/reduction/validity.hpp"
@@ -29,6 +30,18 @@ JsonValue describe(const SpectralQuality& quality) {
 }
 
 JsonValue describe(const Quality& quality, const ReducedShot& reduced) {
+  const SpectralQuality spectral = spectral_quality(reduced.shot, reduced.reduction);
+  JsonObject object = describe_checks(quality);
+  object.push_back({"quotable", describe(quotable_part(reduced.reduction))});
+  object.push_back({"equilibrium", disagreement(reduced.reduction)});
+  object.push_back({"useful_band_Hz", spectral.useful_band_Hz});
+  object.push_back({"signal_to_noise", describe(spectral)});
+  return object;
+}
+
+}  // namespace
+
+JsonObject describe_checks(const Quality& quality) {
   JsonObject checks;
   for (const Check& check : quality.checks) {
     checks.push_back({check.name, JsonObject{{"value", check.value},
@@ -37,18 +50,13 @@ JsonValue describe(const Quality& quality, const ReducedShot& reduced) {
                                              {"verdict", verdict_name(check.verdict)},
                                              {"text", check.text}}});
   }
-  const SpectralQuality spectral = spectral_quality(reduced.shot, reduced.reduction);
-  return JsonObject{{"reducible", quality.reducible},
-                    {"reason", quality.reason},
-                    {"verdict", verdict_name(quality.verdict())},
-                    {"checks", std::move(checks)},
-                    {"quotable", describe(quotable_part(reduced.reduction))},
-                    {"equilibrium", disagreement(reduced.reduction)},
-                    {"useful_band_Hz", spectral.useful_band_Hz},
-                    {"signal_to_noise", describe(spectral)}};
+  return {{"reducible", quality.reducible},
+          {"reason", quality.reason},
+          {"verdict", verdict_name(quality.verdict())},
+          {"checks", std::move(checks)}};
 }
 
-JsonObject describe(const std::map<std::string, std::string>& meta) {
+JsonValue describe_meta(const std::map<std::string, std::string>& meta) {
   JsonObject object;
   for (const auto& [key, value] : meta) {
     object.push_back({key, value});
@@ -56,14 +64,15 @@ JsonObject describe(const std::map<std::string, std::string>& meta) {
   return object;
 }
 
-}  // namespace
-
 JsonValue describe(const ReducedShot& reduced, bool with_true) {
+  if (reduced.shot.bench.kind == BenchKind::impact) {
+    return describe_ball(reduced);
+  }
   const Reduction& reduction = reduced.reduction;
   JsonObject object = {{"capture", reduced.capture},
                        {"shot", reduced.shot.id},
                        {"time", iso_time(reduced.shot.utc_ns)},
-                       {"meta", describe(reduced.shot.meta)},
+                       {"meta", describe_meta(reduced.shot.meta)},
                        {"bar_model", reduction.bar_model},
                        {"bar_model_assumed", reduced.default_bar_model},
                        {"arrival_s", reduction.arrival_s},

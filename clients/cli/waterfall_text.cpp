@@ -124,15 +124,18 @@ std::string drops_text(const Waterfall& fall) {
 std::string value_text(const MovedNumber& number) {
   const bool viscosity = number.unit == "Pa s";
   const DisplayUnit unit = display_unit(viscosity ? "Pa" : number.unit, std::abs(number.value));
-  return fmt::format("{:.4g} ± {:.2g} {}{}", number.value * unit.factor, number.sd * unit.factor,
-                     unit.name, viscosity ? " s" : "");
+  const std::string deviation =
+      number.sd > 0.0 ? fmt::format(" ± {:.2g}", number.sd * unit.factor) : "";
+  return fmt::format("{:.4g}{} {}{}{}", number.value * unit.factor, deviation, unit.name,
+                     viscosity ? " s" : "", number.sd > 0.0 ? "" : ", held");
 }
 
 /// How far a number went since the first model.
 std::string moved_text(const Waterfall& fall, std::size_t step, std::size_t number) {
   const auto& first = fall.steps.front().numbers;
   const auto& own = fall.steps[step].numbers;
-  if (step == 0 || number >= first.size() || number >= own.size() || first[number].value == 0.0) {
+  if (step == 0 || number >= first.size() || number >= own.size() || first[number].value == 0.0 ||
+      own[number].value == first[number].value) {
     return "";
   }
   return fmt::format("{:+.2g} %", 100.0 * (own[number].value / first[number].value - 1.0));

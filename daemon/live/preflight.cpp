@@ -94,8 +94,11 @@ PreflightItem noise(const ChannelRecord& channel, const ChannelCondition& condit
 std::vector<PreflightItem> preflight(const PreflightFacts& facts, const Shot& blank) {
   std::vector<PreflightItem> items{connection(facts), disk(facts), ring(facts)};
   for (std::size_t i = 0; i < blank.channels.size(); ++i) {
-    items.push_back(calibration(blank.channels[i], blank.bench.gauges[i], blank));
-    if (facts.streaming) {
+    const bool is_gauge = i < blank.bench.gauges.size();
+    if (is_gauge) {
+      items.push_back(calibration(blank.channels[i], blank.bench.gauges[i], blank));
+    }
+    if (facts.streaming && is_gauge) {  // light has no bridge to balance and needs no quiet
       items.push_back(balance(blank.channels[i], facts.channels[i]));
       items.push_back(noise(blank.channels[i], facts.channels[i]));
     }

@@ -144,6 +144,29 @@ void Archivist::store_now(const Shot& shot, CatalogueEntry entry) {
     failed_.fetch_add(1);
     fault_(fmt::format("shot {}: {}", shot.id, error.what()));
   }
+  tend_journals();
+}
+
+void Archivist::tend_journals() {
+  try {
+    journal_.turn_over();
+  } catch (const InputError& error) {
+    fault_(fmt::format("the journal grows on beyond its limit: {}", error.what()));
+  }
+  for (const std::filesystem::path& done : journal_.take_done()) {
+    submit([this, done] { prune(done); });
+  }
+}
+
+void Archivist::prune(const std::filesystem::path& journal) {
+  const StoreReport report = prune_journal(store_, journal);
+  for (const StoreReport::Problem& problem : report.problems) {
+    fault_(fmt::format("{} stays: {}: {}", journal.string(), problem.file, problem.text));
+  }
+  if (!report.pruned.empty()) {
+    log::info(fmt::format("journal {} removed, its {} shots were read back from their captures",
+                          journal.filename().string(), report.journaled_shots));
+  }
 }
 
 void Archivist::complete_catalogue() {

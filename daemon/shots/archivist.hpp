@@ -73,6 +73,9 @@ class Archivist {
   template <typename Ask>
   auto ask(Ask question) -> decltype(question());
   void store_now(const Shot& shot, CatalogueEntry entry);
+  /// Ends a journal that is long enough, and removes those that have done their work.
+  void tend_journals();
+  void prune(const std::filesystem::path& journal);
   void complete_catalogue();
   void enter(const std::filesystem::path& capture);
   Catalogue& catalogue();

@@ -84,7 +84,7 @@ void ShotRecorder::change(std::shared_ptr<const ShotSettings> settings) {
 }
 
 void ShotRecorder::rehearse(const ShotSettings& settings) {
-  if (settings.blank.bench.kind != BenchKind::shpb) {
+  if (settings.blank.bench.kind == BenchKind::bar) {
     return;  // nothing is reduced live
   }
   const Shot shot = rehearsal_shot(settings.blank, settings.pre_samples, settings.post_samples);

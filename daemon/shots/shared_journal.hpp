@@ -2,39 +2,56 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "drivers/files/journal.hpp"
 #include "drivers/files/store.hpp"
 
 namespace kolsky {
 
-/// The journal of one run, for the recorder (shots) and the archivist (what became of them). A
-/// failed write is tried once more, in a new file: what a reader finds behind a torn record is not
-/// to be trusted.
+/// The journals of one run, for the recorder (shots) and the archivist (what became of them). One
+/// takes shots at a time; when it has grown to its limit the archivist begins the next. A failed
+/// write is tried once more, in a new file: what a reader finds behind a torn record is not to be
+/// trusted.
 class SharedJournal {
  public:
+  /// @param limit_bytes  length at which a journal is ended
   /// @throws InputError where the store cannot be written
-  SharedJournal(const StoreLayout& store, std::uint64_t boot_id);
+  SharedJournal(const StoreLayout& store, std::uint64_t boot_id, std::uint64_t limit_bytes);
 
   /// Returns when the shot is durable. @throws std::runtime_error or InputError if it is not
   void append_shot(const Shot& shot);
   void append_stored(const std::string& shot_id, const std::filesystem::path& capture);
 
+  /// Ends the journal if it has grown to its limit; what is appended from now on goes to a new one.
+  /// For the archivist: making a file takes longer than a shot should wait.
+  /// @throws InputError where a new one cannot be made; the old one goes on
+  void turn_over();
+  /// Journals that were ended and whose every shot is stored, closed; each is named once.
+  [[nodiscard]] std::vector<std::filesystem::path> take_done();
+
  private:
   [[nodiscard]] std::shared_ptr<Journal> current();
+  [[nodiscard]] std::filesystem::path next_path();
   void give_up(const std::shared_ptr<Journal>& journal);
+  /// @return the journal it was written to
   template <typename Append>
-  void append(const Append& write);
+  std::shared_ptr<Journal> append(const Append& write);
 
   std::filesystem::path folder_;
   std::uint64_t boot_id_;
-  std::mutex
-      mutex_;  ///< guards which journal it is, not the writing: that locks itself, for less long
+  std::uint64_t limit_bytes_;
+  std::mutex mutex_;  ///< guards what follows, not the writing: that locks itself, for less long
   int files_ = 0;
   std::shared_ptr<Journal> journal_;
+  std::map<std::string, std::shared_ptr<Journal>> not_stored_;  ///< by shot
+  /// Held by nobody else, they are done: no shot of theirs is in `not_stored_` and none is on its
+  /// way there.
+  std::vector<std::shared_ptr<Journal>> ended_;
 };
 
 }  // namespace kolsky

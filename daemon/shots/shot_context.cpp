@@ -33,11 +33,13 @@ struct RehearsalPulse {
 }  // namespace
 
 Shot blank_shot(const DaemonConfig& config, const Apparatus& apparatus, const StreamInfo& stream) {
-  const std::vector<Gauge>& gauges = apparatus.bench.gauges;
+  const std::vector<BenchChannel> gauges = apparatus.bench.channels();
+  const bool gauges_only = apparatus.bench.photo_sensors.empty();
   if (stream.channels.size() != gauges.size()) {
     throw InputError(config.file.string() + ": digitiser",
-                     fmt::format("{} delivers {} channels, {} has {} gauges", stream.uri,
-                                 stream.channels.size(), config.bench.string(), gauges.size()),
+                     fmt::format("{} delivers {} channels, {} has {} {}", stream.uri,
+                                 stream.channels.size(), config.bench.string(), gauges.size(),
+                                 gauges_only ? "gauges" : "gauges and photo-sensors"),
                      "name one channel for each gauge in digitiser.channels");
   }
   Shot blank;
@@ -102,6 +104,10 @@ Shot rehearsal_shot(const Shot& blank, std::int64_t pre_samples, std::int64_t po
   shot.trigger = TriggerEvent{.tick = pre_samples, .fraction = 0.5, .sigma_samples = 0.1};
   for (std::size_t i = 0; i < shot.channels.size(); ++i) {
     ChannelRecord& channel = shot.channels[i];
+    channel.codes.assign(static_cast<std::size_t>(pre_samples + post_samples), channel.code_max);
+    if (i >= shot.bench.gauges.size()) {
+      continue;  // a photo-sensor that nothing passes
+    }
     const Gauge& gauge = shot.bench.gauges[i];
     const double to_specimen_samples = shot.bench.distance_to_specimen_m(gauge) / speed * rate_Hz;
     const double range = static_cast<double>(channel.code_max) - channel.code_min;
@@ -111,7 +117,6 @@ Shot rehearsal_shot(const Shot& blank, std::int64_t pre_samples, std::int64_t po
                                (input_side ? 0.3 : 0.1) * range};
     const RehearsalPulse second{start + 2.0 * to_specimen_samples, duration,
                                 input_side ? -0.2 * range : 0.0};
-    channel.codes.resize(static_cast<std::size_t>(pre_samples + post_samples));
     for (std::size_t k = 0; k < channel.codes.size(); ++k) {
       const auto sample = static_cast<double>(k);
       // A least-bit ripple: a record without noise is not like those to come.

@@ -46,6 +46,10 @@ CatalogueEntry summarise(const Shot& shot, const Reduction& reduction, const std
   entry.reason = reduction.quality.reason;
   entry.peak_stress_Pa = largest(reduction.stress_Pa);
   entry.peak_strain = largest(reduction.strain);
+  if (reduction.ball) {
+    entry.peak_force_N = reduction.ball->peak_force_N;
+    entry.restitution = reduction.ball->restitution().value_or(Measured{});
+  }
   return entry;
 }
 

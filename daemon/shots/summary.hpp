@@ -9,7 +9,7 @@
 namespace kolsky {
 
 /// Reduces what can be reduced. A shot of a bench that has nothing to reduce (a bar to
-/// characterise, a ball) gives no histories, and the reason.
+/// characterise) gives no histories, and the reason.
 [[nodiscard]] Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot);
 
 /// A shot's row in the catalogue. @param capture  file name inside store/shots

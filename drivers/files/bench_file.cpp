@@ -69,6 +69,8 @@ Bridge read_bridge(const TomlTable& table) {
   bridge.wiring = kWirings.at(
       table.choice("bridge", {"quarter", "half", "half-poisson", "full-poisson", "full"}));
   bridge.gauge_factor = table.measured("gauge_factor");
+  bridge.gauge_factor_per_strain =
+      table.optional_measured("gauge_factor_per_strain").value_or(Measured{});
   bridge.excitation_V = table.measured("excitation_V");
   bridge.gauge_resistance_ohm = read_plain(table, "gauge_resistance_ohm").value_or(0.0);
   bridge.lead_resistance_ohm = read_plain(table, "lead_resistance_ohm").value_or(0.0);
@@ -111,9 +113,9 @@ void refuse_bridge_keys_alone(const TomlTable& table, bool strain) {
   if (strain) {
     return;
   }
-  for (const char* const key :
-       {"gauge_factor", "excitation_V", "gain", "gauge_resistance_ohm", "lead_resistance_ohm",
-        "lead_wires", "gauges_in_series", "shunt_resistance_ohm", "shunt_reading_V"}) {
+  for (const char* const key : {"gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
+                                "gauge_resistance_ohm", "lead_resistance_ohm", "lead_wires",
+                                "gauges_in_series", "shunt_resistance_ohm", "shunt_reading_V"}) {
     if (table.has(key)) {
       throw table.error(key, "is given, and no bridge",
                         "add bridge = \"quarter\", \"half\", \"half-poisson\" or \"full-poisson\"");
@@ -123,9 +125,9 @@ void refuse_bridge_keys_alone(const TomlTable& table, bool strain) {
 
 Gauge read_gauge(const TomlTable& table) {
   table.expect({"name", "bar", "position_m", "unit", "length_m", "strain_per_V", "bridge",
-                "gauge_factor", "excitation_V", "gain", "gauge_resistance_ohm",
-                "lead_resistance_ohm", "lead_wires", "gauges_in_series", "shunt_resistance_ohm",
-                "shunt_reading_V"});
+                "gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
+                "gauge_resistance_ohm", "lead_resistance_ohm", "lead_wires", "gauges_in_series",
+                "shunt_resistance_ohm", "shunt_reading_V"});
   Gauge gauge;
   gauge.name = table.text("name");
   gauge.bar = table.text("bar");
@@ -137,6 +139,11 @@ Gauge read_gauge(const TomlTable& table) {
     gauge.bridge = read_bridge(table);
   } else {
     refuse_bridge_keys_alone(table, gauge.unit == "strain");
+    if (table.has("gauge_factor_per_strain")) {
+      throw table.error("gauge_factor_per_strain",
+                        "bends volts, and this gauge is in strain already",
+                        "give unit = \"V\" and the bridge, or remove it");
+    }
     if (gauge.unit == "strain") {
       gauge.gain_sd = read_gain_sd(table);
     }
@@ -164,6 +171,11 @@ Ball read_ball(const TomlTable& table) {
   return ball;
 }
 
+PhotoSensor read_photo_sensor(const TomlTable& table) {
+  table.expect({"name", "distance_m"});
+  return {table.text("name"), table.measured("distance_m")};
+}
+
 Striker read_striker(const TomlTable& table) {
   table.expect({"length_m", "diameter_m", "density_kg_m3", "speed_m_per_s"});
   Striker striker;
@@ -185,7 +197,7 @@ Bench read_all(const TomlTable& table) {
   constexpr std::array kKinds{BenchKind::bar, BenchKind::shpb, BenchKind::impact};
   constexpr std::array kSenses{PositiveSense::compression, PositiveSense::tension};
   table.expect({"kind", "sampling_frequency_Hz", "positive", "bars", "gauges", "specimen", "ball",
-                "striker", "temperature_K"});
+                "photo_sensors", "striker", "temperature_K"});
   Bench bench;
   bench.kind = kKinds.at(table.choice("kind", {"bar", "shpb", "impact"}));
   bench.sampling_frequency_Hz = table.measured("sampling_frequency_Hz");
@@ -202,6 +214,11 @@ Bench read_all(const TomlTable& table) {
   }
   bench.specimen = read_part(table, "specimen", read_specimen);
   bench.ball = read_part(table, "ball", read_ball);
+  if (table.has("photo_sensors")) {
+    for (const TomlTable& sensor : table.tables("photo_sensors")) {
+      bench.photo_sensors.push_back(read_photo_sensor(sensor));
+    }
+  }
   bench.striker = read_part(table, "striker", read_striker);
   bench.temperature_K = table.optional_measured("temperature_K");
   return bench;

@@ -12,7 +12,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr int kBusy_ms = 2000;
 
 /// The file cannot be gone on with: not a database, damaged, or of another version.
@@ -80,8 +80,8 @@ class Statement {
 };
 
 constexpr const char* kSelect =
-    "SELECT id, utc_ns, capture, verdict, reducible, reason, peak_stress_Pa, peak_strain FROM "
-    "shots ";
+    "SELECT id, utc_ns, capture, verdict, reducible, reason, peak_stress_Pa, peak_strain, "
+    "peak_force_N, restitution FROM shots ";
 
 CatalogueEntry entry_of(const Statement& row) {
   CatalogueEntry entry;
@@ -93,6 +93,8 @@ CatalogueEntry entry_of(const Statement& row) {
   entry.reason = row.text(5);
   entry.peak_stress_Pa = row.number(6);
   entry.peak_strain = row.number(7);
+  entry.peak_force_N = row.number(8);
+  entry.restitution = row.number(9);
   return entry;
 }
 
@@ -123,7 +125,7 @@ struct Catalogue::Database {
   void run(const char* sql) { check(handle, sqlite3_exec(handle, sql, nullptr, nullptr, nullptr)); }
 
   void put(const CatalogueEntry& entry) {
-    Statement(handle, "INSERT OR REPLACE INTO shots VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+    Statement(handle, "INSERT OR REPLACE INTO shots VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
         .bind(entry.id)
         .bind(entry.utc_ns)
         .bind(entry.capture)
@@ -132,6 +134,8 @@ struct Catalogue::Database {
         .bind(entry.reason)
         .bind(entry.peak_stress_Pa)
         .bind(entry.peak_strain)
+        .bind(entry.peak_force_N)
+        .bind(entry.restitution)
         .step();
   }
 
@@ -160,9 +164,9 @@ struct Catalogue::Database {
     run("BEGIN IMMEDIATE;"
         "CREATE TABLE shots (id TEXT PRIMARY KEY, utc_ns INTEGER NOT NULL, capture TEXT NOT NULL,"
         " verdict TEXT NOT NULL, reducible INTEGER NOT NULL, reason TEXT NOT NULL,"
-        " peak_stress_Pa REAL, peak_strain REAL);"
+        " peak_stress_Pa REAL, peak_strain REAL, peak_force_N REAL, restitution REAL);"
         "CREATE INDEX shots_by_time ON shots (utc_ns);"
-        "PRAGMA user_version = 1;"
+        "PRAGMA user_version = 2;"
         "COMMIT");
   }
 

@@ -19,6 +19,8 @@ struct CatalogueEntry {
   std::string reason;
   double peak_stress_Pa = 0.0;
   double peak_strain = 0.0;
+  double peak_force_N = 0.0;  ///< of a ball on a bar
+  double restitution = 0.0;   ///< of the same, by speed or else by impulse; 0 where not known
 };
 
 /// Derived data, `store/catalogue.sqlite`; lost or broken, it is made again from the captures.

@@ -47,7 +47,7 @@ void put_quality(hid_t entry, const Reduction& reduction) {
 }
 
 void put_entry(hid_t file, const Shot& shot, const Reduction& reduction) {
-  const bool reduced = !reduction.time_s.empty();
+  const bool reduced = !reduction.time_s.empty() || reduction.ball;
   const auto entry = hdf5::make_group(file, "entry", "NXentry");
   hdf5::put_attribute(entry, "default", reduced ? "histories" : "gauges");
   hdf5::put_text(entry, "title", shot.id);

@@ -14,6 +14,10 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 }  // namespace
 
 ExportTable history_table(const Reduction& reduction) {
+  if (reduction.ball) {
+    return {{"time_s", "s", "time from first touch", reduction.ball->time_s},
+            {"force_N", "N", "force on the bar's face, low-passed", reduction.ball->force_N}};
+  }
   return {{"time_s", "s", "time from the pulse's arrival at interface A", reduction.time_s},
           {"stress_Pa", "Pa", "engineering stress, compression positive", reduction.stress_Pa},
           {"strain", "", "engineering strain, compression positive", reduction.strain},

@@ -107,6 +107,11 @@ void Journal::append_stored(const std::string& shot_id, const std::filesystem::p
   fill_ahead(end);
 }
 
+std::uint64_t Journal::bytes() const {
+  const std::scoped_lock lock(append_mutex_);
+  return end_;
+}
+
 void Journal::append() {
   if (failed_) {
     throw std::runtime_error(path_.string() + ": takes no more after a write error");

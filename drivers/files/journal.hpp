@@ -39,6 +39,8 @@ class Journal {
   void append_stored(const std::string& shot_id, const std::filesystem::path& capture);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Its length, the room ahead not counted.
+  [[nodiscard]] std::uint64_t bytes() const;
 
  private:
   void append();
@@ -48,7 +50,7 @@ class Journal {
 
   std::filesystem::path path_;
   int file_ = -1;
-  std::mutex append_mutex_;  ///< guards the two that follow
+  mutable std::mutex append_mutex_;  ///< guards the two that follow
   std::vector<std::byte> buffer_;
   std::uint64_t end_ = 0;
   std::mutex room_mutex_;                ///< held while the file grows

@@ -27,6 +27,10 @@ struct ModelFile {
 /// TOML that reads back as the same bits; without the history where it is not asked for.
 [[nodiscard]] std::string format_model(const ModelFile& file, bool with_history = true);
 
+/// One digest of several captures, of their own digests in turn: by it a history knows what a fit
+/// saw. @throws InputError for a file that cannot be read
+[[nodiscard]] std::string digest_of_files(const std::vector<std::filesystem::path>& files);
+
 /// Appends a step: the file as it is now becomes the parent of what follows.
 void begin_step(ModelFile& file, const std::string& action, const std::string& when);
 

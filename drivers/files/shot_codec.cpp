@@ -327,15 +327,17 @@ Shot decode_shot(std::span<const std::byte> bytes, const std::string& place) {
 
 void attach_bench(Shot& shot, const std::string& place) {
   shot.bench = parse_bench(shot.bench_toml, place);
-  require(shot.bench.gauges.size() == shot.channels.size(), place + ": gauges",
-          std::to_string(shot.bench.gauges.size()) + " gauges for " +
-              std::to_string(shot.channels.size()) + " stored channels",
-          "store one channel per gauge, in the bench's order");
+  const std::vector<BenchChannel> wanted = shot.bench.channels();
+  const bool gauges_only = shot.bench.photo_sensors.empty();
+  require(wanted.size() == shot.channels.size(), place + ": gauges",
+          std::to_string(wanted.size()) + (gauges_only ? " gauges" : " gauges and photo-sensors") +
+              " for " + std::to_string(shot.channels.size()) + " stored channels",
+          gauges_only ? "store one channel per gauge, in the bench's order"
+                      : "store one channel per gauge, then one per photo-sensor");
   for (std::size_t i = 0; i < shot.channels.size(); ++i) {
-    require(shot.bench.gauges[i].name == shot.channels[i].gauge,
+    require(wanted[i].name == shot.channels[i].gauge,
             place + ": gauges[" + std::to_string(i) + "].name",
-            "\"" + shot.bench.gauges[i].name + "\" where the channel is of \"" +
-                shot.channels[i].gauge + "\"",
+            "\"" + wanted[i].name + "\" where the channel is of \"" + shot.channels[i].gauge + "\"",
             "store one channel per gauge, in the bench's order");
   }
 }

@@ -61,45 +61,56 @@ struct Journaled {
   std::vector<std::filesystem::path> done;  ///< journals without damage, all of it captured
 };
 
-/// Hands on every whole shot of every journal; a shot journaled twice the same counts once.
+/// Hands on every whole shot of a journal that is not known yet; a shot journaled twice the same
+/// counts once.
 /// @param visit  returns whether a capture was read that says the same
+/// @return whether the journal is without damage and all of it captured
+template <typename Visit>
+bool visit_journal(const std::filesystem::path& path, JournaledShots& shots, StoreReport& report,
+                   const Visit& visit) {
+  ++report.journals;
+  bool captured = true;
+  try {
+    const auto scan = scan_journal(path, [&](const JournalRecord& record) {
+      if (record.kind != journal_record::Kind::shot) {
+        return;
+      }
+      const Shot shot = journaled_shot(record);
+      const Fingerprint fingerprint = fingerprint_of(shot);
+      const auto [known, first] =
+          shots.try_emplace(shot.id, JournaledShot{fingerprint, path.string()});
+      if (first) {
+        ++report.journaled_shots;
+        known->second.captured = visit(shot, known->second);
+      }
+      captured = captured && known->second.captured && known->second.fingerprint == fingerprint;
+      if (known->second.fingerprint != fingerprint) {
+        report.problems.push_back({path.string(), "holds a second, different shot " + shot.id +
+                                                      " (the first is in " + known->second.journal +
+                                                      "); it stays in the journal only"});
+      }
+    });
+    report.bytes_ignored += scan.bytes_ignored;
+    for (const JournalProblem& problem : scan.problems) {
+      report.problems.push_back(
+          {path.string(), "byte " + std::to_string(problem.offset) + ": " + problem.text});
+    }
+    return captured && scan.problems.empty();
+  } catch (const InputError& error) {
+    add_problem(report, error);
+    return false;
+  }
+}
+
 template <typename Visit>
 Journaled visit_journals(const StoreLayout& store, StoreReport& report, const Visit& visit) {
   Journaled found;
-  JournaledShots& shots = found.shots;
   for (const auto& path : files_in(store.journals(), ".kj")) {
-    ++report.journals;
-    bool captured = true;
-    try {
-      const auto scan = scan_journal(path, [&](const JournalRecord& record) {
-        if (record.kind != journal_record::Kind::shot) {
-          return;
-        }
-        const Shot shot = journaled_shot(record);
-        const Fingerprint fingerprint = fingerprint_of(shot);
-        const auto [known, first] =
-            shots.try_emplace(shot.id, JournaledShot{fingerprint, path.string()});
-        if (first) {
-          ++report.journaled_shots;
-          known->second.captured = visit(shot, known->second);
-        }
-        captured = captured && known->second.captured && known->second.fingerprint == fingerprint;
-        if (known->second.fingerprint != fingerprint) {
-          report.problems.push_back(
-              {path.string(), "holds a second, different shot " + shot.id + " (the first is in " +
-                                  known->second.journal + "); it stays in the journal only"});
-        }
-      });
-      report.bytes_ignored += scan.bytes_ignored;
-      for (const JournalProblem& problem : scan.problems) {
-        report.problems.push_back(
-            {path.string(), "byte " + std::to_string(problem.offset) + ": " + problem.text});
-      }
-      if (captured && scan.problems.empty()) {
-        found.done.push_back(path);
-      }
-    } catch (const InputError& error) {
-      add_problem(report, error);
+    if (!std::filesystem::exists(path)) {
+      continue;  // a running daemon has just removed it
+    }
+    if (visit_journal(path, found.shots, report, visit)) {
+      found.done.push_back(path);
     }
   }
   return found;
@@ -136,6 +147,17 @@ void check_capture(const std::filesystem::path& path, const JournaledShots& jour
 }
 
 /// @return whether a capture was read that says the same
+bool captured_alike(const std::filesystem::path& capture, const JournaledShot& journaled,
+                    StoreReport& report) {
+  try {
+    return compare(capture, fingerprint_of(read_capture(capture)), journaled, report);
+  } catch (const InputError& error) {
+    add_problem(report, error);
+    return false;
+  }
+}
+
+/// @return whether a capture was read that says the same
 bool recover_shot(const Shot& shot, const JournaledShot& journaled,
                   const std::filesystem::path& capture, StoreReport& report) {
   try {
@@ -143,11 +165,11 @@ bool recover_shot(const Shot& shot, const JournaledShot& journaled,
       write_capture(shot, capture);
       report.recovered.push_back(shot.id);
     }
-    return compare(capture, fingerprint_of(read_capture(capture)), journaled, report);
   } catch (const InputError& error) {
     add_problem(report, error);
     return false;
   }
+  return captured_alike(capture, journaled, report);
 }
 
 /// A capture may have been renamed just before a crash: its name must reach the disk before the
@@ -198,6 +220,18 @@ StoreReport verify_store(const StoreLayout& store) {
                              ", which has no capture; the daemon writes it at "
                              "its next start"});
     }
+  }
+  return report;
+}
+
+StoreReport prune_journal(const StoreLayout& store, const std::filesystem::path& journal) {
+  StoreReport report;
+  JournaledShots shots;
+  const auto read_back = [&](const Shot& shot, const JournaledShot& journaled) {
+    return captured_alike(store.capture_of(shot.id), journaled, report);
+  };
+  if (visit_journal(journal, shots, report, read_back)) {
+    prune(store, {journal}, report);
   }
   return report;
 }

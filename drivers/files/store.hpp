@@ -48,6 +48,12 @@ enum class DoneJournals {
           ///< same to the bit, and the captures' names are durable; damaged journals stay
 };
 
+/// Removes one journal as recovery does, on the same conditions; nothing else is touched. Where
+/// they do not hold it stays, and the report says why.
+/// @pre nobody appends to this journal, and every shot in it has been stored
+[[nodiscard]] StoreReport prune_journal(const StoreLayout& store,
+                                        const std::filesystem::path& journal);
+
 /// Writes the capture of every whole journaled shot that has none, and removes temporary files a
 /// crash left. Nothing stored is overwritten: a capture that differs from the journal is a problem
 /// to report. Killed at any moment, it is done again.

@@ -56,10 +56,10 @@ std::string headers_of(const std::vector<Channel>& channels) {
   return listed(names);
 }
 
-std::string names_of(const std::vector<Gauge>& gauges) {
+std::string names_of(const std::vector<BenchChannel>& gauges) {
   std::vector<std::string> names(gauges.size());
   std::transform(gauges.begin(), gauges.end(), names.begin(),
-                 [](const Gauge& gauge) { return gauge.name; });
+                 [](const BenchChannel& gauge) { return gauge.name; });
   return listed(names);
 }
 
@@ -78,10 +78,10 @@ std::vector<Channel> channels_called(const std::vector<Channel>& channels,
 
 // In the bench's order: by name if any column is called like a gauge, else as the columns come.
 std::vector<Channel> channels_of_gauges(const std::vector<Channel>& channels,
-                                        const std::vector<Gauge>& gauges) {
+                                        const std::vector<BenchChannel>& gauges) {
   std::vector<Channel> chosen;
   std::string missing;
-  for (const Gauge& gauge : gauges) {
+  for (const BenchChannel& gauge : gauges) {
     const std::vector<Channel> found = channels_called(channels, gauge.name);
     if (found.size() > 1) {
       throw InputError(found[1].place(),
@@ -110,7 +110,7 @@ std::vector<Channel> channels_of_gauges(const std::vector<Channel>& channels,
   return chosen.empty() ? channels : chosen;
 }
 
-double unit_factor(const Channel& channel, const Gauge& gauge) {
+double unit_factor(const Channel& channel, const BenchChannel& gauge) {
   const bool strain = gauge.unit == "strain";
   if (!channel.column->unit) {
     return 1.0;
@@ -131,7 +131,7 @@ double unit_factor(const Channel& channel, const Gauge& gauge) {
 }
 
 // No bar survives a tenth of strain, no amplifier gives kilovolts: the column is in another unit.
-void require_plausible(const Channel& channel, const Gauge& gauge,
+void require_plausible(const Channel& channel, const BenchChannel& gauge,
                        const std::vector<double>& values) {
   const bool strain = gauge.unit == "strain";
   const double most = strain ? 0.1 : 1000.0;
@@ -146,6 +146,9 @@ void require_plausible(const Channel& channel, const Gauge& gauge,
   }
 }
 
+// Full scale of an imported photo-sensor's channel.
+constexpr double kPhotoSensorRange_V = 15.0;
+
 // Full scale of an imported gauge, whatever the record: captures of one bench then have one scale
 // and replay as one stream. Few bars take more strain, and a step of it, 7e-6 microstrain, is below
 // every noise; a record that goes beyond has a coarser scale.
@@ -159,7 +162,7 @@ double full_scale_of(const Gauge& gauge, const Bench& bench) {
   }
 }
 
-ChannelRecord record_of(const Channel& channel, const Gauge& gauge, double full_scale) {
+ChannelRecord record_of(const Channel& channel, const BenchChannel& gauge, double full_scale) {
   std::vector<double> values = channel.column->values;
   const double factor = unit_factor(channel, gauge);
   for (double& value : values) {
@@ -294,14 +297,17 @@ Shot import_tables(const TableImport& request) {
     tables.push_back(read_scope_table(path));
   }
   const std::vector<Channel> channels = all_channels(tables);
-  const std::vector<Channel> chosen = channels_of_gauges(channels, bench.bench.gauges);
+  const std::vector<BenchChannel> wanted = bench.bench.channels();
+  const std::vector<Channel> chosen = channels_of_gauges(channels, wanted);
   Shot shot;
   shot.meta = request.meta;
   file_source(tables, agreed_rate_Hz(tables, bench.bench.sampling_frequency_Hz), shot);
   file_ignored(channels, chosen, shot);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const Gauge& gauge = bench.bench.gauges[i];
-    shot.channels.push_back(record_of(chosen[i], gauge, full_scale_of(gauge, bench.bench)));
+    const double full_scale = i < bench.bench.gauges.size()
+                                  ? full_scale_of(bench.bench.gauges[i], bench.bench)
+                                  : kPhotoSensorRange_V;
+    shot.channels.push_back(record_of(chosen[i], wanted[i], full_scale));
   }
   shot.id = id_from(tables.front().stem);
   shot.rate = SampleRate::from_Hz(bench.bench.sampling_frequency_Hz);

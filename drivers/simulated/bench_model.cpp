@@ -159,6 +159,17 @@ double ImpactPulse::force_N(double time_s) const {
   return peak_force_N * s * s;
 }
 
+namespace {
+
+double push_at(const BenchModel& model, std::size_t step, double step_s) {
+  if (model.push_N.empty()) {
+    return model.pulse.force_N(static_cast<double>(step) * step_s);
+  }
+  return step < model.push_N.size() ? model.push_N[step] : 0.0;
+}
+
+}  // namespace
+
 BenchHistory run_bench(const BenchModel& model, double step_s, std::size_t steps) {
   Line line(model, step_s);
   std::optional<SpecimenRecorder> recorder;
@@ -173,7 +184,7 @@ BenchHistory run_bench(const BenchModel& model, double step_s, std::size_t steps
       history.gauge_strain[g][step] =
           line.rod(model.gauges[g].rod).strain_at(model.gauges[g].position_m);
     }
-    line.advance_velocities(model.pulse.force_N(static_cast<double>(step) * step_s));
+    line.advance_velocities(push_at(model, step, step_s));
     if (recorder) {
       recorder->add(step, line);
     }

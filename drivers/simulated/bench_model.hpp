@@ -33,6 +33,7 @@ struct BenchModel {
   std::optional<RodShape> specimen;
   std::optional<RodShape> output;
   ImpactPulse pulse;
+  std::vector<double> push_N{};  ///< on the impacted end, by step; in the pulse's place where given
   std::vector<GaugeStation> gauges;
 };
 
@@ -47,11 +48,24 @@ struct SpecimenHistory {
   std::vector<double> force_back_N;
 };
 
+/// What a ball did that struck the bar.
+struct BallHistory {
+  double touch_s = 0.0;         ///< from step 0 to first touch
+  std::vector<double> time_s;   ///< from first touch
+  std::vector<double> force_N;  ///< on the bar's face
+  double peak_force_N = 0.0;
+  double impulse_N_s = 0.0;
+  double mass_kg = 0.0;
+  double incident_speed_m_per_s = 0.0;
+  double rebound_speed_m_per_s = 0.0;  ///< of the centre of mass
+};
+
 struct BenchHistory {
   double step_s = 0.0;
   std::vector<std::vector<double>>
       gauge_strain;  ///< per gauge, at step 0, 1, ...; step 0 is the impact
   std::optional<SpecimenHistory> specimen;
+  std::optional<BallHistory> ball;
   double momentum_kg_m_per_s = 0.0;  ///< of all rods at the end
 };
 

@@ -11,6 +11,10 @@ AdcSettings adc_settings(const Scenario& scenario) {
                                  static_cast<double>(front_end.offset_codes),
                                  front_end.strain_per_code()});
   }
+  for (const PhotoSensor& sensor : scenario.bench.photo_sensors) {
+    settings.channels.push_back({sensor.name, front_end.volts_per_code() * 1e3,
+                                 static_cast<double>(front_end.offset_codes), std::nullopt});
+  }
   settings.rates.clear();
   for (const double rate_Hz : kSampleRates_Hz) {
     settings.rates.push_back(SampleRate::from_Hz(rate_Hz));

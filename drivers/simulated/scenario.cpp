@@ -4,6 +4,7 @@
 #include <numbers>
 #include <ostream>
 
+#include "drivers/simulated/ball_shot.hpp"
 #include "drivers/simulated/number_text.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/material.hpp"
@@ -144,6 +145,36 @@ Scenario steel() {
   return scenario;
 }
 
+constexpr RodMaterial kTitanium{4420.0, 113e9, 0.0, 0.0};
+
+Material rubber(const RodMaterial& solid, double poisson_ratio) {
+  return {{solid.density_kg_m3}, {poisson_ratio},   {solid.E1_Pa},
+          {solid.E2_Pa},         {solid.eta2_Pa_s}, "the paper"};
+}
+
+/// The paper's ball on its titanium bar, a gauge 250 mm from the face, two beams on the ball's way.
+Scenario impact(const char* name, const char* text, double speed_m_per_s) {
+  Scenario scenario;
+  scenario.name = name;
+  scenario.text = text;
+  scenario.bench.kind = BenchKind::impact;
+  scenario.bench.sampling_frequency_Hz = 1e6;
+  scenario.bench.input = bar(3.0, 0.027, kTitanium.density_kg_m3, 0.33);
+  scenario.bench.input.youngs_modulus_Pa = Measured{kTitanium.E1_Pa};
+  scenario.bench.gauges = {gauge("g1", "input", 0.250)};
+  scenario.bench.ball = Ball{{0.0427}, {0.03565}, Measured{0.0434}, false};
+  scenario.bench.photo_sensors = {{"p1", {0.090}}, {"p2", {0.060}}};
+  scenario.ball =
+      ThrownBall{speed_m_per_s, rubber(kCore, kCorePoisson), rubber(kCover, kCoverPoisson)};
+  scenario.front_end.range_microstrain = 500.0;
+  scenario.front_end.noise_microstrain = 0.5;  // semiconductors answer sixty times a foil's strain
+  scenario.front_end.hum_microstrain = 0.1;
+  scenario.front_end.offset_microstrain = 5.0;
+  scenario.record_s = 10e-3;
+  build_model(scenario, kTitanium, {});
+  return scenario;
+}
+
 Scenario quiet() {
   Scenario scenario = core("quiet", "the paper's bench, noise only: a shot brings no pulse", 0.004);
   scenario.model.pulse.peak_force_N = 0.0;
@@ -173,6 +204,10 @@ std::vector<Scenario> scenarios() {
           bars_together(),
           long_bar(),
           steel(),
+          impact("impact",
+                 "the paper's golf ball on a titanium bar at 31.1 m/s, photo-sensors p1 p2", 31.1),
+          impact("impact-40", "the same at 40.3 m/s", 40.3),
+          impact("impact-51", "the same at 51.0 m/s", 51.0),
           quiet()};
 }
 
@@ -192,7 +227,10 @@ Scenario find_scenario(const std::string& name) {
 
 std::string bench_toml(const Scenario& scenario) {
   const Bench& bench = scenario.bench;
-  std::string toml = std::string("kind = \"") + (bench.kind == BenchKind::bar ? "bar" : "shpb") +
+  const char* const kind = bench.kind == BenchKind::bar    ? "bar"
+                           : bench.kind == BenchKind::shpb ? "shpb"
+                                                           : "impact";
+  std::string toml = std::string("kind = \"") + kind +
                      "\"\nsampling_frequency_Hz = " + number_text(bench.sampling_frequency_Hz) +
                      "\npositive = \"compression\"\n";
   add_bar(toml, "bars.input", bench.input);
@@ -211,13 +249,24 @@ std::string bench_toml(const Scenario& scenario) {
             "\ndensity_kg_m3 = " + number_text(*bench.specimen->density_kg_m3) +
             "\npoisson_ratio = " + number_text(*bench.specimen->poisson_ratio) + "\n";
   }
+  for (const PhotoSensor& sensor : bench.photo_sensors) {
+    toml += "\n[[photo_sensors]]\nname = \"" + sensor.name +
+            "\"\ndistance_m = " + number_text(sensor.distance_m) + "\n";
+  }
+  if (bench.ball) {
+    toml += "\n[ball]\nouter_diameter_m = " + number_text(bench.ball->outer_diameter_m) +
+            "\ncore_diameter_m = " + number_text(bench.ball->core_diameter_m) +
+            "\nmass_kg = " + number_text(*bench.ball->mass_kg) + "\n";
+  }
   return toml;
 }
 
 BenchHistory run_shot(const Scenario& scenario) {
   const auto whole = static_cast<std::size_t>(std::llround(scenario.record_s * kStepsPerSecond));
   const auto fading = static_cast<std::size_t>(std::llround(scenario.fade_s * kStepsPerSecond));
-  BenchHistory shot = run_bench(scenario.model, 1.0 / kStepsPerSecond, whole + fading);
+  const double step_s = 1.0 / kStepsPerSecond;
+  BenchHistory shot = scenario.ball ? run_ball(scenario, step_s, whole + fading)
+                                    : run_bench(scenario.model, step_s, whole + fading);
   for (std::vector<double>& strain : shot.gauge_strain) {
     for (std::size_t i = 0; i < fading; ++i) {
       const double c =
@@ -229,6 +278,13 @@ BenchHistory run_shot(const Scenario& scenario) {
 }
 
 void write_truth(const Scenario& scenario, const BenchHistory& shot, std::ostream& out) {
+  if (shot.ball) {
+    out << "time_s,force_N\n";
+    for (std::size_t i = 0; i < shot.ball->time_s.size(); ++i) {
+      out << number_text(shot.ball->time_s[i]) << ',' << number_text(shot.ball->force_N[i]) << '\n';
+    }
+    return;
+  }
   if (!shot.specimen) {
     throw InputError("truth", "scenario '" + scenario.name + "' has no specimen",
                      "choose one that has");

@@ -8,7 +8,7 @@ namespace kolsky {
 
 ScenarioSource::ScenarioSource(const Scenario& scenario, BenchHistory shot)
     : shot_(std::move(shot)) {
-  for (std::size_t i = 0; i < scenario.bench.gauges.size(); ++i) {
+  for (std::size_t i = 0; i < scenario.bench.channels().size(); ++i) {
     channels_.emplace_back(scenario.front_end, i);
   }
   set_rate(SampleRate::from_Hz(scenario.bench.sampling_frequency_Hz));

@@ -35,4 +35,15 @@ double Bench::distance_to_specimen_m(const Gauge& gauge) const {
   return gauge.bar == "output" ? gauge.position_m.value : input.length_m - gauge.position_m;
 }
 
+std::vector<BenchChannel> Bench::channels() const {
+  std::vector<BenchChannel> list;
+  for (const Gauge& gauge : gauges) {
+    list.push_back({gauge.name, gauge.unit});
+  }
+  for (const PhotoSensor& sensor : photo_sensors) {
+    list.push_back({sensor.name, "V"});
+  }
+  return list;
+}
+
 }  // namespace kolsky

@@ -45,6 +45,8 @@ enum class BridgeWiring { quarter, half, half_poisson, full_poisson };
 struct Bridge {
   BridgeWiring wiring = BridgeWiring::quarter;
   Measured gauge_factor{};
+  /// Growth of the gauge factor with tensile strain: dR/R = (factor + growth e) e. Semiconductors.
+  Measured gauge_factor_per_strain{};
   Measured excitation_V{};
   Measured gain{1.0, 0.0};
   double gauge_resistance_ohm = 0.0;  ///< of one gauge; 0 where no lead or shunt needs it
@@ -67,6 +69,19 @@ struct Gauge {
   /// Of samples that are strain already: relative standard deviation of what made them so, from the
   /// gauge factor, excitation and gain filed beside them.
   double gain_sd = 0.0;
+};
+
+/// A light beam across the ball's way, a channel of its own behind the gauges: bright, and dark or
+/// at least another voltage while the ball is in it.
+struct PhotoSensor {
+  std::string name{};
+  Measured distance_m{};  ///< of the beam from the struck end's face
+};
+
+/// What a channel of the digitiser records.
+struct BenchChannel {
+  std::string name;
+  std::string unit;
 };
 
 /// Round specimen; a square one is filed by its diameter of equal area.
@@ -101,8 +116,9 @@ struct Bench {
   Bar input{};
   std::optional<Bar> output{};  ///< shpb only
   std::vector<Gauge> gauges{};
-  std::optional<Specimen> specimen{};  ///< shpb only
-  std::optional<Ball> ball{};          ///< impact only
+  std::optional<Specimen> specimen{};        ///< shpb only
+  std::optional<Ball> ball{};                ///< impact only
+  std::vector<PhotoSensor> photo_sensors{};  ///< impact only: none, one or two
   std::optional<Striker> striker{};
   std::optional<Measured> temperature_K{};
 
@@ -111,6 +127,8 @@ struct Bench {
   /// Distance from a gauge to the specimen's face. Input bar: length - position; output bar:
   /// position.
   [[nodiscard]] double distance_to_specimen_m(const Gauge& gauge) const;
+  /// What a capture holds, in its order: the gauges, then the photo-sensors (in volts).
+  [[nodiscard]] std::vector<BenchChannel> channels() const;
 };
 
 /// Checks what a single number cannot show: ranges that catch unit mistakes (a 15 m bar, a density

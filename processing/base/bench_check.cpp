@@ -20,6 +20,7 @@ constexpr Range kWaveSpeed{300.0, 20e3, "m/s", "check youngs_modulus_Pa against 
 constexpr Range kGaugeLength{0.1e-3, 0.1, "m", "give metres: 5 mm is 0.005"};
 constexpr Range kStrainPerVolt{1e-9, 1.0, "", "give strain per volt: 500 microstrain/V is 500e-6"};
 constexpr Range kGaugeFactor{0.5, 300.0, "", "metal gauges have about 2, semiconductors about 150"};
+constexpr Range kBeamDistance{1e-3, 20.0, "m", "give metres from the bar's face: 60 mm is 0.06"};
 constexpr Range kExcitation{0.05, 100.0, "V", "give volts: 10000 mV is 10"};
 constexpr Range kGain{1e-3, 1e6, "", "give the factor, not decibels: 40 dB is 100"};
 constexpr Range kGaugeResistance{10.0, 20e3, "ohm", "give ohms: 0.35 kohm is 350"};
@@ -133,8 +134,22 @@ void check_leads_and_shunt(const std::string& place, const Bridge& bridge) {
                              kShuntReading);
 }
 
+// The gauge must go on answering to strain as far as a bar is strained.
+void check_gauge_factor_growth(const std::string& place, const Bridge& bridge) {
+  constexpr double kFurthestStrain = 3e-3;
+  const Measured& growth = bridge.gauge_factor_per_strain;
+  if (2.0 * std::abs(growth) * kFurthestStrain > std::abs(bridge.gauge_factor)) {
+    throw InputError(place,
+                     in_words(growth, "per strain") + " turns the gauge's answer round below " +
+                         in_words(kFurthestStrain, "strain"),
+                     "give dR/R = (gauge_factor + gauge_factor_per_strain e) e, strain as a ratio");
+  }
+  require_tolerance(place, growth, std::abs(bridge.gauge_factor) / kFurthestStrain);
+}
+
 void check_bridge(const std::string& place, const Bridge& bridge) {
   check_factor(place + ".gauge_factor", bridge.gauge_factor, kGaugeFactor);
+  check_gauge_factor_growth(place + ".gauge_factor_per_strain", bridge);
   check_number(place + ".excitation_V", bridge.excitation_V, kExcitation);
   check_factor(place + ".gain", bridge.gain, kGain);
   check_leads_and_shunt(place, bridge);
@@ -267,15 +282,55 @@ void check_ball(const Ball& ball) {
   check_number("ball.mass_kg", ball.mass_kg, kMass);
 }
 
+std::string name_of(BenchKind kind) {
+  return kind == BenchKind::bar ? "bar" : kind == BenchKind::shpb ? "shpb" : "impact";
+}
+
+// Two beams measure a speed by their distance, one by the ball's diameter; a ball must be through
+// the nearest before it touches.
+void check_photo_sensors(const Bench& bench) {
+  const std::vector<PhotoSensor>& sensors = bench.photo_sensors;
+  if (bench.kind != BenchKind::impact) {
+    throw InputError("photo_sensors", "do not belong to kind = \"" + name_of(bench.kind) + "\"",
+                     "remove them, or give kind = \"impact\"");
+  }
+  if (sensors.size() > 2) {
+    throw InputError("photo_sensors[2]", "is one too many", "keep the two that measure the speed");
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::string place = "photo_sensors[" + std::to_string(i) + "]";
+    check_gauge_name(place, sensors[i].name);
+    for (std::size_t earlier = 0; earlier < bench.gauges.size() + i; ++earlier) {
+      if (bench.channels()[earlier].name == sensors[i].name) {
+        throw InputError(place + ".name", "\"" + sensors[i].name + "\" names another channel too",
+                         "give each channel its own name");
+      }
+    }
+    check_number(place + ".distance_m", sensors[i].distance_m, kBeamDistance);
+    if (bench.ball && sensors[i].distance_m <= bench.ball->outer_diameter_m) {
+      throw InputError(place + ".distance_m",
+                       in_words(sensors[i].distance_m, "m") +
+                           " from the face: the ball is still in the beam when it touches",
+                       "put the beam further off than the ball's diameter");
+    }
+  }
+  if (sensors.size() == 2) {
+    const double apart_m = std::abs(sensors[0].distance_m - sensors[1].distance_m);
+    const double sd_m = std::hypot(sensors[0].distance_m.sd, sensors[1].distance_m.sd);
+    if (apart_m < std::max(1e-3, 5.0 * sd_m)) {
+      throw InputError(
+          "photo_sensors[1].distance_m",
+          "is " + in_words(apart_m, "m") + " from the other beam's: no measure of speed",
+          "give both distances from the bar's face, or one photo-sensor alone");
+    }
+  }
+}
+
 void check_striker(const Striker& striker) {
   check_number("striker.length_m", striker.length_m, kStrikerLength);
   check_number("striker.diameter_m", striker.diameter_m, kDiameter);
   check_number("striker.density_kg_m3", striker.density_kg_m3, ranges::kDensity);
   check_number("striker.speed_m_per_s", striker.speed_m_per_s, kSpeed);
-}
-
-std::string name_of(BenchKind kind) {
-  return kind == BenchKind::bar ? "bar" : kind == BenchKind::shpb ? "shpb" : "impact";
 }
 
 // A part is there exactly if the kind has one.
@@ -308,6 +363,9 @@ void check(const Bench& bench) {
   }
   if (bench.ball) {
     check_ball(*bench.ball);
+  }
+  if (!bench.photo_sensors.empty()) {
+    check_photo_sensors(bench);
   }
   if (bench.striker) {
     check_striker(*bench.striker);

@@ -24,6 +24,28 @@ Material paper_pmma() {
   return pmma;
 }
 
+Material paper_golf_core() {
+  Material core;
+  core.density_kg_m3 = {1140.0, 0.0};
+  core.poisson_ratio = {0.376, 0.0};
+  core.E1_Pa = {121e6, 0.0};
+  core.E2_Pa = {143e6, 0.0};
+  core.eta2_Pa_s = {2860.0, 0.0};
+  core.source = "paper, Table 3: polybutadiene";
+  return core;
+}
+
+Material paper_golf_cover() {
+  Material cover;
+  cover.density_kg_m3 = {960.0, 0.0};
+  cover.poisson_ratio = {0.319, 0.0};
+  cover.E1_Pa = {987e6, 0.0};
+  cover.E2_Pa = {452e6, 0.0};
+  cover.eta2_Pa_s = {6020.0, 0.0};
+  cover.source = "paper, Table 3: ionomer";
+  return cover;
+}
+
 void check(const Material& material) {
   require_in_range("density_kg_m3", material.density_kg_m3, ranges::kDensity);
   require_in_range("poisson_ratio", material.poisson_ratio, ranges::kPoissonRatio);

@@ -19,6 +19,9 @@ struct Material {
 
 /// PMMA of the paper's Table 4, row 1.
 [[nodiscard]] Material paper_pmma();
+/// The golf ball's polybutadiene core and ionomer cover, Table 3.
+[[nodiscard]] Material paper_golf_core();
+[[nodiscard]] Material paper_golf_cover();
 
 /// Ranges, as for a bench. @throws InputError whose place is the key, as "E1_Pa"
 void check(const Material& material);

@@ -9,25 +9,32 @@ namespace kolsky {
 
 namespace {
 
-/// reading = excitation * gain * (a e) / (1 + b e), e tensile, of a bridge whose arms are free of
-/// leads.
+/// reading = excitation * gain * (a e + a2 e^2) / (1 + b e + b2 e^2), e tensile, of a bridge whose
+/// arms are free of leads.
 struct Equation {
   double a;
   double b;
+  double a2;
+  double b2;
 };
 
-Equation equation_of(BridgeWiring wiring, double gauge_factor, double poisson_ratio) {
+/// @param growth  of the gauge factor with strain
+Equation equation_of(BridgeWiring wiring, double gauge_factor, double growth,
+                     double poisson_ratio) {
   const double K = gauge_factor;
+  const double C = growth;
   const double n = poisson_ratio;
   switch (wiring) {
     case BridgeWiring::quarter:
-      return {K / 4.0, K / 2.0};
+      return {K / 4.0, K / 2.0, C / 4.0, C / 2.0};
     case BridgeWiring::half:
-      return {K / 2.0, K / 2.0};
+      return {K / 2.0, K / 2.0, C / 2.0, C / 2.0};
     case BridgeWiring::half_poisson:
-      return {K * (1.0 + n) / 4.0, K * (1.0 - n) / 2.0};
+      return {K * (1.0 + n) / 4.0, K * (1.0 - n) / 2.0, C * (1.0 - n * n) / 4.0,
+              C * (1.0 + n * n) / 2.0};
     case BridgeWiring::full_poisson:
-      return {K * (1.0 + n) / 2.0, K * (1.0 - n) / 2.0};
+      return {K * (1.0 + n) / 2.0, K * (1.0 - n) / 2.0, C * (1.0 - n * n) / 2.0,
+              C * (1.0 + n * n) / 2.0};
   }
   return {};
 }
@@ -99,11 +106,15 @@ BridgeConversion::BridgeConversion(const Gauge& gauge, const Bar& bar, PositiveS
     const Bridge& bridge = *gauge.bridge;
     check(bridge);
     gain_ = bridge.shunt_resistance_ohm ? gain_from_shunt(bridge) : bridge.gain.value;
-    const double effective_factor = bridge.gauge_factor * active_share(bridge);
-    const Equation equation = equation_of(bridge.wiring, effective_factor, bar.poisson_ratio);
+    const double share = active_share(bridge);
+    const Equation equation =
+        equation_of(bridge.wiring, bridge.gauge_factor * share,
+                    bridge.gauge_factor_per_strain * share, bar.poisson_ratio);
     full_scale_ = bridge.excitation_V * gain_;
     a_ = equation.a;
     b_ = equation.b;
+    a2_ = equation.a2;
+    b2_ = equation.b2;
   } else {
     throw InputError("unit", "is \"" + gauge.unit + "\" without anything that converts it",
                      "give a bridge or strain_per_V, or unit = \"strain\"");
@@ -115,7 +126,14 @@ BridgeConversion::BridgeConversion(const Gauge& gauge, const Bar& bar, PositiveS
 // bench's positive sense, and what leaves is compression positive.
 double BridgeConversion::strain(double reading) const {
   const double v = sign_ * reading / full_scale_;
-  return -v / (a_ - b_ * v);
+  const double linear = a_ - b_ * v;
+  const double square = a2_ - b2_ * v;
+  if (square == 0.0) {
+    return -v / linear;
+  }
+  // The root that goes to v / a, in the form that loses no digits.
+  const double root = std::copysign(std::sqrt(linear * linear + 4.0 * square * v), linear);
+  return -2.0 * v / (linear + root);
 }
 
 void BridgeConversion::convert(std::span<const double> readings, double unstrained,
@@ -127,7 +145,7 @@ void BridgeConversion::convert(std::span<const double> readings, double unstrain
 
 double BridgeConversion::reading(double strain) const {
   const double e = -strain;
-  return sign_ * full_scale_ * a_ * e / (1.0 + b_ * e);
+  return sign_ * full_scale_ * (a_ + a2_ * e) * e / (1.0 + (b_ + b2_ * e) * e);
 }
 
 }  // namespace kolsky

@@ -8,17 +8,13 @@
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/identification/bar_records.hpp"
+#include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
 namespace kolsky {
 
 namespace {
-
-constexpr double kShortestPulse_s = 5e-6;
-constexpr double kPulseReach_s = 500e-6;
-constexpr double kFootClearance_s = 10e-6;
-constexpr std::size_t kFewestQuiet = 32;
 
 std::size_t reference_of(const Bench& bench) {
   std::size_t reference = bench.gauges.size();
@@ -30,30 +26,6 @@ std::size_t reference_of(const Bench& bench) {
     }
   }
   return reference;
-}
-
-/// Foot of the first pulse [samples]; none where nothing stands out.
-std::optional<double> foot_in(const std::vector<double>& readings, double rate_Hz) {
-  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
-  const auto reach = static_cast<std::size_t>(kPulseReach_s * rate_Hz);
-  const auto rise = find_first_pulse(readings, width, reach);
-  if (!rise) {
-    return std::nullopt;
-  }
-  const double baseline =
-      quiet_before(readings, std::min<std::size_t>(rise->index, kFewestQuiet)).baseline;
-  const std::size_t end = std::min(readings.size(), rise->index + reach);
-  std::vector<double> shifted(end);
-  for (std::size_t n = 0; n < end; ++n) {
-    shifted[n] = rise->sense * (readings[n] - baseline);
-  }
-  const double peak =
-      *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(rise->index), shifted.end());
-  return foot_of(shifted, rise->index, peak, 0.0).index;
-}
-
-std::size_t quiet_samples(double foot, double rate_Hz) {
-  return static_cast<std::size_t>(std::max(0.0, foot - kFootClearance_s * rate_Hz));
 }
 
 /// The step between neighbouring codes where the record takes few enough values to show it.
@@ -130,14 +102,36 @@ void set_temperatures(const std::vector<Shot>& shots, Campaign& campaign) {
   }
 }
 
+/// A ball's speeds from the capture's facts. The force follows the speed: without it nothing can be
+/// foretold.
+void set_speeds(const Shot& shot, ShotFacts& facts) {
+  const char* const incident = "incident_speed_m_per_s";
+  facts.incident_speed_m_per_s = logged(shot, incident);
+  if (!facts.incident_speed_m_per_s) {
+    const bool there = shot.meta.count(incident) > 0;
+    throw InputError("capture " + shot.id + ": meta." + incident,
+                     there ? "is not a number: \"" + shot.meta.at(incident) + "\"" : "is missing",
+                     "import it with --meta incident_speed_m_per_s=V");
+  }
+  constexpr double kFastest_m_per_s = 300.0;
+  if (!(*facts.incident_speed_m_per_s > 0.0) || *facts.incident_speed_m_per_s > kFastest_m_per_s) {
+    throw InputError("capture " + shot.id + ": meta." + incident,
+                     "is " + shot.meta.at(incident) + ", outside 0 to 300 m/s",
+                     "give the ball's speed in m/s, towards the bar positive");
+  }
+  facts.incident_speed_sd_m_per_s =
+      std::abs(logged(shot, "incident_speed_m_per_s_sd").value_or(0.0));
+  facts.rebound_speed_m_per_s = logged(shot, "rebound_speed_m_per_s");
+  facts.rebound_speed_sd_m_per_s = std::abs(logged(shot, "rebound_speed_m_per_s_sd").value_or(0.0));
+}
+
 CampaignShot read_shot(const Shot& shot, std::size_t reference) {
   const Bench& bench = shot.bench;
   CampaignShot out;
   out.id = shot.id;
-  const double rate_Hz = shot.rate.Hz();
-  const double foot = *foot_in(readings_of(shot.channels[reference]), rate_Hz);
-  out.quiet_samples = quiet_samples(foot, rate_Hz);
-  out.foot_s = foot * shot.rate.period_s();
+  const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
+  out.quiet_samples = pulse.value().quiet;
+  out.foot_s = pulse->foot * shot.rate.period_s();
   for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
     const BridgeConversion bridge(bench.gauges[j], bench.bar_of(bench.gauges[j]), bench.positive);
     const std::vector<double> readings = readings_of(shot.channels[j]);
@@ -155,7 +149,8 @@ CampaignShot read_shot(const Shot& shot, std::size_t reference) {
 }
 
 void require_gauges(const Bench& bench) {
-  if (bench.gauges.size() < 2) {
+  // The ball's force is foretold; a source that is free is known by another gauge only.
+  if (bench.kind != BenchKind::impact && bench.gauges.size() < 2) {
     throw InputError("gauges", "are too few: a model is judged by what one gauge says of another",
                      "record the wave with at least two gauges");
   }
@@ -181,15 +176,14 @@ std::string bad_data(const Shot& shot) {
              " samples: it was cut off there";
     }
   }
-  const auto foot = foot_in(readings_of(shot.channels[reference]), shot.rate.Hz());
-  if (!foot) {
+  const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
+  if (!pulse) {
     return "gauge " + shot.bench.gauges[reference].name +
            " holds no pulse that stands out of its noise";
   }
-  if (quiet_samples(*foot, shot.rate.Hz()) < kFewestQuiet) {
-    return "too few quiet samples before the pulse: " +
-           std::to_string(quiet_samples(*foot, shot.rate.Hz())) + " of at least " +
-           std::to_string(kFewestQuiet);
+  if (pulse->quiet < kFewestQuiet) {
+    return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
+           " of at least " + std::to_string(kFewestQuiet);
   }
   return {};
 }
@@ -200,10 +194,6 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
   }
   Campaign campaign;
   campaign.bench = shots.front().bench;
-  if (campaign.bench.kind == BenchKind::impact) {
-    throw InputError("captures", "are of an impact, which is not compared with its model yet",
-                     "foretell it with `kolsky impact` and hold the force beside the record");
-  }
   require_gauges(campaign.bench);
   campaign.period_s = shots.front().rate.period_s();
   campaign.reference = reference_of(campaign.bench);
@@ -216,6 +206,9 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
       throw InputError("capture " + shot.id, reason, "repeat the shot, or leave this capture out");
     }
     campaign.shots.push_back(read_shot(shot, campaign.reference));
+    if (campaign.bench.kind == BenchKind::impact) {
+      set_speeds(shot, campaign.shots.back().facts);
+    }
     campaign.shots.back().facts.shot = campaign.shots.size() - 1;
   }
   set_temperatures(shots, campaign);

@@ -85,7 +85,12 @@ void add_variants(const Effect& effect, const std::string& gauge, const Campaign
         continue;
       }
       variant.per_shot = per_shot;
+      variant.alike = false;
       list.push_back({variant, false, one_sided(variant)});
+      if (about.each_gauge) {
+        variant.alike = true;
+        list.push_back({variant, false, one_sided(variant)});
+      }
     }
   }
 }
@@ -101,7 +106,7 @@ std::vector<Candidate> candidates_for(const Studied& studied, const Campaign& ca
       list.push_back({use, true, false});
     }
   }
-  for (const Effect* effect : effect_library()) {
+  for (const Effect* effect : effects_known_to(studied.model)) {
     const EffectAbout& about = effect->about();
     if (about.base || !belongs(about, campaign.bench.kind)) {
       continue;
@@ -139,8 +144,7 @@ Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries
       use.values[p].free = false;
     }
     // What is chosen among a few (a neighbour, a harmonic) stays chosen.
-    if (parameters[p].auxiliary() && parameters[p].starts.size() != 2 &&
-        parameters[p].unit != "Hz") {
+    if (parameters[p].auxiliary() && !parameters[p].chosen) {
       use.values[p].free = true;
     }
   }
@@ -171,8 +175,8 @@ std::vector<double> carry(const Composition& from, const std::vector<double>& th
   return out;
 }
 
-Direction direction_of(const Candidate& candidate, const Studied& studied, Study& study,
-                       std::size_t worker) {
+Direction direction_of(const Candidate& candidate, const Studied& studied, const Campaign& campaign,
+                       ShotResiduals& residuals, std::size_t worker) {
   Direction direction;
   const ModelFit& fit = studied.fit;
   if (candidate.frees_prior) {
@@ -207,7 +211,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, Study
                                                         fit.covariance * direction.model_share;
   } else {
     const Model extended = with(studied.model, candidate, false);
-    const Composition composition(extended, study.campaign());
+    const Composition composition(extended, campaign);
     const std::vector<double> theta = carry(studied.composition, fit.theta, composition);
     std::vector<std::size_t> own;
     for (std::size_t i = 0; i < theta.size(); ++i) {
@@ -222,8 +226,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, Study
         work(i, worker);
       }
     };
-    direction.columns =
-        derivatives(composition, study.residuals(), theta, fit.residual, own, serial);
+    direction.columns = derivatives(composition, residuals, theta, fit.residual, own, serial);
     direction.model_share = fit.jacobian.transpose() * direction.columns;
     direction.unprojected = direction.columns.transpose() * direction.columns;
     direction.pull = -direction.columns.transpose() * fit.residual;

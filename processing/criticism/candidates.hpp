@@ -44,6 +44,11 @@ struct Direction {
                                         const Composition& to);
 
 [[nodiscard]] Direction direction_of(const Candidate& candidate, const Studied& studied,
-                                     Study& study, std::size_t worker);
+                                     const Campaign& campaign, ShotResiduals& residuals,
+                                     std::size_t worker);
+[[nodiscard]] inline Direction direction_of(const Candidate& candidate, const Studied& studied,
+                                            Study& study, std::size_t worker) {
+  return direction_of(candidate, studied, study.campaign(), study.residuals(), worker);
+}
 
 }  // namespace kolsky

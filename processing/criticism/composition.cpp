@@ -19,6 +19,26 @@ EffectUse filed(const std::string& id, std::vector<double> sds) {
   return use;
 }
 
+/// Without waves, or with a material that nobody states, nothing can be foretold.
+void require_whole(const Model& model, const Bench& bench) {
+  std::vector<std::string> needed;
+  if (bench.kind != BenchKind::impact) {
+    needed.emplace_back("elementary-waves");
+    if (!bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa)) {
+      needed.emplace_back("three-element-bar");
+    }
+  }
+  if (bench.kind == BenchKind::shpb) {
+    needed.emplace_back("three-element-specimen");
+  }
+  for (const std::string& id : needed) {
+    if (model.find(id) == nullptr) {
+      throw InputError("model", "lacks " + id + ", without which nothing can be foretold here",
+                       "add it with `kolsky model add`");
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
@@ -31,7 +51,7 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
       list.push_back(filed("gauge-position:" + gauge.name, {gauge.position_m.sd}));
     }
   }
-  if (bench.kind == BenchKind::bar && bench.input.length_m.sd > 0.0) {
+  if (bench.kind != BenchKind::shpb && bench.input.length_m.sd > 0.0) {
     list.push_back(filed("bar-length", {bench.input.length_m.sd}));
   }
   if (bench.input.density_kg_m3.sd > 0.0) {
@@ -51,6 +71,7 @@ Composition::Composition(const Model& model, const Campaign& campaign)
     throw InputError("model", "is of another kind of bench than the captures",
                      "make one with `kolsky model new --kind`");
   }
+  require_whole(model, campaign.bench);
   for (const EffectUse& use : model.effects) {
     add(use, campaign);
   }
@@ -81,7 +102,8 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
     const EffectParameter& parameter = about.parameters[p];
     const ModelValue& value = use.values[p];
     const std::size_t by_shot = use.per_shot && !parameter.auxiliary() ? shots_ : 1;
-    const std::size_t by_gauge = about.each_gauge && !parameter.auxiliary() ? gauges_ : 1;
+    const std::size_t by_gauge =
+        about.each_gauge && !use.alike && !parameter.auxiliary() ? gauges_ : 1;
     Slots own{by_shot, by_gauge, std::vector<Slot>(by_shot * by_gauge)};
     for (std::size_t place = 0; place < own.of.size(); ++place) {
       Slot& slot = own.of[place];
@@ -108,6 +130,44 @@ std::vector<double> Composition::start() const {
     theta.push_back(number.start / number.scale);
   }
   return theta;
+}
+
+Eigen::MatrixXd Composition::prior_precision() const {
+  const auto count = static_cast<Eigen::Index>(numbers_.size());
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FreeNumber& number = numbers_[static_cast<std::size_t>(i)];
+    if (number.prior_sd > 0.0) {
+      precision(i, i) = number.scale * number.scale / (number.prior_sd * number.prior_sd);
+    }
+  }
+  for (std::size_t u = 0; u < uses_.size(); ++u) {
+    const std::vector<double>& correlation = uses_[u].prior_correlation;
+    if (correlation.empty()) {
+      continue;
+    }
+    // Of the numbers that are free, the others held where they are.
+    const std::vector<std::size_t> own = numbers_of(u);
+    const std::size_t all = uses_[u].values.size();
+    Eigen::MatrixXd among(own.size(), own.size());
+    for (std::size_t a = 0; a < own.size(); ++a) {
+      for (std::size_t b = 0; b < own.size(); ++b) {
+        among(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+            correlation[numbers_[own[a]].parameter * all + numbers_[own[b]].parameter];
+      }
+    }
+    const Eigen::MatrixXd inverse = among.inverse();
+    for (std::size_t a = 0; a < own.size(); ++a) {
+      for (std::size_t b = 0; b < own.size(); ++b) {
+        const FreeNumber& p = numbers_[own[a]];
+        const FreeNumber& q = numbers_[own[b]];
+        precision(static_cast<Eigen::Index>(own[a]), static_cast<Eigen::Index>(own[b])) =
+            p.scale * q.scale / (p.prior_sd * q.prior_sd) *
+            inverse(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      }
+    }
+  }
+  return precision;
 }
 
 std::vector<AppliedEffect> Composition::applied(const std::vector<double>& theta,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ class Composition {
   [[nodiscard]] const std::vector<EffectUse>& uses() const { return uses_; }
   [[nodiscard]] const std::vector<FreeNumber>& numbers() const { return numbers_; }
   [[nodiscard]] std::vector<double> start() const;  ///< in scales
+  /// Inverse covariance of the priors, in scales; rows of zeros where there is none.
+  [[nodiscard]] Eigen::MatrixXd prior_precision() const;
 
   /// What acts on one shot. @param theta  one per free number, in scales
   [[nodiscard]] std::vector<AppliedEffect> applied(const std::vector<double>& theta,

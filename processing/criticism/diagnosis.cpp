@@ -8,11 +8,11 @@
 #include <random>
 #include <set>
 
-#include "processing/criticism/distortion.hpp"
 #include "processing/criticism/held_out.hpp"
 #include "processing/criticism/next_experiment.hpp"
 #include "processing/criticism/own_strengths.hpp"
 #include "processing/criticism/statistics.hpp"
+#include "processing/criticism/unexplained.hpp"
 
 namespace kolsky {
 
@@ -21,19 +21,25 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
-constexpr double kDetected = 6.0;      ///< sigma
-constexpr double kToldApart = 5.0;     ///< sigma beside a rival
-constexpr double kAllowedRest = 0.03;  ///< of a misfit that certified effects explain
-constexpr double kUnexplained = -9.2;  ///< ln of the chance that noise leaves as much
-constexpr double kFarOff = 3.0;        ///< chi2 per degree of freedom
+constexpr double kDetected = 6.0;            ///< sigma
+constexpr double kToldApart = 5.0;           ///< sigma beside a rival
+constexpr double kAllowedRest = 0.01;        ///< of a misfit that certified effects explain
+constexpr double kUnexplained = -6.9;        ///< ln of the chance that noise leaves as much
+constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
+constexpr double kFarOff = 3.0;              ///< chi2 per degree of freedom
 constexpr std::size_t kMostRefits = 14;
+constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
+constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
 constexpr int kSimulatedRepeats = 2000;
 
 /// A candidate refitted in full beside the model.
 struct Refit {
   std::size_t candidate = 0;
   Studied studied;
-  double gain = 0.0;      ///< of the objective
+  double freedom = 1.0;
+  bool one_sided = false;
+  double scatter = 1.0;   ///< how much more than noise the shots differ in its direction
+  double gain = 0.0;      ///< of the objective, over the noise
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
   double log_p = 0.0;
 };
@@ -59,10 +65,33 @@ double noise_of(const Misfit& misfit, std::size_t shots) {
   return shots > 1 ? misfit.noise_scale : std::max(1.0, misfit.noise_scale);
 }
 
-/// How far the strengths that single shots give are from the common one: the chi2 that strengths of
-/// their own would gain, and the shots less one.
-std::pair<double, double> disagreement(const Studied& studied, const std::string& id,
-                                       std::size_t per_shot) {
+/// What single shots say of an effect's strength.
+struct ShotStrengths {
+  std::vector<double> over_common;  ///< each shot's strength over the common one
+  std::vector<double> weight;       ///< one over the variances of these
+
+  /// The chi2 that strengths of their own would gain over strengths in proportion to `like`.
+  [[nodiscard]] double departure_from(const std::vector<double>& like) const {
+    double cross = 0.0;
+    double square = 0.0;
+    double all = 0.0;
+    for (std::size_t n = 0; n < weight.size(); ++n) {
+      cross += weight[n] * like[n] * over_common[n];
+      square += weight[n] * like[n] * like[n];
+      all += weight[n] * over_common[n] * over_common[n];
+    }
+    return square > 0.0 ? all - cross * cross / square : all;
+  }
+  [[nodiscard]] double disagreement() const {
+    return departure_from(std::vector<double>(weight.size(), 1.0));
+  }
+  [[nodiscard]] double freedom() const {
+    return weight.empty() ? 1.0 : static_cast<double>(weight.size()) - 1.0;
+  }
+};
+
+/// @return nothing for strengths that are each shot's own, or fewer than three shots
+ShotStrengths shot_strengths(const Studied& studied, const std::string& id, std::size_t per_shot) {
   const ModelFit& fit = studied.fit;
   std::vector<Eigen::Index> own;
   for (std::size_t i = 0; i < fit.theta.size(); ++i) {
@@ -76,7 +105,7 @@ std::pair<double, double> disagreement(const Studied& studied, const std::string
   const auto size = static_cast<Eigen::Index>(per_shot);
   const Eigen::Index shots = fit.residual.size() / size;
   if (own.empty() || shots < 3) {
-    return {0.0, 1.0};
+    return {};
   }
   // What its strengths add to the residuals, clear of the other numbers, over all shots.
   Eigen::VectorXd clear = Eigen::VectorXd::Zero(fit.residual.size());
@@ -96,17 +125,16 @@ std::pair<double, double> disagreement(const Studied& studied, const std::string
     share[column] = 0.0;
   }
   clear -= fit.jacobian * rest.ldlt().solve(share);
-  double q = 0.0;
+  ShotStrengths list;
   const double noise = std::max(1.0, studied.misfit.noise_scale);
   for (Eigen::Index n = 0; n < shots; ++n) {
     const auto part = clear.segment(n * size, size);
     const double information = part.squaredNorm();
-    if (information > 0.0) {
-      const double pull = part.dot(fit.residual.segment(n * size, size));
-      q += pull * pull / information / noise;
-    }
+    const double pull = part.dot(fit.residual.segment(n * size, size));
+    list.over_common.push_back(information > 0.0 ? 1.0 - pull / information : 1.0);
+    list.weight.push_back(information / noise);
   }
-  return {q, static_cast<double>(shots - 1)};
+  return list;
 }
 
 class Search {
@@ -144,12 +172,14 @@ class Search {
     });
     std::vector<Refit> list;
     for (auto& own : done) {
-      if (own && std::isfinite(own->gain) && !beyond_the_record(own->studied, *own) &&
+      if (own && std::isfinite(own->studied.fit.objective()) &&
+          !beyond_the_record(own->studied, *own) &&
           own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
                                   study_.campaign())) {
         list.push_back(std::move(*own));
       }
     }
+    rate(list);
     std::sort(list.begin(), list.end(),
               [](const Refit& a, const Refit& b) { return a.evidence > b.evidence; });
     return list;
@@ -244,7 +274,8 @@ class Search {
     std::map<std::string, std::pair<double, std::size_t>> best;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const double evidence = evidence_of(directions_[i], candidates_[i]);
-      auto& own = best[candidates_[i].id() + (candidates_[i].use.per_shot ? " per shot" : "")];
+      const EffectUse& use = candidates_[i].use;
+      auto& own = best[use.id() + (use.per_shot ? " per shot" : "") + (use.alike ? " alike" : "")];
       if (evidence > own.first) {
         own = {evidence, i};
       }
@@ -259,22 +290,25 @@ class Search {
     std::vector<std::size_t> chosen;
     for (const auto& [evidence, i] : ranked) {
       const double margin = std::max(25.0, 0.6 * ranked.front().first);
-      if (chosen.size() < kMostRefits && evidence > ranked.front().first - margin) {
+      // Far from the records, first order says little of what fits best.
+      const bool far = base_.misfit.chi2_reduced > kFarOff;
+      const bool near = evidence > ranked.front().first - margin ||
+                        ((far || chosen.size() < kAlwaysRefits) && evidence > kWorthRefitting);
+      if (chosen.size() < kMostRefits && near) {
         chosen.push_back(i);
       }
     }
     return chosen;
   }
 
-  std::optional<Refit> refit(std::size_t index, std::size_t worker) {
-    const Candidate& candidate = candidates_[index];
-    const Direction& direction = directions_[index];
-    const Model model = with(base_.model, candidate, true);
-    Composition composition(model, study_.campaign());
-    std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
-    // Begin where first order says the strengths are, or short of it.
+  /// Where first order says the strengths and the model's numbers are, or as far on the way as
+  /// makes things better.
+  [[nodiscard]] std::vector<double> begin_near(const Candidate& candidate,
+                                               const Direction& direction,
+                                               const Composition& composition,
+                                               std::size_t worker) const {
     std::vector<std::size_t> strengths;
-    for (std::size_t i = 0; i < start.size(); ++i) {
+    for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
       const FreeNumber& number = composition.numbers()[i];
       const EffectUse& use = composition.uses()[number.use];
       if (use.id() == candidate.id() &&
@@ -282,16 +316,44 @@ class Search {
         strengths.push_back(i);
       }
     }
-    if (!candidate.frees_prior &&
-        static_cast<Eigen::Index>(strengths.size()) == direction.step.size()) {
+    std::vector<double> best = carry(base_.composition, base_.fit.theta, composition);
+    if (candidate.frees_prior ||
+        static_cast<Eigen::Index>(strengths.size()) != direction.step.size()) {
+      return best;
+    }
+    const std::vector<double> null = best;
+    const Eigen::VectorXd along = -base_.fit.covariance * direction.model_share * direction.step;
+    double least = study_.residuals().evaluate(composition, best, worker).squaredNorm();
+    for (const double share : {1.0, 0.3, 0.1}) {
+      std::vector<double> moved = base_.fit.theta;
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        const FreeNumber& number = base_.composition.numbers()[i];
+        moved[i] = std::clamp(moved[i] + share * along[static_cast<Eigen::Index>(i)],
+                              number.lower / number.scale, number.upper / number.scale);
+      }
+      std::vector<double> start = carry(base_.composition, moved, composition);
       for (std::size_t i = 0; i < strengths.size(); ++i) {
         const FreeNumber& number = composition.numbers()[strengths[i]];
-        const double value = start[strengths[i]] * number.scale +
-                             direction.step[static_cast<Eigen::Index>(i)] * number.scale;
-        start[strengths[i]] = std::clamp(value, number.lower, number.upper) / number.scale;
+        start[strengths[i]] =
+            std::clamp(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)],
+                       number.lower / number.scale, number.upper / number.scale);
+      }
+      const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
+      if (chi2 < least) {
+        least = chi2;
+        best = std::move(start);
       }
     }
-    ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker), std::move(start));
+    return best;
+  }
+
+  std::optional<Refit> refit(std::size_t index, std::size_t worker) {
+    const Candidate& candidate = candidates_[index];
+    const Direction& direction = directions_[index];
+    const Model model = with(base_.model, candidate, true);
+    Composition composition(model, study_.campaign());
+    ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker),
+                             begin_near(candidate, direction, composition, worker));
     if (base_.misfit.chi2_reduced > kFarOff) {
       // The model's own numbers may have gone far astray for want of this effect: begin again from
       // where they started.
@@ -307,30 +369,66 @@ class Search {
     const Misfit misfit =
         misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
     Refit out{index,
-              {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit},
-              0.0,
-              0.0,
-              0.0};
-    const double noise = noise_of(out.studied.misfit, study_.campaign().shots.size());
+              {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit}};
     const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                            out.studied.fit.degrees_of_freedom(out.studied.composition);
-    out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise /
-               scatter_of(out.studied, candidate.id());
-    out.log_p = log_tail(out.gain, candidate.frees_prior ? 1.0 : std::round(freedom),
-                         candidate.one_sided && freedom < 1.5);
-    out.evidence = equivalent_square(out.log_p);
+    out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
+    out.one_sided = candidate.one_sided && freedom < 1.5;
+    out.scatter = scatter_of(out.studied, candidate.id());
     return out;
+  }
+
+  /// Rates rivals by one measure of the noise, that of the best: what they leave of each other's
+  /// misfit must not count as noise.
+  void rate(std::vector<Refit>& list) const {
+    const auto best =
+        std::min_element(list.begin(), list.end(), [](const Refit& a, const Refit& b) {
+          return a.studied.fit.objective() < b.studied.fit.objective();
+        });
+    if (best == list.end()) {
+      return;
+    }
+    const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
+    for (Refit& refit : list) {
+      refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
+      refit.evidence = equivalent_square(log_tail(refit.gain, refit.freedom, refit.one_sided));
+      refit.log_p = chance_of(refit);
+    }
   }
 
   /// How much more than noise the shots differ in the direction of an effect's strength: noise
   /// whose frequencies hang together scatters more there than its spectrum says.
   [[nodiscard]] double scatter_of(const Studied& studied, const std::string& id) const {
-    // What is known of the noise beforehand counts as much as this many shots; of slow noise, among
-    // which additions to a record are sought, little is known.
     const Effect* effect = studied.model.find(id)->effect;
-    const double belief = effect->about().stage == Stage::record ? 3.0 : 20.0;
-    const auto [q, freedom] = disagreement(studied, id, study_.residuals().per_shot());
-    return std::max(1.0, (belief + q) / (belief + freedom));
+    const bool slow = effect->about().stage == Stage::record;
+    const double belief = belief_in(*effect);
+    const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
+    const double q = shots.disagreement();
+    constexpr double kOrdinary = -4.6;
+    if (!slow && log_chi2_tail(q, shots.freedom()) > kOrdinary) {
+      return 1.0;  // chance alone must not rank rivals
+    }
+    return std::max(1.0, (belief + q) / (belief + shots.freedom()));
+  }
+
+  /// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no
+  /// better than so many degrees of freedom do.
+  [[nodiscard]] double chance_of(const Refit& refit) const {
+    const EffectUse& use = candidates_[refit.candidate].use;
+    const std::size_t shots = study_.campaign().shots.size();
+    if (use.per_shot || shots < 3 || refit.gain <= 0.0) {
+      return log_tail(refit.gain, refit.freedom, refit.one_sided);
+    }
+    const double freedom = std::max(refit.freedom, 1.0);
+    const double known = belief_in(*use.effect) + static_cast<double>(shots - 1);
+    const double log_p = log_f_tail(refit.gain / freedom, freedom, known);
+    return refit.one_sided ? log_p - std::log(2.0) : log_p;
+  }
+
+  /// What is known of the noise beforehand counts as much as this many shots; of slow noise, among
+  /// which additions to a record are sought, little is known.
+  static double belief_in(const Effect& effect) {
+    return effect.about().stage == Stage::record ? 3.0 : 20.0;
   }
 
   Study& study_;
@@ -341,55 +439,27 @@ class Search {
   double trials_ = 1.0;
 };
 
-/// What smooth distortions of every gauge still find in a model's residuals.
-double unexplained(Study& study, const Studied& studied, double* excess) {
-  double gain = 0.0;
-  double freedom = 0.0;
-  std::vector<Direction> list;
-  const auto& campaign = study.campaign();
-  Eigen::Index total = 0;
-  for (const std::size_t j : study.residuals().others()) {
-    EffectUse use = null_use(distortion_effect(), campaign.bench.gauges[j].name);
-    list.push_back(direction_of({use, false, false}, studied, study, 0));
-    total += list.back().columns.cols();
-  }
-  Eigen::MatrixXd columns(studied.fit.residual.size(), total);
-  Eigen::Index at = 0;
-  for (const Direction& direction : list) {
-    columns.middleCols(at, direction.columns.cols()) = direction.columns;
-    at += direction.columns.cols();
-  }
-  for (Eigen::Index i = 0; i < total; ++i) {
-    const double norm = columns.col(i).norm();
-    if (norm > 0.0) {
-      columns.col(i) /= norm;
-    }
-  }
-  const Eigen::MatrixXd share = studied.fit.jacobian.transpose() * columns;
-  const Eigen::MatrixXd information =
-      columns.transpose() * columns - share.transpose() * studied.fit.covariance * share;
-  const Eigen::VectorXd pull = columns.transpose() * studied.fit.residual;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
-  for (Eigen::Index i = 0; i < total; ++i) {
-    constexpr double kResolved = 1e-4;
-    if (solver.eigenvalues()[i] > kResolved) {
-      const double z = solver.eigenvectors().col(i).dot(pull);
-      gain += z * z / solver.eigenvalues()[i];
-      freedom += 1.0;
-    }
-  }
-  const double noise = noise_of(studied.misfit, campaign.shots.size());
-  *excess = std::max(0.0, gain / noise - freedom);
-  return freedom > 0.0 ? log_chi2_tail(gain / noise, freedom) : 0.0;
-}
-
 /// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
-/// more than noise, and by more than a small part of what it explains.
-bool shots_agree(const Studied& studied, double gain, const std::string& id, std::size_t per_shot) {
-  constexpr double kChance = -14.0;
+/// more than noise, and by more than a small part of what it explains. Of what is added to the
+/// records, slow noise makes strengths differ anyway: there it tells that they follow the shots'
+/// amplitudes.
+bool shots_agree(const Studied& studied, double gain, const std::string& id,
+                 const Campaign& campaign, std::size_t per_shot) {
+  constexpr double kChance = -9.2;
   constexpr double kPart = 0.02;
-  const auto [q, freedom] = disagreement(studied, id, per_shot);
-  return log_chi2_tail(q, freedom) > kChance || q < kPart * gain;
+  const ShotStrengths shots = shot_strengths(studied, id, per_shot);
+  const double q = shots.disagreement();
+  if (log_chi2_tail(q, shots.freedom()) > kChance || q < kPart * gain) {
+    return true;
+  }
+  std::vector<double> peaks;
+  for (const CampaignShot& shot : campaign.shots) {
+    peaks.push_back(shot.facts.peak_strain);
+  }
+  const double departure = shots.departure_from(peaks);
+  constexpr double kSquare = 9.0;
+  return studied.model.find(id)->effect->about().per_shot &&
+         q - departure < kSquare * departure / shots.freedom();
 }
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
@@ -424,14 +494,15 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
     return;
   }
   const auto& parameters = use->effect->about().parameters;
-  std::size_t at = 0;
-  if (id == "end-reflection") {
-    at = 1;
-  }
+  const std::size_t at = use->effect->about().strength;
   result.parameter = parameters[at].name;
   result.unit = parameters[at].unit;
   result.strength = use->values[at].value;
   result.sd = use->values[at].sd;
+  if (use->effect->about().quadrature) {
+    result.parameter = "A";
+    result.strength = std::hypot(use->values[0].value, use->values[1].value);
+  }
 }
 
 }  // namespace
@@ -499,8 +570,8 @@ class Diagnostician {
       const std::string id = search.candidates()[refit.candidate].id();
       const auto [gain, better] = certification(current, refit.studied, per_shot);
       const std::size_t shots = study_.campaign().shots.size();
-      const bool agrees = shots_agree(refit.studied, refit.gain, id, per_shot);
-      if (gain <= 0.0 || 2 * better < shots || !agrees ||
+      const bool agrees = shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot);
+      if (gain <= 0.0 || 2 * better <= shots || !agrees ||
           search.with_search(refit.log_p) > options_.log_alpha) {
         set_verdict(id, "rejected");
         continue;
@@ -537,7 +608,8 @@ class Diagnostician {
                                carry(current.composition, current.fit.theta, composition));
       const double noise = noise_of(current.misfit, study_.campaign().shots.size());
       const double loss = (fit.objective() - current.fit.objective()) / noise;
-      if (equivalent_square(log_tail(loss, 1.0, false)) < 16.0) {
+      if (equivalent_square(log_tail(loss, 1.0, false)) < 16.0 ||
+          !own_strengths_confirmed(current, id, study_.campaign())) {
         const Misfit misfit =
             misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
         Model after = fitted(without, composition, fit);
@@ -553,8 +625,8 @@ class Diagnostician {
 
   void conclude(const Studied& first, const Studied& current) {
     options_.progress("looking for what nothing explains");
-    double excess = 0.0;
-    diagnosis_.unexplained_log_p = unexplained(study_, current, &excess);
+    const Unexplained left = unexplained(study_, current);
+    diagnosis_.unexplained_log_p = left.log_p;
     diagnosis_.after = current.misfit;
     // Both by the same measure of the noise.
     const Studied before = diagnosis_.effects.empty() ? first : study_.refit(first);
@@ -563,8 +635,10 @@ class Diagnostician {
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
-    const bool rest = diagnosis_.unexplained_log_p < kUnexplained &&
-                      excess > kAllowedRest * std::max(0.0, explained);
+    // That something is there is certain once an effect is certified.
+    const double threshold = diagnosis_.effects.empty() ? kUnexplained : kUnexplainedBeside;
+    const bool rest = diagnosis_.unexplained_log_p < threshold &&
+                      left.excess > kAllowedRest * std::max(0.0, explained);
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {

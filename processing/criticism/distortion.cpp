@@ -21,6 +21,7 @@ std::vector<EffectParameter> strengths() {
   for (std::size_t i = 0; i < count; ++i) {
     list.push_back({"c" + std::to_string(i), "-", 0.0, -1.0, 1.0, 1e-3, {}});
   }
+  list.push_back({"by_peak", "-", 0.0, -1e3, 1e3, 1.0, {}});
   return list;
 }
 
@@ -35,6 +36,7 @@ class Distortion final : public Effect {
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = strengths(),
             .per_gauge = true,
+            .shot_facts = true,
             .base = true,
         }) {}
 
@@ -54,12 +56,38 @@ class Distortion final : public Effect {
       for (const double late : kEchoes_s) {
         sum += values[i++] * std::exp(-s * late);
       }
+      sum += values[i] * scene.facts->peak_strain;
       scene.gauges[gauge].factor[k] *= 1.0 + sum;
     }
   }
 };
 
+class BentScale final : public Effect {
+ public:
+  BentScale()
+      : Effect({
+            .id = "bent-scale",
+            .stage = Stage::record,
+            .definition = "reading = e (1 + b e + c e^2)",
+            .reference = "",
+            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .parameters = {{"b", "-", 0.0, -50.0, 50.0, 0.5, {}},
+                           {"c", "-", 0.0, -1e5, 1e5, 1e3, {}}},
+            .base = true,
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
+    scene.record.bridge_b += values[0];
+    scene.record.bridge_c += values[1];
+  }
+};
+
 }  // namespace
+
+const Effect& bent_scale_effect() {
+  static const BentScale effect;
+  return effect;
+}
 
 const Effect& distortion_effect() {
   static const Distortion effect;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/first_pulse.hpp"
 
 namespace kolsky {
 
@@ -13,17 +13,20 @@ namespace {
 constexpr int kMostIterations = 25;
 constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
 
-/// Prior's rows: (theta scale - mean) / sd.
-double penalty_of(const Composition& composition, const std::vector<double>& theta) {
-  double sum = 0.0;
+/// How far theta is from the middle of the priors, in scales.
+Eigen::VectorXd from_priors(const Composition& composition, const std::vector<double>& theta) {
+  Eigen::VectorXd off(static_cast<Eigen::Index>(theta.size()));
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
-    if (number.prior_sd > 0.0) {
-      const double z = (theta[i] * number.scale - number.prior_mean) / number.prior_sd;
-      sum += z * z;
-    }
+    off[static_cast<Eigen::Index>(i)] = theta[i] - number.prior_mean / number.scale;
   }
-  return sum;
+  return off;
+}
+
+double penalty_of(const Composition& composition, const Eigen::MatrixXd& precision,
+                  const std::vector<double>& theta) {
+  const Eigen::VectorXd off = from_priors(composition, theta);
+  return off.dot(precision * off);
 }
 
 void keep_inside(const Composition& composition, std::vector<double>& theta) {
@@ -57,7 +60,7 @@ double ModelFit::degrees_of_freedom(const Composition& composition) const {
   return static_cast<double>(residual.size()) - used;
 }
 
-Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& residuals,
+Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& residuals,
                             const std::vector<double>& theta, const Eigen::VectorXd& at_theta,
                             const std::vector<std::size_t>& numbers, const Workers& executor) {
   Eigen::MatrixXd columns(at_theta.size(), static_cast<Eigen::Index>(numbers.size()));
@@ -69,7 +72,7 @@ Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& resi
     const double step = room > number.difference ? number.difference : -number.difference;
     moved[numbers[i]] += step;
     const auto column = static_cast<Eigen::Index>(i);
-    if (number.shot >= 0) {
+    if (number.shot >= 0 && !residuals.shots_hang_together()) {
       const auto size = static_cast<Eigen::Index>(residuals.per_shot());
       const Eigen::Index first = number.shot * size;
       const auto shot = static_cast<std::size_t>(number.shot);
@@ -85,18 +88,19 @@ Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& resi
   return columns;
 }
 
-ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
+ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
                    const Workers& executor, std::vector<double> start,
                    const Eigen::MatrixXd* chord) {
   ModelFit fit;
   fit.theta = start.empty() ? composition.start() : std::move(start);
   keep_inside(composition, fit.theta);
   const auto count = static_cast<Eigen::Index>(fit.theta.size());
+  const Eigen::MatrixXd precision = composition.prior_precision();
   std::vector<std::size_t> all(fit.theta.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   fit.residual = residuals.evaluate(composition, fit.theta, executor.first);
   fit.chi2 = fit.residual.squaredNorm();
-  fit.penalty = penalty_of(composition, fit.theta);
+  fit.penalty = penalty_of(composition, precision, fit.theta);
   if (count == 0) {
     // Nothing is free: the model is what it is.
     fit.jacobian.resize(fit.residual.size(), 0);
@@ -114,15 +118,8 @@ ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
     }
     fit.information = fit.jacobian.transpose() * fit.jacobian;
     Eigen::VectorXd downhill = -fit.jacobian.transpose() * fit.residual;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const FreeNumber& number = composition.numbers()[static_cast<std::size_t>(i)];
-      if (number.prior_sd > 0.0) {
-        const double weight = number.scale * number.scale / (number.prior_sd * number.prior_sd);
-        fit.information(i, i) += weight;
-        downhill[i] -=
-            weight * (fit.theta[static_cast<std::size_t>(i)] - number.prior_mean / number.scale);
-      }
-    }
+    fit.information += precision;
+    downhill -= precision * from_priors(composition, fit.theta);
     // A number that is held by its bound takes no part in this step.
     Eigen::MatrixXd information = fit.information;
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -149,7 +146,7 @@ ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
       keep_inside(composition, moved);
       const Eigen::VectorXd residual = residuals.evaluate(composition, moved, executor.first);
       const double chi2 = residual.squaredNorm();
-      const double penalty = penalty_of(composition, moved);
+      const double penalty = penalty_of(composition, precision, moved);
       gain = fit.objective() - chi2 - penalty;
       if (std::isfinite(chi2) && gain > -1e-6) {
         better = true;
@@ -197,10 +194,8 @@ namespace {
 
 /// Half-height crossing of a gauge's first pulse [s from the first sample]; negative for none.
 double arrival_s(const CampaignShot& shot, std::size_t gauge, double period_s) {
-  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(5e-6 / period_s));
-  const auto reach = static_cast<std::size_t>(500e-6 / period_s);
-  const auto rise = find_first_pulse(shot.strain[gauge], width, reach);
-  return rise ? static_cast<double>(rise->index) * period_s : -1.0;
+  const auto pulse = first_pulse(shot.strain[gauge], 1.0 / period_s);
+  return pulse ? static_cast<double>(pulse->rise) * period_s : -1.0;
 }
 
 /// Wave speed on the input bar from the first gauge to the last, 0 where it cannot be told.

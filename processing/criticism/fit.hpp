@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/criticism/composition.hpp"
 #include "processing/criticism/residuals.hpp"
-#include "processing/criticism/workers.hpp"
 
 namespace kolsky {
 
@@ -28,12 +28,12 @@ struct ModelFit {
 /// Maximum a posteriori fit by Gauss and Newton's method with Levenberg's damping, inside bounds.
 /// @param start  in scales; empty: the composition's
 /// @param chord  derivatives from nearby, used as long as they serve; none: made at every step
-[[nodiscard]] ModelFit fit_model(const Composition& composition, WhiteResiduals& residuals,
+[[nodiscard]] ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
                                  const Workers& executor, std::vector<double> start = {},
                                  const Eigen::MatrixXd* chord = nullptr);
 
 /// Derivatives of the residuals by some of the free numbers, by differences.
-[[nodiscard]] Eigen::MatrixXd derivatives(const Composition& composition, WhiteResiduals& residuals,
+[[nodiscard]] Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& residuals,
                                           const std::vector<double>& theta,
                                           const Eigen::VectorXd& at_theta,
                                           const std::vector<std::size_t>& numbers,

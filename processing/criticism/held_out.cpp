@@ -27,6 +27,10 @@ std::vector<double> held_out_squares(const Studied& studied, std::size_t residua
         own += 1.0;
       }
     }
+    if (shared.empty()) {
+      squares.push_back(residual.squaredNorm() + 2.0 * own);
+      continue;
+    }
     const auto count = static_cast<Eigen::Index>(shared.size());
     Eigen::MatrixXd information(count, count);
     Eigen::MatrixXd columns(size, count);

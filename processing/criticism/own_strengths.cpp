@@ -6,23 +6,33 @@ namespace kolsky {
 
 namespace {
 
-/// Least-squares slope of a gauge's record over time before the pulse.
-double slope_before(const CampaignShot& shot, std::size_t gauge) {
+/// Least-squares slope over time of what came before the pulse.
+double slope_before(const CampaignShot& shot, const std::vector<double>& record) {
   const auto count = static_cast<double>(shot.quiet_samples);
   double t_mean = 0.0;
   double y_mean = 0.0;
   for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
     t_mean += shot.facts.time_s[n] / count;
-    y_mean += shot.strain[gauge][n] / count;
+    y_mean += record[n] / count;
   }
   double cross = 0.0;
   double square = 0.0;
   for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
     const double t = shot.facts.time_s[n] - t_mean;
-    cross += t * (shot.strain[gauge][n] - y_mean);
+    cross += t * (record[n] - y_mean);
     square += t * t;
   }
   return cross / square;
+}
+
+/// A hum is as strong in every shot; slow noise that was taken for one is not.
+bool amplitudes_agree(const Eigen::VectorXcd& amplitudes) {
+  const Eigen::VectorXd size = amplitudes.cwiseAbs();
+  const double mean = size.mean();
+  const auto count = static_cast<double>(size.size());
+  const double variance = (size.array() - mean).square().sum() / std::max(1.0, count - 1.0);
+  constexpr double kScatter = 0.3;  // of noise it is 0.5
+  return size.size() > 2 && std::sqrt(variance) < kScatter * mean;
 }
 
 /// The slopes before the pulses must follow those found: regression through the origin.
@@ -55,14 +65,45 @@ bool one_phase(Eigen::MatrixXcd amplitudes) {
          svd.singularValues()[0] * svd.singularValues()[0] > kOfOneProduct * all;
 }
 
-}  // namespace
+/// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
+/// as fitted and of the records.
+struct Slopes {
+  std::vector<double> found;
+  std::vector<double> before;
+};
 
-bool own_strengths_confirmed(const Studied& studied, const std::string& id,
-                             const Campaign& campaign) {
-  const EffectUse* use = studied.model.find(id);
-  if (use == nullptr || !use->per_shot) {
-    return true;
+Slopes slopes_of(const Studied& studied, const std::string& id, const Campaign& campaign) {
+  Slopes slopes;
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const CampaignShot& shot = campaign.shots[n];
+    Scene scene(campaign.bench, shot.facts, {});
+    scene.record.additions.resize(campaign.gauges());
+    const Effect* effect = studied.model.find(id)->effect;
+    for (const AppliedEffect& own : studied.composition.applied(studied.fit.theta, n)) {
+      if (own.effect == effect &&
+          (!effect->about().per_gauge ||
+           campaign.bench.gauges[own.gauge].name == studied.model.find(id)->gauge)) {
+        effect->apply(scene, own.values, own.gauge);
+      }
+    }
+    double found = 0.0;
+    double before = 0.0;
+    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+      if (!scene.record.additions[j].empty()) {
+        found += slope_before(shot, scene.record.additions[j]);
+        before += slope_before(shot, shot.strain[j]);
+      }
+    }
+    slopes.found.push_back(found);
+    slopes.before.push_back(before);
   }
+  return slopes;
+}
+
+/// Amplitudes by shot and, where they differ, gauge, their cosine and sine parts as one complex
+/// number.
+Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
+                               const Campaign& campaign) {
   // In the order of the composition: by parameter, then shot, then gauge.
   std::vector<std::vector<double>> found(2);
   for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
@@ -72,28 +113,33 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
       found[number.parameter].push_back(studied.fit.theta[i] * number.scale);
     }
   }
-  const std::size_t shots = campaign.shots.size();
-  if (!use->effect->about().each_gauge) {
-    std::size_t gauge = 0;
-    while (gauge < campaign.gauges() && campaign.bench.gauges[gauge].name != use->gauge) {
-      ++gauge;
-    }
-    std::vector<double> before;
-    for (const CampaignShot& shot : campaign.shots) {
-      before.push_back(slope_before(shot, gauge));
-    }
-    return slopes_agree(found[0], before);
-  }
-  Eigen::MatrixXcd amplitudes(static_cast<Eigen::Index>(shots),
-                              static_cast<Eigen::Index>(campaign.gauges()));
-  for (std::size_t n = 0; n < shots; ++n) {
-    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-      const std::size_t at = n * campaign.gauges() + j;
-      amplitudes(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(j)) = {found[0][at],
-                                                                                found[1][at]};
+  const auto shots = static_cast<Eigen::Index>(campaign.shots.size());
+  Eigen::MatrixXcd amplitudes(shots, static_cast<Eigen::Index>(found[0].size()) / shots);
+  for (Eigen::Index n = 0; n < amplitudes.rows(); ++n) {
+    for (Eigen::Index j = 0; j < amplitudes.cols(); ++j) {
+      const auto at = static_cast<std::size_t>(n * amplitudes.cols() + j);
+      amplitudes(n, j) = {found[0][at], found[1][at]};
     }
   }
-  return one_phase(amplitudes);
+  return amplitudes;
+}
+
+}  // namespace
+
+bool own_strengths_confirmed(const Studied& studied, const std::string& id,
+                             const Campaign& campaign) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || !use->per_shot) {
+    return true;
+  }
+  if (use->effect->about().each_gauge && !use->alike) {
+    return one_phase(amplitudes_of(studied, id, campaign));
+  }
+  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0))) {
+    return false;
+  }
+  const Slopes slopes = slopes_of(studied, id, campaign);
+  return slopes_agree(slopes.found, slopes.before);
 }
 
 }  // namespace kolsky

@@ -72,12 +72,15 @@ struct WhiteResiduals::Workspace {
   DampedTransform whole;      ///< of records, at their rate
   DampedTransform decimated;  ///< the same bins, for residuals
   DampedTransform plain;      ///< of the judged window
+  DampedTransform fine;       ///< the same window at the records' rate
   std::vector<double> record;
   std::vector<double> shaped;
   std::vector<double> residual;
   Spectrum full;
   Spectrum carried;
   Spectrum judged;
+  Spectrum fine_spectrum;
+  std::vector<double> fine_record;
   std::vector<Spectrum> records;  ///< of one shot where effects change them
   std::vector<Spectrum> rows;     ///< one shot's residuals, plain, by other gauge
   SpecimenResponse response;
@@ -89,11 +92,14 @@ struct WhiteResiduals::Workspace {
         decimated(length / band.decimation, period_s * static_cast<double>(band.decimation),
                   kWrapDamping),
         plain(band.judged, period_s * static_cast<double>(band.decimation), 1.0),
+        fine(band.judged * band.decimation, period_s, 1.0),
         record(length),
         residual(length / band.decimation),
         full(whole.bins()),
         carried(decimated.bins()),
-        judged(plain.bins()) {}
+        judged(plain.bins()),
+        fine_spectrum(fine.bins()),
+        fine_record(fine.length()) {}
 };
 
 WhiteResiduals::~WhiteResiduals() = default;
@@ -116,6 +122,9 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
   }
   for (std::size_t k = 1; k <= band_.bins_judged; ++k) {
     plain_path_.push_back(work.plain.s(k));
+  }
+  for (const CampaignShot& shot : campaign.shots) {
+    own_noise_.emplace_back(campaign.gauges(), std::vector<double>(shot.strain.front().size()));
   }
   prepare_noise();
   prepare_spectra();
@@ -289,7 +298,8 @@ void WhiteResiduals::prepare_spectra() {
 
 /// Undoes what effects say was done to the records after the strain was sensed.
 void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
-                                   const CampaignShot& shot) const {
+                                   std::size_t of_shot) const {
+  const CampaignShot& shot = campaign_.shots[of_shot];
   work.records.resize(campaign_.gauges());
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     work.shaped = shot.strain[j];
@@ -300,10 +310,17 @@ void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
         work.shaped[n] -= addition[n] - before;
       }
     }
-    if (const double b = record.bridge_b; b != 0.0) {
-      for (double& e : work.shaped) {
-        const double root = 1.0 + 4.0 * b * e;
-        e = 2.0 * e / (1.0 + std::sqrt(std::max(root, 0.0)));
+    if (record.bends(j)) {
+      // What was bent follows from the reading without its noise: bent straight with the signal,
+      // noise would shrink under every b > 0, and any record would ask for some.
+      std::vector<double> read = work.shaped;
+      for (std::size_t n = 0; n < read.size(); ++n) {
+        read[n] -= own_noise_[of_shot][j][n];
+      }
+      std::vector<double> straight = read;
+      record.straighten(j, straight);
+      for (std::size_t n = 0; n < read.size(); ++n) {
+        work.shaped[n] -= read[n] - straight[n];
       }
     }
     transform_record(work, work.shaped, work.records[j]);
@@ -324,19 +341,38 @@ void WhiteResiduals::plain_spectrum(Workspace& work, const Spectrum& damped, Spe
   }
 }
 
-std::vector<Complex> WhiteResiduals::plain_ratios(const Scene& like, const Composition& composition,
-                                                  const std::vector<double>& theta) const {
-  Scene scene(campaign_.bench, *like.facts, plain_path_);
-  shape(composition.applied(theta, like.facts->shot), scene);
-  const Transfers transfers = transfers_of(scene, campaign_.reference);
-  std::vector<Complex> ratios(band_.bins_judged * others_.size());
-  for (std::size_t i = 0; i < others_.size(); ++i) {
-    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-      ratios[k * others_.size() + i] =
-          transfers.reading[others_[i]][k] / transfers.reading[campaign_.reference][k];
+/// Each gauge's reading over the reference gauge's, along the damped path.
+Transfers WhiteResiduals::ratios_of(const Scene& scene) const {
+  Transfers transfers = transfers_of(scene, campaign_.reference);
+  for (const std::size_t j : others_) {
+    for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+      transfers.reading[j][k] /= transfers.reading[campaign_.reference][k];
     }
   }
-  return ratios;
+  return transfers;
+}
+
+/// The same at the judged bins, bin by bin, as far as a record's length lets them act: what would
+/// come back later carries no noise into it.
+std::vector<Complex> WhiteResiduals::ratios_within_record(Workspace& work,
+                                                          const Transfers& ratios) const {
+  // The filter reaches to both sides of the first sample: the window begins a little before it.
+  const double before_s = static_cast<double>(band_.edge) * campaign_.period_s;
+  const double start_s = static_cast<double>(band_.lead) * campaign_.period_s + 2.0 * before_s;
+  std::vector<Complex> within(band_.bins_judged * others_.size());
+  Spectrum impulse(band_.bins_carried);
+  Spectrum plain;
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+      impulse[k] =
+          ratios.reading[others_[i]][k] * damped_filter_[k] * std::exp(-damped_path_[k] * start_s);
+    }
+    plain_spectrum(work, impulse, plain);
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      within[k * others_.size() + i] = plain[k] * std::exp(plain_path_[k] * before_s);
+    }
+  }
+  return within;
 }
 
 /// Inverse Cholesky factor of G P G^H at one bin; `cross` becomes P G^H.
@@ -362,14 +398,34 @@ Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::
 }
 
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
-  const Scene scene(campaign_.bench, campaign_.shots.front().facts, plain_path_);
-  const std::vector<Complex> ratios = plain_ratios(scene, composition, theta);
+  Scene scene(campaign_.bench, campaign_.shots.front().facts, damped_path_);
+  shape(composition.applied(theta, 0), scene);
+  const std::vector<Complex> ratios = ratios_within_record(*work_.front(), ratios_of(scene));
   spread_.clear();
   Eigen::MatrixXcd cross;
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     const Eigen::MatrixXcd inverse = whitener(ratios, k, cross);
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
     spread_.push_back(cross * inverse.adjoint() / std::numbers::sqrt2);
+  }
+  estimate_noise(evaluate(composition, theta));
+}
+
+void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
+  Workspace& work = *work_.front();
+  const std::size_t d = band_.decimation;
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    const auto spectra =
+        deviation_spectra(std::span<const double>(white.data() + n * per_shot(), per_shot()));
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);
+      for (std::size_t k = 0; k <= band_.bins_judged; ++k) {
+        work.fine_spectrum[k] = spectra[j][k] * static_cast<double>(d);
+      }
+      work.fine.inverse(work.fine_spectrum, work.fine_record);
+      std::copy(work.fine_record.begin(), work.fine_record.end(),
+                own_noise_[n][j].begin() + static_cast<std::ptrdiff_t>(band_.edge));
+    }
   }
 }
 
@@ -441,16 +497,11 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     if (!scene || composition.differs_by_shot()) {
       scene.emplace(campaign_.bench, shot.facts, damped_path_);
       shape(composition.applied(theta, n), *scene);
-      const std::vector<Complex> ratios = plain_ratios(*scene, composition, theta);
+      transfers = ratios_of(*scene);
+      const std::vector<Complex> ratios = ratios_within_record(work, transfers);
       work.whitener.resize(band_.bins_judged);
       for (std::size_t k = 0; k < band_.bins_judged; ++k) {
         work.whitener[k] = std::numbers::sqrt2 * whitener(ratios, k, work.cross);
-      }
-      transfers = transfers_of(*scene, reference);
-      for (std::size_t j : others_) {
-        for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-          transfers.reading[j][k] /= transfers.reading[reference][k];
-        }
       }
     } else if (composition.changes_records()) {
       scene->facts = &shot.facts;
@@ -464,7 +515,7 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     }
     const std::vector<Spectrum>* records = &spectra_[n];
     if (composition.changes_records()) {
-      shape_records(work, scene->record, shot);
+      shape_records(work, scene->record, n);
       records = &work.records;
     }
     const Spectrum& source = (*records)[reference];
@@ -502,8 +553,9 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
   }
 }
 
-std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const double> white) const {
-  Workspace& work = *work_.front();
+std::vector<WhiteResiduals::Spectrum> WhiteResiduals::deviation_spectra(
+    std::span<const double> white) const {
+  const Workspace& work = *work_.front();
   const auto rows = static_cast<Eigen::Index>(others_.size());
   std::vector<Spectrum> spectra(campaign_.gauges(), Spectrum(work.plain.bins(), 0.0));
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
@@ -517,8 +569,13 @@ std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const doub
       spectra[j][k + 1] = e[static_cast<Eigen::Index>(j)];
     }
   }
+  return spectra;
+}
+
+std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const double> white) const {
+  Workspace& work = *work_.front();
   std::vector<std::vector<double>> list;
-  for (const Spectrum& spectrum : spectra) {
+  for (const Spectrum& spectrum : deviation_spectra(white)) {
     std::vector<double> record(band_.judged);
     work.plain.inverse(spectrum, record);
     list.push_back(std::move(record));

@@ -6,6 +6,8 @@
 
 #include "processing/criticism/campaign.hpp"
 #include "processing/criticism/composition.hpp"
+#include "processing/criticism/shot_residuals.hpp"
+#include "processing/models/transfers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -33,14 +35,15 @@ struct JudgedBand {
 /// the covariance follows the parameters, or what is noise in y_ref would pull at them.
 ///
 /// Work space is per worker; evaluations in different workers may run at once.
-class WhiteResiduals {
+class WhiteResiduals : public ShotResiduals {
  public:
   /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where surface gauges
   /// go blind
   WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers);
-  ~WhiteResiduals();
+  ~WhiteResiduals() override;
 
-  /// Takes from this composition how residuals are shared out among the gauges.
+  /// Takes from this composition how residuals are shared out among the gauges, and what they say
+  /// of each gauge's noise.
   void freeze(const Composition& composition, const std::vector<double>& theta);
 
   /// Corrects the whitener by what the residuals of a fit show of the noise: at each frequency the
@@ -52,14 +55,15 @@ class WhiteResiduals {
 
   /// All shots' residuals, shot by shot, of unit variance under the true model.
   [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
-                                         const std::vector<double>& theta, std::size_t worker = 0);
+                                         const std::vector<double>& theta,
+                                         std::size_t worker = 0) override;
   /// Those of one shot.
   [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t shot,
-                                              std::size_t worker);
+                                              std::size_t worker) override;
 
   [[nodiscard]] std::size_t size() const { return per_shot() * campaign_.shots.size(); }
-  [[nodiscard]] std::size_t per_shot() const;
+  [[nodiscard]] std::size_t per_shot() const override;
   [[nodiscard]] const JudgedBand& band() const { return band_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
 
@@ -95,8 +99,9 @@ class WhiteResiduals {
   struct Workspace;
   using Spectrum = std::vector<Complex>;
 
-  [[nodiscard]] std::vector<Complex> plain_ratios(const Scene& like, const Composition& composition,
-                                                  const std::vector<double>& theta) const;
+  [[nodiscard]] Transfers ratios_of(const Scene& scene) const;
+  [[nodiscard]] std::vector<Complex> ratios_within_record(Workspace& work,
+                                                          const Transfers& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(std::span<const Complex> ratios, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
@@ -106,7 +111,9 @@ class WhiteResiduals {
   void prepare_spectra();
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
-  void shape_records(Workspace& work, const RecordScene& record, const CampaignShot& shot) const;
+  void shape_records(Workspace& work, const RecordScene& record, std::size_t shot) const;
+  [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
+  void estimate_noise(const Eigen::VectorXd& white);
   void plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const;
 
   const Campaign& campaign_;
@@ -120,6 +127,8 @@ class WhiteResiduals {
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
   std::vector<std::vector<double>> correction_;  ///< of the noise's power, by bin and component
   std::vector<Eigen::MatrixXcd> spread_;         ///< whitened residual to deviations of all gauges
+  /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
+  std::vector<std::vector<std::vector<double>>> own_noise_;
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;
 };

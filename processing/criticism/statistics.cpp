@@ -4,6 +4,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <limits>
 
 namespace kolsky {
 
@@ -38,6 +39,9 @@ double log_chi2_tail(double x, double k) {
 double log_f_tail(double f, double m, double n) {
   if (f <= 0.0) {
     return 0.0;
+  }
+  if (!std::isfinite(f)) {
+    return -std::numeric_limits<double>::max();
   }
   // Of very many degrees of freedom in the denominator, or far out: chi-square.
   const boost::math::fisher_f distribution(m, n);

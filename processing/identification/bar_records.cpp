@@ -7,6 +7,7 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
@@ -14,43 +15,22 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kShortestPulse_s = 5e-6;
-constexpr double kReach_s = 500e-6;
-constexpr double kFootClearance_s = 10e-6;
-constexpr std::size_t kFewestQuiet = 32;
-
-/// The first pulse of a record.
-struct FirstPulse {
-  double foot = 0.0;  ///< in samples, as its half rise
-  double half = 0.0;
-  double height = 0.0;
-};
-
-FirstPulse first_pulse(const std::vector<double>& readings, double rate_Hz,
-                       const std::string& gauge) {
-  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
-  const auto reach = static_cast<std::size_t>(kReach_s * rate_Hz);
-  const auto rise = find_first_pulse(readings, width, reach);
-  if (!rise) {
+FirstPulse require_pulse(const std::vector<double>& readings, double rate_Hz,
+                         const std::string& gauge) {
+  const auto pulse = first_pulse(readings, rate_Hz);
+  if (!pulse) {
     throw InputError("gauge " + gauge, "holds no pulse that stands out of its noise",
                      "give the shot's whole record, from before the impact");
   }
-  const double baseline =
-      quiet_before(readings, std::min<std::size_t>(rise->index, kFewestQuiet)).baseline;
-  const std::size_t end = std::min(readings.size(), rise->index + reach);
-  std::vector<double> shifted(end);
-  for (std::size_t n = 0; n < end; ++n) {
-    shifted[n] = rise->sense * (readings[n] - baseline);
+  return *pulse;
+}
+
+void require_quiet(std::size_t samples) {
+  if (samples < kFewestQuiet) {
+    throw InputError(
+        "samples", "are too few before the pulse: " + std::to_string(samples),
+        "record at least " + std::to_string(kFewestQuiet) + " quiet samples before it");
   }
-  FirstPulse pulse;
-  pulse.height =
-      *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(rise->index), shifted.end());
-  pulse.foot = foot_of(shifted, rise->index, pulse.height, 0.0).index;
-  const double below = shifted[rise->index];
-  const double above = shifted[std::min(rise->index + 1, end - 1)];
-  const double share = above > below ? (0.5 * pulse.height - below) / (above - below) : 0.0;
-  pulse.half = static_cast<double>(rise->index) + std::clamp(share, 0.0, 1.0);
-  return pulse;
 }
 
 void require_bar(const Shot& shot) {
@@ -88,16 +68,6 @@ std::vector<std::size_t> along_the_bar(const Bench& bench) {
   return order;
 }
 
-std::size_t quiet_samples_before(double foot, double rate_Hz) {
-  const auto quiet = static_cast<std::size_t>(std::max(0.0, foot - kFootClearance_s * rate_Hz));
-  if (quiet < kFewestQuiet) {
-    throw InputError(
-        "samples", "are too few before the pulse: " + std::to_string(quiet),
-        "record at least " + std::to_string(kFewestQuiet) + " quiet samples before it");
-  }
-  return quiet;
-}
-
 void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readings,
                   const FirstPulse& pulse, BarRecords& records) {
   const Gauge& gauge = shot.bench.gauges[index];
@@ -108,8 +78,7 @@ void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readi
   records.rise_s.push_back(pulse.half * records.period_s);
   records.position_m.push_back(gauge.position_m);
   const auto rise = static_cast<std::size_t>(pulse.half);
-  const auto end =
-      std::min(strain.size(), rise + static_cast<std::size_t>(kReach_s / records.period_s));
+  const std::size_t end = std::min(strain.size(), rise + pulse_reach(1.0 / records.period_s));
   const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
   records.peak.push_back(
       std::abs(*std::max_element(strain.begin() + static_cast<std::ptrdiff_t>(rise),
@@ -137,9 +106,10 @@ BarRecords read_bar_records(const Shot& shot) {
   std::vector<FirstPulse> pulses;
   for (const std::size_t index : records.channel) {
     readings.push_back(readings_of(shot.channels[index]));
-    pulses.push_back(first_pulse(readings.back(), rate_Hz, shot.bench.gauges[index].name));
+    pulses.push_back(require_pulse(readings.back(), rate_Hz, shot.bench.gauges[index].name));
   }
-  records.quiet_samples = quiet_samples_before(pulses.front().foot, rate_Hz);
+  records.quiet_samples = pulses.front().quiet;
+  require_quiet(records.quiet_samples);
   records.foot_s = pulses.front().foot * records.period_s;
   for (std::size_t j = 0; j < readings.size(); ++j) {
     append_gauge(shot, records.channel[j], std::move(readings[j]), pulses[j], records);

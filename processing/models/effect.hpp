@@ -30,6 +30,7 @@ struct EffectParameter {
   /// whole.
   bool is_switch = false;
   double difference = 2e-3;  ///< step of numeric derivatives, in typical sizes
+  bool chosen = false;       ///< one of its starts and nothing between (a neighbour, a harmonic)
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };
@@ -42,11 +43,13 @@ struct EffectAbout {
   std::string reference;
   std::vector<BenchKind> kinds;
   std::vector<EffectParameter> parameters;
-  bool per_gauge = false;   ///< used once a gauge: "gauge-position:g3"
-  bool each_gauge = false;  ///< one effect with strengths of their own at every gauge
-  bool per_shot = false;    ///< its strength may differ from shot to shot
-  bool shot_facts = false;  ///< depends on the shot's amplitude or temperature
-  bool base = false;        ///< of the paper's model; never a candidate
+  bool per_gauge = false;    ///< used once a gauge: "gauge-position:g3"
+  bool each_gauge = false;   ///< one effect with strengths of their own at every gauge
+  bool per_shot = false;     ///< its strength may differ from shot to shot
+  bool shot_facts = false;   ///< depends on the shot's amplitude or temperature
+  bool base = false;         ///< of the paper's model; never a candidate
+  std::size_t strength = 0;  ///< the parameter that people call its strength
+  bool quadrature = false;   ///< its first two parameters are cosine and sine of one amplitude
 };
 
 /// A physical or instrumental effect that a model may hold. One small class in one file of

@@ -14,7 +14,9 @@ namespace kolsky {
 namespace {
 
 constexpr double kSpacing = 0.1;
-constexpr double kEnd = 3.0;
+/// Past every frequency that a judged band's filter lets through: a kink in the table would send
+/// part of a wave ahead of itself.
+constexpr double kEnd = 7.0;
 constexpr double kRadius = 0.15;
 constexpr std::size_t kPointsOnCircle = 32;
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "processing/models/effect.hpp"
+#include "processing/base/material.hpp"
+#include "processing/models/expression_effect.hpp"
 
 namespace kolsky {
 
@@ -21,7 +24,10 @@ struct EffectUse {
   const Effect* effect = nullptr;
   std::string gauge;               ///< for effects of one gauge
   bool per_shot = false;           ///< strengths of their own for every shot
+  bool alike = false;              ///< the same at all gauges, where each could have its own
   std::vector<ModelValue> values;  ///< one per parameter; of strengths per shot or gauge the mean
+  /// Of the priors among each other, parameters x parameters row by row; empty: independent.
+  std::vector<double> prior_correlation{};
 
   /// "gauge-position:g3".
   [[nodiscard]] std::string id() const;
@@ -31,6 +37,8 @@ struct EffectUse {
 struct Model {
   BenchKind kind = BenchKind::bar;
   std::vector<EffectUse> effects;
+  /// Effects of its own besides the library's, whether it uses them or not; uses point into these.
+  std::vector<std::shared_ptr<const ExpressionEffect>> expressions{};
 
   [[nodiscard]] const EffectUse* find(const std::string& id) const;
   [[nodiscard]] EffectUse* find(const std::string& id);
@@ -39,12 +47,23 @@ struct Model {
 /// An effect at its null values, auxiliary parameters at the first of their starts, all free.
 [[nodiscard]] EffectUse null_use(const Effect& effect, const std::string& gauge = {});
 
-/// Splits "gauge-position:g3" and looks the effect up.
+/// Splits "gauge-position:g3" and looks the effect up, in the library.
 /// @throws InputError where there is no such effect, or a gauge is missing or too many
 [[nodiscard]] EffectUse use_named(const std::string& id);
+/// The same in the library and among the model's own expressions.
+[[nodiscard]] EffectUse use_named(const std::string& id, const Model& model);
+
+/// The library's effects and those that the model declares.
+[[nodiscard]] std::vector<const Effect*> effects_known_to(const Model& model);
+
+/// A layer of the ball as a material file has it: what is filed with a deviation is free within it,
+/// the rest is held.
+/// @param covariance  of E1, E2 and eta2, row by row, in place of their deviations; may be empty
+void take_layer(const Material& material, EffectUse& layer,
+                std::span<const double> covariance = {});
 
 /// The paper's model (INTERFACE: where every diagnosis starts), moduli free and, for a split bar,
-/// those of the bars held.
+/// those of the bars held. An impact: the paper's core and cover.
 /// @param elastic  the bench gives the bars' modulus
 [[nodiscard]] Model paper_model(BenchKind kind, bool elastic);
 

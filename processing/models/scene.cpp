@@ -1,5 +1,6 @@
 #include "processing/models/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -48,6 +49,21 @@ bool SpecimenScene::nonlinear() const {
   return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || lateral_inertia_kg_per_m != 0.0;
 }
 
+void RecordScene::straighten(std::size_t gauge, std::vector<double>& record) const {
+  if (gauge < maps.size()) {
+    for (auto map = maps[gauge].rbegin(); map != maps[gauge].rend(); ++map) {
+      undo(*map, record);
+    }
+  }
+  if (bridge_b != 0.0 || bridge_c != 0.0) {
+    for (double& e : record) {
+      const double root = 1.0 + 4.0 * bridge_b * e;
+      e = 2.0 * e / (1.0 + std::sqrt(std::max(root, 0.0)));
+      e -= bridge_c * e * e * e;
+    }
+  }
+}
+
 Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex> path)
     : s(path), facts(&shot) {
   bars.push_back(scene_of(bench.input));
@@ -70,6 +86,9 @@ Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex>
     sp.density_kg_m3 = bench.specimen->density_kg_m3.value_or(Measured{}).value;
     sp.poisson_ratio = bench.specimen->poisson_ratio.value_or(Measured{}).value;
     specimen = sp;
+  }
+  if (bench.kind == BenchKind::impact) {
+    ball.emplace();
   }
   record.additions.resize(gauges.size());
 }

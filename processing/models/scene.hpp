@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "processing/base/bench.hpp"
+#include "processing/models/record_map.hpp"
 #include "processing/waves/compliance.hpp"
 
 namespace kolsky {
@@ -39,10 +40,19 @@ struct BarScene {
   double area_m2 = 0.0;
   double density_kg_m3 = 0.0;
   double poisson_ratio = 0.0;
-  bool elastic = false;  ///< its modulus is filed, no model of its material applies
+  bool elastic = false;  ///< its modulus is filed, not a model's
   Solid solid{};
   /// Stress reflection of its far end; 0: no wave comes back.
   double far_reflection = 0.0;
+  std::vector<Complex> further_reflection{};  ///< what expressions add to it; empty for none
+
+  [[nodiscard]] bool reflects() const {
+    return far_reflection != 0.0 || !further_reflection.empty();
+  }
+  /// At the path's place k.
+  [[nodiscard]] Complex reflection(std::size_t k) const {
+    return further_reflection.empty() ? far_reflection : far_reflection + further_reflection[k];
+  }
 
   std::vector<Complex> J_per_Pa{};
   std::vector<Complex> gamma_per_m{};
@@ -77,18 +87,50 @@ struct SpecimenScene {
   [[nodiscard]] bool nonlinear() const;
 };
 
+/// One of the two layers of a ball.
+struct BallLayer {
+  Solid solid{};  ///< uniaxial
+  double density_kg_m3 = 0.0;
+  double poisson_ratio = 0.0;
+  double nonlinearity = 0.0;  ///< b: instantaneous deviatoric stress x (1 + b strain)
+};
+
+/// The ball that strikes an elastic bar, as far as effects shape it; its geometry is the bench's.
+struct BallScene {
+  BallLayer core{};
+  BallLayer cover{};
+  double friction = 0.0;
+  double offset_m = 0.0;
+  double sabot_mass_kg = 0.0;
+  double cauchy_share = 0.0;  ///< 0: Kirchhoff stress from Hencky's strain, 1: Cauchy stress
+  int reading = 0;            ///< of the uniaxial law, as three-dimensional-reading numbers them
+};
+
 /// What is known of one shot besides its records.
 struct ShotFacts {
   std::size_t shot = 0;
-  double peak_strain = 0.0;             ///< largest at the first gauge
-  std::optional<double> warmer_by_K{};  ///< than the campaign's reference, where logged
-  std::vector<double> time_s{};         ///< of its samples, from the pulse's foot
+  double peak_strain = 0.0;                        ///< largest at the first gauge
+  std::optional<double> warmer_by_K{};             ///< than the campaign's reference, where logged
+  std::vector<double> time_s{};                    ///< of its samples, from the pulse's foot
+  std::optional<double> incident_speed_m_per_s{};  ///< of a ball
+  double incident_speed_sd_m_per_s = 0.0;          ///< 0: not known
+  std::optional<double> rebound_speed_m_per_s{};
+  double rebound_speed_sd_m_per_s = 0.0;
 };
 
 /// Memoryless maps and additions between strain and what was recorded.
 struct RecordScene {
-  double bridge_b = 0.0;                         ///< reading = e (1 + b e)
+  double bridge_b = 0.0;  ///< reading = e (1 + b e + c e^2), c to first order
+  double bridge_c = 0.0;
   std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
+  std::vector<std::vector<RecordMap>> maps{};  ///< by gauge, in the order they act; may be shorter
+
+  [[nodiscard]] bool bends(std::size_t gauge) const {
+    return bridge_b != 0.0 || bridge_c != 0.0 || (gauge < maps.size() && !maps[gauge].empty());
+  }
+  /// Takes the maps off a gauge's record, the last first, and the bridge's: what strain was sensed,
+  /// in place.
+  void straighten(std::size_t gauge, std::vector<double>& record) const;
 };
 
 /// One shot's bench and physics on a path of the Laplace variable, as effects shape it stage by
@@ -99,6 +141,7 @@ struct Scene {
   std::vector<BarScene> bars{};
   std::vector<GaugeScene> gauges{};
   std::optional<SpecimenScene> specimen{};
+  std::optional<BallScene> ball{};
   RecordScene record{};
 
   /// The bench as filed; right-going waves in a bar, free far ends around a specimen.

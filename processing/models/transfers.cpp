@@ -41,7 +41,7 @@ Junction junction(const Scene& scene, std::size_t at) {
   const double l = specimen.length_m;
   const double area = specimen.area_m2();
   const Complex round_trip =
-      out.far_reflection * std::exp(-2.0 * out.gamma_per_m[at] * out.length_m);
+      out.reflection(at) * std::exp(-2.0 * out.gamma_per_m[at] * out.length_m);
   // Force and velocity per unit mean strain of a wave.
   const Complex Z1 =
       in.area_m2 * in.density_kg_m3 * s * s / (in.gamma_per_m[at] * in.gamma_per_m[at]);
@@ -81,8 +81,8 @@ void set_bar_readings(const Scene& scene, std::size_t reference, Transfers& tran
     for (std::size_t k = 0; k < scene.s.size(); ++k) {
       const Complex gamma = bar.gamma_per_m[k];
       Complex wave = std::exp(-gamma * (x - x0));
-      if (bar.far_reflection != 0.0) {
-        wave += bar.far_reflection * std::exp(-gamma * (2.0 * bar.length_m - x - x0));
+      if (bar.reflects()) {
+        wave += bar.reflection(k) * std::exp(-gamma * (2.0 * bar.length_m - x - x0));
       }
       transfers.reading[j][k] = wave * bar.surface_over_mean[k];
     }
@@ -117,7 +117,7 @@ void set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& tra
       } else {
         const Complex there =
             std::exp(-out.gamma_per_m[k] * x) +
-            out.far_reflection * std::exp(-out.gamma_per_m[k] * (2.0 * out.length_m - x));
+            out.reflection(k) * std::exp(-out.gamma_per_m[k] * (2.0 * out.length_m - x));
         of_source = joint.transmitted * arriving * there;
         of_q = joint.transmitted_q * there;
       }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <vector>
+
+#include "processing/reduction/formatted.hpp"
 
 namespace kolsky {
 
@@ -19,13 +20,6 @@ constexpr double kOverlapFloor = 0.10;
 constexpr double kClosureLimit = 0.10;
 constexpr double kSeparationLimit = 0.10;
 constexpr double kFewQuietSamples = 64;
-
-template <typename... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, format, numbers...);
-  return buffer;
-}
 
 /// The loading: from the start to the largest strain.
 std::size_t loading_end(const std::vector<double>& strain) {
@@ -49,9 +43,9 @@ Check equilibrium(const Reduction& r, std::size_t end) {
   check.verdict = check.value <= kEquilibriumLimit ? Verdict::pass : Verdict::warn;
   check.text =
       check.verdict == Verdict::pass
-          ? text("front and back force agree to %.1f %% rms over the loading (limit %.0f %%)",
-                 100 * check.value, 100 * kEquilibriumLimit)
-          : text(
+          ? formatted("front and back force agree to %.1f %% rms over the loading (limit %.0f %%)",
+                      100 * check.value, 100 * kEquilibriumLimit)
+          : formatted(
                 "front and back force differ by %.1f %% rms over the loading (limit %.0f %%): "
                 "not in equilibrium, or the bench is not as filed",
                 100 * check.value, 100 * kEquilibriumLimit);
@@ -75,8 +69,8 @@ Check signal_to_noise(const QualityInputs& in) {
                   : check.value >= kSignalToNoiseFloor_dB ? Verdict::warn
                                                           : Verdict::fail;
   check.text =
-      text("pulse peaks over noise rms: %.1f dB on the input bar, %.1f dB on the output bar",
-           input_dB, output_dB);
+      formatted("pulse peaks over noise rms: %.1f dB on the input bar, %.1f dB on the output bar",
+                input_dB, output_dB);
   return check;
 }
 
@@ -87,12 +81,12 @@ Check window_overlap(const QualityInputs& in) {
                   : check.value <= kOverlapFloor ? Verdict::warn
                                                  : Verdict::fail;
   check.text = check.verdict == Verdict::pass
-                   ? text(
+                   ? formatted(
                          "the striker has left before the reflection hides its push: %.1f %% of "
                          "the peak is left "
                          "(limit %.0f %%)",
                          100 * check.value, 100 * kOverlapLimit)
-                   : text(
+                   : formatted(
                          "%.1f %% of the striker's push is left when the reflection hides it "
                          "(limit %.0f %%): a shorter "
                          "pulse or a gauge further from the specimen is needed",
@@ -116,9 +110,9 @@ Check loop_closure(const Reduction& r, std::size_t end) {
   check.verdict = check.value <= kClosureLimit ? Verdict::pass : Verdict::warn;
   check.text =
       check.verdict == Verdict::pass
-          ? text("the loop closes: %.1f %% of the largest strain is left at %.0f us",
-                 100 * check.value, 1e6 * r.time_s.back())
-          : text(
+          ? formatted("the loop closes: %.1f %% of the largest strain is left at %.0f us",
+                      100 * check.value, 1e6 * r.time_s.back())
+          : formatted(
                 "the loop is open: %.1f %% of the largest strain is left at %.0f us (permanent "
                 "strain, slow recovery, or the bench is not as filed)",
                 100 * check.value, 1e6 * r.time_s.back());
@@ -154,8 +148,8 @@ Check front_back_lag(const Reduction& r, std::size_t end) {
   check.verdict = check.value >= check.limit ? Verdict::pass : Verdict::warn;
   check.text =
       check.verdict == Verdict::pass
-          ? text("the back force rises %.1f us after the front force", 1e6 * check.value)
-          : text(
+          ? formatted("the back force rises %.1f us after the front force", 1e6 * check.value)
+          : formatted(
                 "the back force rises %.1f us before the front force: positions, wave speed or "
                 "channel delays are not as filed",
                 -1e6 * check.value);
@@ -197,14 +191,14 @@ Check separate(const QualityInputs& in, Reduction& r) {
   }
   check.value = separation_mismatch(r, from);
   if (check.value <= kSeparationLimit) {
-    check.text = text(
+    check.text = formatted(
         "waves back from the far ends, from %.0f us on, leave %.1f %% between front and back "
         "(limit %.0f %%)",
         1e6 * in.returns_from_s, 100 * check.value, 100 * kSeparationLimit);
     return check;
   }
   check.verdict = Verdict::warn;
-  check.text = text(
+  check.text = formatted(
       "waves back from the far ends, from %.0f us on, leave %.0f %% between front and back: "
       "lengths, wave "
       "speed or the far ends are not as filed",
@@ -236,7 +230,7 @@ Check energy_balance(const QualityInputs& in, const Reduction& r, std::size_t en
   check.value =
       std::abs(loop_J) > 0.0 ? std::abs(faces_J - loop_J - motion_J) / std::abs(loop_J) : 1.0;
   check.verdict = check.value <= kEnergyLimit ? Verdict::pass : Verdict::warn;
-  check.text = text(
+  check.text = formatted(
       "over the loading the bars put %.3g J into the specimen, its stress over its strain takes "
       "%.3g J, its motion %.2g J: %.1f %% unaccounted for (limit %.0f %%)",
       faces_J, loop_J, motion_J, 100 * check.value, 100 * kEnergyLimit);
@@ -249,7 +243,7 @@ Check band(const QualityInputs& in, const Reduction& r) {
   check.verdict = check.value <= kBandLossLimit ? Verdict::pass : Verdict::warn;
   // 10 to 90 % of a step through the filter.
   constexpr double kRise = 0.44;
-  check.text = text(
+  check.text = formatted(
       "frequencies up to %.1f kHz are used; what is left out held %.2f %% of the incident pulse's "
       "energy, steps rise in %.1f us",
       1e-3 * r.band_limit_Hz, 100 * check.value, 1e6 * kRise / r.band_limit_Hz);
@@ -264,8 +258,8 @@ Check quiet_start(const QualityInputs& in) {
               .unit = "samples",
               .text = {}};
   check.verdict = samples >= kFewQuietSamples ? Verdict::pass : Verdict::warn;
-  check.text = text("baseline and noise are from %.0f samples before the pulse (wanted: %.0f)",
-                    samples, kFewQuietSamples);
+  check.text = formatted("baseline and noise are from %.0f samples before the pulse (wanted: %.0f)",
+                         samples, kFewQuietSamples);
   return check;
 }
 
@@ -286,7 +280,10 @@ std::string unusable_because(const Shot& shot) {
                       : std::string("an unknown number of samples is missing")) +
            " in the window at sample " + std::to_string(gap.first_tick - shot.first_tick);
   }
-  for (const ChannelRecord& channel : shot.channels) {
+  // A photo-sensor may well stand at an end of its converter.
+  const std::size_t gauges = std::min(shot.channels.size(), shot.bench.gauges.size());
+  for (std::size_t i = 0; i < gauges; ++i) {
+    const ChannelRecord& channel = shot.channels[i];
     const auto clipped = clipped_samples(channel);
     if (!clipped.empty()) {
       return std::to_string(clipped.size()) + " codes of " + channel.gauge +

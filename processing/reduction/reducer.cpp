@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "processing/base/error.hpp"
+#include "processing/reduction/ball_reducer.hpp"
 #include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/carrying.hpp"
 #include "processing/reduction/pulse.hpp"
@@ -201,7 +202,8 @@ Reduction not_reducible(std::string reason) {
 void require_reducible_bench(const Shot& shot) {
   if (shot.bench.kind != BenchKind::shpb || !shot.bench.output || !shot.bench.specimen) {
     throw InputError("kind", "is not \"shpb\", so there is no specimen to reduce",
-                     "use a bench file of kind \"shpb\" with bars.output and specimen");
+                     "use a bench file of kind \"shpb\" with bars.output and specimen, or "
+                     "\"impact\" with a ball");
   }
   if (shot.channels.size() != shot.bench.gauges.size()) {
     throw InputError("gauges",
@@ -532,10 +534,12 @@ struct Reducer::State {
   ReductionOptions options;
   std::unique_ptr<Plans> plans;
   std::unique_ptr<Tables> tables;
+  BallReducer ball{};
 };
 
-Reducer::Reducer(ReductionOptions options)
-    : state_(std::make_unique<State>(State{std::move(options), nullptr, nullptr})) {}
+Reducer::Reducer(ReductionOptions options) : state_(std::make_unique<State>()) {
+  state_->options = std::move(options);
+}
 Reducer::~Reducer() = default;
 Reducer::Reducer(Reducer&&) noexcept = default;
 Reducer& Reducer::operator=(Reducer&&) noexcept = default;
@@ -545,6 +549,9 @@ void Reducer::set_bar_model(const Material& material) {
 }
 
 Reduction Reducer::reduce(const Shot& shot) {
+  if (shot.bench.kind == BenchKind::impact) {
+    return state_->ball.reduce(shot, state_->options);
+  }
   require_reducible_bench(shot);
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {

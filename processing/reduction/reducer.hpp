@@ -37,9 +37,10 @@ class Reducer {
   Reducer(Reducer&&) noexcept;
   Reducer& operator=(Reducer&&) noexcept;
 
-  /// Three-wave reduction (paper, eqs 10 to 24 with their errata). A shot that cannot be reduced
-  /// (gap, clipped codes, no pulse, a bench without a specimen) gives empty histories and the
-  /// reason in `quality`.
+  /// Three-wave reduction (paper, eqs 10 to 24 with their errata); of a bench of kind "impact" the
+  /// ball's force and rebound instead (BallReducer), in `Reduction::ball`. A shot that cannot be
+  /// reduced (gap, clipped codes, no pulse, a bench without a specimen) gives empty histories and
+  /// the reason in `quality`.
   /// @throws InputError where the bench itself does not suit (no gauge on a bar, no modulus)
   [[nodiscard]] Reduction reduce(const Shot& shot);
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "processing/reduction/ball_impact.hpp"
 
 namespace kolsky {
 
@@ -46,6 +49,8 @@ struct Reduction {
   double band_limit_Hz = 0.0;
   std::string bar_model{};  ///< what the bars were taken to be, for people
   Quality quality;
+  /// Of a ball on a bar: then everything from `time_s` to `transmitted` is empty.
+  std::optional<BallImpact> ball{};
 };
 
 }  // namespace kolsky

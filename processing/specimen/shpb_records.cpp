@@ -5,6 +5,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
@@ -12,17 +13,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kShortestPulse_s = 5e-6;
-constexpr double kPulseReach_s = 500e-6;
-constexpr double kFootClearance_s = 10e-6;
 constexpr double kLongestQuiet_s = 500e-6;
-constexpr std::size_t kFewestQuiet = 32;
-
-/// Where a shot's pulse begins at the first station.
-struct Start {
-  double foot = 0.0;      ///< in samples
-  std::size_t quiet = 0;  ///< samples before the pulse
-};
 
 std::vector<double> readings_of(const Shot& shot, const ShpbStation& station) {
   std::vector<double> readings(shot.samples(), 0.0);
@@ -57,35 +48,20 @@ void require_serving(const Shot& shot, const Shot& first) {
   }
 }
 
-Start start_of(const Shot& shot, const ShpbStation& station) {
-  const double rate_Hz = shot.rate.Hz();
-  const std::vector<double> readings = readings_of(shot, station);
-  const std::string gauge = shot.bench.gauges[station.channels.front()].name;
-  const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz));
-  const auto reach = static_cast<std::size_t>(kPulseReach_s * rate_Hz);
-  const auto rise = find_first_pulse(readings, std::max<std::size_t>(3, width), reach);
-  if (!rise) {
+FirstPulse pulse_of(const Shot& shot, const ShpbStation& station) {
+  const auto pulse = first_pulse(readings_of(shot, station), shot.rate.Hz());
+  if (!pulse) {
     throw InputError("capture " + shot.id,
-                     "holds no pulse that stands out of the noise of " + gauge,
+                     "holds no pulse that stands out of the noise of " +
+                         shot.bench.gauges[station.channels.front()].name,
                      "give the shot's whole record, from before the impact");
   }
-  const double baseline =
-      quiet_before(readings, std::min<std::size_t>(rise->index, kFewestQuiet)).baseline;
-  std::vector<double> shifted(std::min(readings.size(), rise->index + reach));
-  for (std::size_t n = 0; n < shifted.size(); ++n) {
-    shifted[n] = rise->sense * (readings[n] - baseline);
-  }
-  const auto half = static_cast<std::ptrdiff_t>(rise->index);
-  const double peak = *std::max_element(shifted.begin() + half, shifted.end());
-  Start start;
-  start.foot = foot_of(shifted, rise->index, peak, 0.0).index;
-  start.quiet = static_cast<std::size_t>(std::max(0.0, start.foot - kFootClearance_s * rate_Hz));
-  if (start.quiet < kFewestQuiet) {
+  if (pulse->quiet < kFewestQuiet) {
     throw InputError("capture " + shot.id,
-                     "has " + std::to_string(start.quiet) + " quiet samples before the pulse",
+                     "has " + std::to_string(pulse->quiet) + " quiet samples before the pulse",
                      "record at least " + std::to_string(kFewestQuiet));
   }
-  return start;
+  return *pulse;
 }
 
 std::vector<double> strain_of(const Shot& shot, const ShpbStation& station, std::size_t first,
@@ -150,20 +126,20 @@ std::vector<ShpbStation> shpb_stations(const Bench& bench) {
 
 std::vector<ShpbRecords> read_shpb_records(const std::vector<Shot>& shots,
                                            const std::vector<ShpbStation>& stations) {
-  std::vector<Start> starts;
+  std::vector<FirstPulse> pulses;
   const double rate_Hz = shots.front().rate.Hz();
   auto quiet = static_cast<std::size_t>(kLongestQuiet_s * rate_Hz);
   for (const Shot& shot : shots) {
     require_serving(shot, shots.front());
-    starts.push_back(start_of(shot, stations.front()));
-    quiet = std::min(quiet, starts.back().quiet);
+    pulses.push_back(pulse_of(shot, stations.front()));
+    quiet = std::min(quiet, pulses.back().quiet);
   }
   std::vector<ShpbRecords> list;
   for (std::size_t i = 0; i < shots.size(); ++i) {
-    const std::size_t first = starts[i].quiet - quiet;
+    const std::size_t first = pulses[i].quiet - quiet;
     ShpbRecords records;
     records.quiet_samples = quiet;
-    records.foot_s = (starts[i].foot - static_cast<double>(first)) / rate_Hz;
+    records.foot_s = (pulses[i].foot - static_cast<double>(first)) / rate_Hz;
     for (const ShpbStation& station : stations) {
       records.strain.push_back(strain_of(shots[i], station, first, quiet));
     }

@@ -13,7 +13,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::size_t kChunk = 64;          // draws by one worker, whatever the executor's threads
+constexpr std::size_t kChunk = 64;          // draws by one worker, however many there are
 constexpr std::size_t kNoiseOnlyShare = 5;  // one draw in so many more, for the budget
 constexpr std::size_t kHistories = 5;
 
@@ -310,14 +310,8 @@ std::vector<BudgetLine> budget_of(const Campaign& campaign, const std::vector<Dr
 
 }  // namespace
 
-void run_in_order(std::size_t count, const std::function<void(std::size_t)>& task) {
-  for (std::size_t i = 0; i < count; ++i) {
-    task(i);
-  }
-}
-
 Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const Reduction& reduction,
-                      const UncertaintyOptions& wanted, const Executor& executor) {
+                      const UncertaintyOptions& wanted, const Workers& workers) {
   Uncertainty result;
   if (!reduction.quality.reducible || reduction.time_s.size() < 2 || wanted.draws < 2) {
     return result;
@@ -329,7 +323,7 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   result.sources = uncertainty_sources(shot.bench, *told.bar_model, wanted.bars);
   const Campaign campaign(wanted.draws, result.sources.size());
   std::vector<Draw> draws(campaign.count());
-  executor((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+  workers.run((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk, std::size_t) {
     Worker worker(shot, told, reduction, result.sources);
     const std::size_t end = std::min(draws.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
@@ -348,8 +342,9 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   const std::array<Band*, kHistories> bands = {&result.stress_Pa, &result.strain,
                                                &result.strain_rate_per_s, &result.force_front_N,
                                                &result.force_back_N};
-  executor(kHistories,
-           [&](std::size_t h) { *bands[h] = band_of(joint, h, reduction.time_s.size()); });
+  workers.run(kHistories, [&](std::size_t h, std::size_t) {
+    *bands[h] = band_of(joint, h, reduction.time_s.size());
+  });
   const Figures nominal = figures_of(reduction);
   for (std::size_t f = 0; f < kFigures.size(); ++f) {
     std::vector<double> values = figure_values(joint, f);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/reduction/reducer.hpp"
-#include "processing/uncertainty/executor.hpp"
 #include "processing/uncertainty/sources.hpp"
 
 namespace kolsky {
@@ -58,11 +58,10 @@ struct Uncertainty {
 /// number, adds noise of the measured spectrum to the samples and is reduced like the shot, its own
 /// arrival found anew. The band limit and the histories' length are the shot's. The budget moves
 /// one source at a time by one deviation to either side. The same seed gives the same numbers,
-/// however the executor spreads the work.
+/// however the workers share it.
 /// @param reduction  of this shot with these options; where it is not reducible nothing is drawn
 [[nodiscard]] Uncertainty propagate(const Shot& shot, const ReductionOptions& options,
                                     const Reduction& reduction,
-                                    const UncertaintyOptions& uncertainty,
-                                    const Executor& executor);
+                                    const UncertaintyOptions& uncertainty, const Workers& workers);
 
 }  // namespace kolsky

@@ -36,6 +36,8 @@ void add_gauge(Sources& sources, const Bench& bench, std::size_t i) {
   if (gauge.bridge) {
     add(sources, bench, name + "gauge_factor", "gauge factors",
         [i](Bench& b) -> Measured& { return b.gauges[i].bridge->gauge_factor; });
+    add(sources, bench, name + "gauge_factor_per_strain", "gauge factors",
+        [i](Bench& b) -> Measured& { return b.gauges[i].bridge->gauge_factor_per_strain; });
     add(sources, bench, name + "excitation_V", "gauge factors",
         [i](Bench& b) -> Measured& { return b.gauges[i].bridge->excitation_V; });
     add(sources, bench, name + "gain", "gauge factors",

@@ -70,15 +70,16 @@ void monte_carlo(benchmark::State& state) {
   shot.bench.specimen->length_m.sd = 0.01e-3;
   shot.bench.temperature_K = Measured{296.0, 0.5};
   const Reduction reduction = Reducer().reduce(shot);
-  const Executor two = [](std::size_t count, const std::function<void(std::size_t)>& task) {
+  Workers two;
+  two.run = [](std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
     std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
+    const auto loop = [&](std::size_t worker) {
       for (std::size_t i = next++; i < count; i = next++) {
-        task(i);
+        work(i, worker);
       }
     };
-    std::jthread other(work);
-    work();
+    std::jthread other(loop, 1);
+    loop(0);
   };
   for (auto _ : state) {
     benchmark::DoNotOptimize(propagate(shot, {}, reduction, {}, two));

@@ -76,6 +76,7 @@ Lab::Lab(const LabOptions& options) : scenario_(find_scenario(options.scenario))
   }
   const BenchHistory& shot = shot_of(scenario_);
   truth_ = shot.specimen.value_or(SpecimenHistory{});
+  ball_ = shot.ball.value_or(BallHistory{});
   AdcSettings settings = adc_settings(scenario_);
   settings.speed = kSpeed;
   settings.period_s = options.period_s;

@@ -54,12 +54,15 @@ class Lab {
   [[nodiscard]] std::string bench() const { return bench_toml(scenario_); }
   /// What the model knows of the specimen.
   [[nodiscard]] const SpecimenHistory& truth() const { return truth_; }
+  /// And of a ball.
+  [[nodiscard]] const BallHistory& ball() const { return ball_; }
   [[nodiscard]] std::int64_t attribute(const std::string& name);
   void stop() { server_->stop(); }
 
  private:
   Scenario scenario_;
   SpecimenHistory truth_;
+  BallHistory ball_;
   std::unique_ptr<SimulatedAdc> adc_;
   std::unique_ptr<IiodServer> server_;
 };

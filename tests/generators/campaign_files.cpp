@@ -94,6 +94,12 @@ std::string bench_text(const Bench& bench) {
     put(text, "density_kg_m3", bench.specimen->density_kg_m3);
     put(text, "poisson_ratio", bench.specimen->poisson_ratio);
   }
+  if (bench.ball) {
+    text += "\n[ball]\n";
+    put(text, "outer_diameter_m", bench.ball->outer_diameter_m);
+    put(text, "core_diameter_m", bench.ball->core_diameter_m);
+    put(text, "mass_kg", bench.ball->mass_kg);
+  }
   return text;
 }
 

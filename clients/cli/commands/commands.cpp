@@ -3,6 +3,7 @@
 namespace kolsky::cli {
 
 Command import_csv_command();
+Command calibrate_command();
 Command identify_bar_command();
 Command identify_specimen_command();
 Command plan_command();
@@ -16,12 +17,14 @@ Command model_history_command();
 Command model_revert_command();
 Command model_diff_command();
 Command model_waterfall_command();
+Command model_check_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
 Command selftest_command();
 Command tour_command();
 Command impact_command();
+Command chain_command();
 Command verify_command();
 Command export_command();
 Command status_command();
@@ -41,6 +44,7 @@ std::vector<Command> all_commands() {
   // clang-format off
   return {
       import_csv_command(),
+      calibrate_command(),
       identify_bar_command(),
       identify_specimen_command(),
       plan_command(),
@@ -54,12 +58,14 @@ std::vector<Command> all_commands() {
       model_revert_command(),
       model_diff_command(),
       model_waterfall_command(),
+      model_check_command(),
       fit_command(),
       compare_command(),
       diagnose_command(),
       selftest_command(),
       tour_command(),
       impact_command(),
+      chain_command(),
       verify_command(),
       export_command(),
       status_command(),

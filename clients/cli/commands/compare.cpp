@@ -6,8 +6,10 @@
 #include "clients/cli/comparison_page.hpp"
 #include "clients/cli/comparison_text.hpp"
 #include "clients/cli/criticism_text.hpp"
+#include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 
@@ -43,9 +45,47 @@ std::string how(const Settings& settings, const ModelFile& file) {
   return "as it is in the file";
 }
 
+int run_impacts(const Settings& settings, const ModelFile& file, const Campaign& campaign,
+                Context& context) {
+  require_kind(file.model, campaign);
+  ImpactStudy study(campaign, judges_whole(file.model), band_limit_of(settings.band_limit_Hz),
+                    all_cores());
+  const bool fit_first = settings.fit || !was_fitted(file);
+  const Studied studied = fit_first ? study.fit(file.model) : study.as_it_is(file.model);
+  const ImpactComparison comparison = study.compare(studied);
+  const std::string note = how(settings, file);
+  if (settings.report) {
+    replace_file(*settings.report,
+                 render_html(impact_page(settings.model + " against the measurements", note,
+                                         comparison, study, studied.model)));
+  }
+  if (context.json) {
+    context.out << to_text(JsonObject{{"model", settings.model},
+                                      {"misfit", describe(studied.misfit)},
+                                      {"where", describe_tiles(comparison, campaign)},
+                                      {"speeds", describe_speeds(comparison)},
+                                      {"fitted_first", fit_first},
+                                      {"converged", studied.fit.converged},
+                                      {"parameters", describe_parameters(studied.model)},
+                                      {"effects", describe_effects(studied.model)},
+                                      {"notes", std::vector<std::string>{note}}})
+                << "\n";
+    return kDone;
+  }
+  context.out << settings.model << ": " << note << "\n"
+              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n\n"
+              << speeds_table(comparison) << "\n"
+              << places_table(comparison, campaign) << "\n"
+              << worst_plot(comparison, study.residuals().times_s(), context.terminal);
+  return kDone;
+}
+
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
   const Campaign campaign = read_campaign(read_shots(settings.captures));
+  if (file.model.kind == BenchKind::impact) {
+    return run_impacts(settings, file, campaign, context);
+  }
   Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
   const Studied studied = fit_first ? study.fit(file.model) : study.as_it_is(file.model);

@@ -8,13 +8,17 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/comparison_page.hpp"
 #include "clients/cli/criticism_text.hpp"
+#include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/examination.hpp"
+#include "processing/criticism/impact_diagnosis.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -108,32 +112,35 @@ std::string report(const Diagnosis& diagnosis) {
   return text;
 }
 
-Diagnosis refused(const std::string& reason) {
-  Diagnosis diagnosis;
-  diagnosis.verdict = DiagnosisVerdict::bad_data;
-  diagnosis.notes = {reason};
+Diagnosis examine_impacts(const Settings& settings, const Model& model,
+                          const std::vector<Shot>& shots, const DiagnosisOptions& options) {
+  const Campaign campaign = read_campaign(shots);
+  require_kind(model, campaign);
+  ImpactStudy study(campaign, judges_whole(model), band_limit_of(settings.band_limit_Hz),
+                    all_cores());
+  Diagnosis diagnosis = diagnose_impacts(study, model, options);
+  if (settings.report) {
+    replace_file(*settings.report,
+                 render_html(impact_diagnosis_page("What " + settings.model + " lacks", study,
+                                                   model, diagnosis)));
+  }
   return diagnosis;
 }
 
 Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
-  for (const Shot& shot : shots) {
-    if (const std::string reason = bad_data(shot); !reason.empty()) {
-      return refused(shot.id + ": " + reason);
-    }
+  if (auto verdict = verdict_without_fit(shots)) {
+    return *std::move(verdict);
   }
-  if (shots.front().bench.gauges.size() < 2) {
-    Diagnosis diagnosis;
-    diagnosis.verdict = DiagnosisVerdict::untestable;
-    diagnosis.notes = {"one gauge, and each shot's source is free: record with two at least"};
-    return diagnosis;
-  }
-  const Campaign campaign = read_campaign(shots);
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   DiagnosisOptions options;
   if (progress) {
     options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };
   }
+  if (model.kind == BenchKind::impact) {
+    return examine_impacts(settings, model, shots, options);
+  }
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   Diagnosis diagnosis = diagnose(study, model, options);
   if (settings.report) {
     replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",

@@ -5,9 +5,11 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/criticism_text.hpp"
+#include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/criticism/study.hpp"
@@ -23,12 +25,21 @@ struct Settings {
   std::optional<double> band_limit_Hz;
 };
 
+Studied fit(const Model& model, const Campaign& campaign, double band_limit_Hz,
+            const Workers& executor) {
+  if (model.kind == BenchKind::impact) {
+    require_kind(model, campaign);
+    return ImpactStudy(campaign, judges_whole(model), band_limit_Hz, executor).fit(model);
+  }
+  return Study(campaign, band_limit_Hz, executor).fit(model);
+}
+
 int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  const Workers executor = all_cores();
+  const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), executor);
-  const Studied studied = study.fit(file.model);
+  const Studied studied =
+      fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);
   begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
   file.history.back().data_sha256 = digest_of(settings.captures);
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());

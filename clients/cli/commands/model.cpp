@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
+#include <array>
 #include <memory>
 #include <ostream>
 
+#include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
@@ -14,6 +15,7 @@
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/impact/bench_impact.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -30,7 +32,10 @@ void print(const ModelFile& file, const std::string& name, Context& context) {
   }
   context.out << name << ": " << name_of(file.model.kind) << ", " << file.model.effects.size()
               << " effects\n"
-              << (file.bar_source.empty() ? "" : "  bars: " + file.bar_source + "\n")
+              << (file.bar_source.empty()
+                      ? ""
+                      : (file.model.kind == BenchKind::impact ? "  " : "  bars: ") +
+                            file.bar_source + "\n")
               << model_table(file.model);
 }
 
@@ -38,6 +43,9 @@ struct NewSettings {
   std::string kind;
   std::optional<std::string> bench;
   std::optional<std::string> bar_model;
+  std::optional<std::string> core;
+  std::optional<std::string> cover;
+  std::optional<std::string> reading;
   std::string output;
 };
 
@@ -58,12 +66,53 @@ void take_bar(const Material& material, Model& model) {
   }
 }
 
+/// Core, cover and reading of a ball, and a line on where they come from.
+std::string take_ball(const NewSettings& settings, const std::optional<Bench>& bench,
+                      Model& model) {
+  std::array<Material, 2> materials{paper_golf_core(), paper_golf_cover()};
+  std::string source;
+  const std::array<const std::optional<std::string>*, 2> files{&settings.core, &settings.cover};
+  const std::array<const char*, 2> names{"core", "cover"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    source += (i == 0 ? "" : "; ") + std::string(names.at(i)) + ": ";
+    if (*files.at(i)) {
+      const BarModelFile file = read_bar_model(**files.at(i));
+      std::vector<double> covariance;
+      for (const auto& row : file.prior.covariance) {
+        covariance.insert(covariance.end(), row.begin(), row.end());
+      }
+      materials.at(i) = file.prior.material;
+      take_layer(materials.at(i), *model.find(std::string("three-element-") + names.at(i)),
+                 covariance);
+      source += **files.at(i);
+    } else {
+      source += materials.at(i).source + ", held";
+    }
+  }
+  if (settings.reading) {
+    model.find("three-dimensional-reading")->values[0].value =
+        static_cast<double>(impact::reading_named(*settings.reading, "--reading"));
+  }
+  if (bench) {
+    // What a mass or a solid keeps from being calculated is said now.
+    static_cast<void>(impact::impact_on(*bench, {materials[0]}, {materials[1]},
+                                        impact::TargetKind::dashpot, 1.0));
+  }
+  return source;
+}
+
 int make_new(const NewSettings& settings, Context& context) {
   ModelFile file;
   const BenchKind kind = bench_kind(settings.kind);
   bool elastic = kind == BenchKind::impact;
+  std::optional<Bench> filed;
+  if (kind != BenchKind::impact && (settings.core || settings.cover || settings.reading)) {
+    throw InputError("--core, --cover, --reading", "belong to a ball",
+                     "leave them out, or give --kind impact");
+  }
   if (settings.bench) {
-    const Bench bench = read_bench(*settings.bench).bench;
+    filed = read_bench(*settings.bench).bench;
+    const Bench& bench = *filed;
     if (bench.kind != kind) {
       throw InputError(*settings.bench + ": kind",
                        "is \"" + name_of(bench.kind) + "\" and --kind is " + settings.kind,
@@ -73,7 +122,13 @@ int make_new(const NewSettings& settings, Context& context) {
               (!bench.output || bench.output->youngs_modulus_Pa.has_value());
   }
   file.model = paper_model(kind, elastic);
-  if (settings.bar_model) {
+  if (kind == BenchKind::impact) {
+    if (settings.bar_model) {
+      throw InputError("--bar-model", "belongs to viscoelastic bars; a ball strikes an elastic one",
+                       "leave it out");
+    }
+    file.bar_source = take_ball(settings, filed, file.model);
+  } else if (settings.bar_model) {
     take_bar(read_material(*settings.bar_model), file.model);
     file.bar_source = *settings.bar_model;
   } else if (!elastic) {
@@ -95,7 +150,7 @@ struct EditSettings {
 
 int add(const EditSettings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  EffectUse use = use_named(settings.effect);
+  EffectUse use = use_named(settings.effect, file.model);
   const auto& kinds = use.effect->about().kinds;
   if (std::find(kinds.begin(), kinds.end(), file.model.kind) == kinds.end()) {
     throw InputError("effect " + use.id(),
@@ -249,16 +304,27 @@ Command model_new_command() {
       "the paper's model of a bench, where every comparison starts\n"
       "A bar: three-element material, elementary waves, ideal ends and sensors; moduli free. A "
       "split\n"
-      "bar: its bars as given, a massless three-element specimen, free outer ends.";
+      "bar: its bars as given, a massless three-element specimen, free outer ends. A ball: linear "
+      "core\n"
+      "and cover, held but for what their files give a deviation or covariance, friction 0.3 "
+      "within\n"
+      "0.1, an endless bar.";
   command.examples =
       "  kolsky model new --kind bar --bench bench.toml -o m.toml\n"
-      "  kolsky model new --kind shpb --bench bench.toml --bar-model pmma.toml -o m.toml\n";
+      "  kolsky model new --kind shpb --bench bench.toml --bar-model pmma.toml -o m.toml\n"
+      "  kolsky model new --kind impact --bench bench.toml --core core.toml -o m.toml\n";
   Argument kind = needed("--kind", "KIND", "of the bench: bar, shpb or impact", &s.kind);
   kind.choices = {"bar", "shpb", "impact"};
   command.arguments = {
-      kind, option("--bench", "B.toml", "bench file: tells whether the bars are elastic", &s.bench),
+      kind,
+      option("--bench", "B.toml", "bench file: tells whether the bars are elastic", &s.bench),
       option("--bar-model", "M.toml", "material file of viscoelastic bars; else the paper's PMMA",
              &s.bar_model),
+      option("--core", "C.toml", "material file of a ball's core; else the paper's", &s.core),
+      option("--cover", "V.toml", "material file of a ball's cover; else the paper's", &s.cover),
+      option("--reading", "R",
+             "of the ball's uniaxial law in three dimensions: full, bulk-E1, bulk-Einf or exact",
+             &s.reading),
       needed("-o,--output", "M.toml", "the model file to write", &s.output)};
   command.run = [settings](Context& context) { return make_new(*settings, context); };
   return command;

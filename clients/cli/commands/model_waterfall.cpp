@@ -4,9 +4,11 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/cli/waterfall_text.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -50,6 +52,10 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
 
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
+  if (file.model.kind == BenchKind::impact) {
+    throw InputError(settings.model, "is of a ball on a bar, whose lineage is not refitted yet",
+                     "`kolsky model history` has the misfit of every step");
+  }
   const Model first =
       file.history.empty()
           ? file.model

@@ -1,10 +1,12 @@
 #include <memory>
 #include <ostream>
 
+#include "clients/cli/ball_report.hpp"
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
-#include "clients/cli/thread_executor.hpp"
+#include "clients/cli/threads.hpp"
+#include "clients/figure/ball_figure.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/capture.hpp"
@@ -18,7 +20,7 @@ namespace {
 constexpr mode_t kReadableByAll = 0644;
 
 struct Settings {
-  std::string capture;
+  std::vector<std::string> captures;
   std::optional<std::string> bar_model;
   bool with_true = false;
   std::optional<double> arrival_s;
@@ -128,12 +130,53 @@ void write_files(const Settings& settings, const ReducedShot& reduced) {
   }
   if (settings.svg.has_value()) {
     NewFile page(*settings.svg);
-    page.write(render_svg(reduction_figure(reduced.reduction, reduced.shot.id)));
+    page.write(render_svg(reduced.reduction.ball
+                              ? ball_figure(reduced.reduction, reduced.shot.id)
+                              : reduction_figure(reduced.reduction, reduced.shot.id)));
     page.publish(kReadableByAll);
   }
   if (settings.csv.has_value()) {
     export_shot(reduced.shot, reduced.reduction, ExportFormat::csv, *settings.csv);
   }
+}
+
+// What asks for a specimen means nothing for a ball.
+void refuse_for_ball(const Settings& settings) {
+  const std::pair<bool, const char*> specimens[] = {
+      {settings.bar_model.has_value(), "--bar-model"},
+      {settings.with_true, "--true"},
+      {settings.stress.has_value(), "--stress"},
+      {settings.inertia.has_value(), "--inertia"},
+      {settings.friction.has_value(), "--friction"},
+      {settings.uncertainty, "--uncertainty"},
+      {settings.draws.has_value(), "--draws"},
+      {settings.softening_per_K.has_value(), "--softening"}};
+  for (const auto& [given, name] : specimens) {
+    if (given) {
+      throw InputError(std::string("kolsky reduce: ") + name,
+                       "is for specimens, and this is a ball on an elastic bar",
+                       "leave it out; an impact's deviations come by themselves");
+    }
+  }
+}
+
+int reduce_several(const Settings& settings, const ReductionOptions& options, Context& context) {
+  if (settings.save || settings.svg || settings.csv) {
+    throw InputError("kolsky reduce: CAPTURE", "is given more than once beside a file to write",
+                     "give one capture for --save, --svg or --csv");
+  }
+  refuse_for_ball(settings);
+  std::vector<ReducedShot> shots;
+  for (const std::string& capture : settings.captures) {
+    shots.push_back(reduce_capture(capture, options, settings.bench));
+    if (shots.back().shot.bench.kind != BenchKind::impact) {
+      throw InputError(capture + ": kind", "is not \"impact\": only impacts are reduced together",
+                       "reduce specimens one by one, or `kolsky identify specimen` them together");
+    }
+  }
+  context.out << (context.json ? to_text(describe_balls(shots)) + "\n"
+                               : balls_report(shots, context.terminal));
+  return kDone;
 }
 
 int run(const Settings& settings, Context& context) {
@@ -142,16 +185,21 @@ int run(const Settings& settings, Context& context) {
     bars = read_bar_model(*settings.bar_model);
   }
   const ReductionOptions options = reduction_options(settings, bars);
-  ReducedShot reduced = reduce_capture(settings.capture, options, settings.bench);
+  if (settings.captures.size() > 1) {
+    return reduce_several(settings, options, context);
+  }
+  ReducedShot reduced = reduce_capture(settings.captures.front(), options, settings.bench);
+  if (reduced.shot.bench.kind == BenchKind::impact) {
+    refuse_for_ball(settings);
+  }
   if (bars.has_value()) {
     require_temperature(*bars, reduced.shot);
   }
   reduced.stress = settings.stress.value_or(reduced.stress);
   reduced.corrections = names_of(options.corrections);
   if (settings.uncertainty || settings.draws.has_value()) {
-    reduced.uncertainty =
-        propagate(reduced.shot, options, reduced.reduction,
-                  uncertainty_options(settings, bars, reduced.shot), thread_executor());
+    reduced.uncertainty = propagate(reduced.shot, options, reduced.reduction,
+                                    uncertainty_options(settings, bars, reduced.shot), all_cores());
   }
   write_files(settings, reduced);
   context.out << (context.json ? to_text(describe(reduced, settings.with_true)) + "\n"
@@ -167,17 +215,20 @@ Command reduce_command() {
   Command command;
   command.name = "reduce";
   command.purpose =
-      "a specimen's stress, strain, strain rate and forces from a capture\n"
+      "a specimen's stress, strain, strain rate and forces from a capture, or a ball's impact\n"
       "Three-wave analysis with the bars' dispersion; engineering values, compression positive,\n"
-      "t = 0 when the pulse arrives at the specimen. Says how far the result can be trusted.";
+      "t = 0 when the pulse arrives at the specimen. Says how far the result can be trusted.\n"
+      "Of a bench of kind \"impact\": force on the struck face, peak, contact time, impulse and\n"
+      "restitution by speed and by impulse; several captures also give the repeats at each speed.";
   command.examples =
       "  kolsky reduce shot.h5\n"
       "  kolsky reduce shot.h5 --json --true > shot.json\n"
       "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n"
       "  kolsky reduce shot.h5 --bar-model pmma.toml --uncertainty\n"
-      "  kolsky reduce shot.h5 --bench corrected.toml --save corrected.h5\n";
+      "  kolsky reduce shot.h5 --bench corrected.toml --save corrected.h5\n"
+      "  kolsky reduce ball1.h5 ball2.h5 ball3.h5\n";
   command.arguments = {
-      needed("CAPTURE", "", "the capture to reduce", &s.capture),
+      needed("CAPTURE", "", "the capture to reduce; several of a ball on a bar", &s.captures),
       option("--bar-model", "M.toml",
              "material file of viscoelastic bars; else the capture's own, else the paper's PMMA",
              &s.bar_model),

@@ -12,6 +12,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/figure/layout.hpp"
 #include "drivers/files/model_file.hpp"
 #include "processing/base/error.hpp"

@@ -14,6 +14,7 @@
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/program.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/cli/tour_story.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"

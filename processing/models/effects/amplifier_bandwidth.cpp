@@ -12,7 +12,7 @@ class AmplifierBandwidth final : public Effect {
             .stage = Stage::sensor,
             .definition = "reading / (1 + s tau), tau = 1/(2 pi fc)",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"tau", "s", 0.0, 0.0, 1e-4, 5e-7, {}}},
             .per_gauge = true,
         }) {}

@@ -12,7 +12,7 @@ class BarDensity final : public Effect {
             .stage = Stage::bench,
             .definition = "true density = filed x (1 + delta)",
             .reference = "bench file",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "-", 0.0, -0.3, 0.3, 1e-3, {}}},
             .base = true,
         }) {}

@@ -12,9 +12,10 @@ class EndReflection final : public Effect {
             .stage = Stage::boundary,
             .definition = "the far end sends waves back, stress x (-1 + r)",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar},
+            .kinds = {BenchKind::bar, BenchKind::impact},
             .parameters = {{"present", "-", 0.0, 0.0, 1.0, 0.02, {}, true},
                            {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0}}},
+            .strength = 1,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

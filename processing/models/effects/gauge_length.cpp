@@ -14,8 +14,8 @@ class GaugeLength final : public Effect {
             .stage = Stage::sensor,
             .definition = "reading x sinh(gamma L/2) / (gamma L/2)",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
-            .parameters = {{"L", "m", 0.0, 0.0, 0.1, 5e-3, {}}},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
+            .parameters = {{"L", "m", 0.0, 0.0, 0.5, 5e-3, {}}},
             .per_gauge = true,
         }) {}
 

@@ -12,7 +12,7 @@ class GaugePosition final : public Effect {
             .stage = Stage::bench,
             .definition = "true x = filed x + delta",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "m", 0.0, -0.2, 0.2, 1e-3, {}}},
             .per_gauge = true,
         }) {}

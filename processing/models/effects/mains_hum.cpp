@@ -16,13 +16,22 @@ class MainsHum final : public Effect {
             .stage = Stage::record,
             .definition = "reading of each gauge += c cos(2 pi f t) + d sin(2 pi f t)",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
-            .parameters =
-                {{"c", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
-                 {"d", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
-                 {"f", "Hz", 0.0, 45.0, 1000.0, 1.0, {50.0, 60.0, 100.0, 120.0, 150.0, 180.0}}},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
+            .parameters = {{"c", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
+                           {"d", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
+                           {"f",
+                            "Hz",
+                            0.0,
+                            45.0,
+                            1000.0,
+                            1.0,
+                            {50.0, 60.0, 100.0, 120.0, 150.0, 180.0},
+                            false,
+                            2e-3,
+                            true}},
             .each_gauge = true,
             .per_shot = true,
+            .quadrature = true,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {

@@ -25,9 +25,7 @@ class SecondRelaxation final : public Effect {
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
     for (BarScene& bar : scene.bars) {
-      if (!bar.elastic) {
-        bar.solid.relaxations.push_back({values[0], values[1]});
-      }
+      bar.solid.relaxations.push_back({values[0], values[1]});
     }
   }
 };

@@ -18,9 +18,7 @@ class SeriesDashpot final : public Effect {
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
     for (BarScene& bar : scene.bars) {
-      if (!bar.elastic) {
-        bar.solid.phi_per_Pa_s += values[0];
-      }
+      bar.solid.phi_per_Pa_s += values[0];
     }
   }
 };

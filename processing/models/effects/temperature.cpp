@@ -23,10 +23,8 @@ class Temperature final : public Effect {
     }
     const double factor = 1.0 - values[0] * *scene.facts->warmer_by_K;
     for (BarScene& bar : scene.bars) {
-      if (!bar.elastic) {
-        bar.solid.E1_Pa *= factor;
-        bar.solid.E2_Pa *= factor;
-      }
+      bar.solid.E1_Pa *= factor;
+      bar.solid.E2_Pa *= factor;
     }
   }
 };

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "processing/base/error.hpp"
 
 namespace kolsky {
@@ -40,6 +43,18 @@ double stretched(double strain) {
   return kOhm * (1.0 + kGaugeFactor * strain);
 }
 
+/// A semiconductor's: dR/R = (120 + 4000 e) e.
+double bent(double strain) {
+  return kOhm * (1.0 + (120.0 + 4000.0 * strain) * strain);
+}
+
+Gauge semiconductor(BridgeWiring wiring) {
+  Gauge gauge = gauge_with({.wiring = wiring});
+  gauge.bridge->gauge_factor = {120.0};
+  gauge.bridge->gauge_factor_per_strain = {4000.0};
+  return gauge;
+}
+
 class BridgeAtStrain : public ::testing::TestWithParam<double> {};
 
 TEST_P(BridgeAtStrain, QuarterIsTheCircuit) {
@@ -48,6 +63,30 @@ TEST_P(BridgeAtStrain, QuarterIsTheCircuit) {
   const double volts = circuit_V(stretched(e), kOhm, kOhm, kOhm);
   EXPECT_NEAR(bridge.strain(volts), -e, 1e-14);
   EXPECT_NEAR(bridge.reading(-e), volts, 1e-10);
+}
+
+TEST_P(BridgeAtStrain, SemiconductorsAreTheCircuitInEveryWiring) {
+  const double e = GetParam() / 10.0;  // to 3000 microstrain, beyond which the factor turns round
+  const double t = -kPoisson * e;
+  const std::pair<BridgeWiring, double> cases[] = {
+      {BridgeWiring::quarter, circuit_V(bent(e), kOhm, kOhm, kOhm)},
+      {BridgeWiring::half, circuit_V(bent(e), kOhm, bent(e), kOhm)},
+      {BridgeWiring::half_poisson, circuit_V(bent(e), bent(t), kOhm, kOhm)},
+      {BridgeWiring::full_poisson, circuit_V(bent(e), bent(t), bent(e), bent(t))}};
+  for (const auto& [wiring, volts] : cases) {
+    const BridgeConversion bridge(semiconductor(wiring), pmma_bar(), PositiveSense::tension);
+    EXPECT_NEAR(bridge.strain(volts), -e, 1e-13) << static_cast<int>(wiring);
+    EXPECT_NEAR(bridge.reading(-e), volts, 1e-9 * (1.0 + std::abs(volts)));
+  }
+}
+
+TEST(Bridge, AReadingThatNoStrainGivesIsNoNumber) {
+  // The least that (120 + 4000 e) e can be is -0.9, at e = -0.015.
+  const BridgeConversion bridge(semiconductor(BridgeWiring::quarter), pmma_bar(),
+                                PositiveSense::tension);
+  const double least_V = circuit_V(kOhm * 0.1, kOhm, kOhm, kOhm);
+  EXPECT_FALSE(std::isnan(bridge.strain(0.99 * least_V)));
+  EXPECT_TRUE(std::isnan(bridge.strain(1.01 * least_V)));
 }
 
 TEST_P(BridgeAtStrain, HalfWithOppositeArmsIsTheCircuit) {

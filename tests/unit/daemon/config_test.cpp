@@ -71,6 +71,7 @@ TEST_F(ConfigTest, TakesTheDefaultsWhereTheFileIsSilent) {
   EXPECT_EQ(config.endpoints.results, "tcp://127.0.0.1:5600");
   EXPECT_EQ(config.endpoints.preview, "tcp://127.0.0.1:5601");
   EXPECT_EQ(config.endpoints.control, "tcp://127.0.0.1:5602");
+  EXPECT_EQ(config.journal_limit_bytes, 16 << 20);
   EXPECT_FALSE(config.auto_arm);
   EXPECT_FALSE(config.bar_model);
 }
@@ -100,6 +101,7 @@ minimum_width_s = 6e-6
 maximum_rise_s = 50e-6
 [store]
 folder = "/var/tmp/somewhere"
+journal_limit_bytes = 1000000
 [endpoints]
 results = "ipc:///tmp/results"
 [ring]
@@ -111,6 +113,7 @@ striker_speed_m_per_s = 12.5
   const Apparatus apparatus = read_apparatus(config);
   EXPECT_EQ(config.digitiser.uri, "replay:" + (folder_ / "old").string());
   EXPECT_EQ(config.store, "/var/tmp/somewhere");
+  EXPECT_EQ(config.journal_limit_bytes, 1'000'000);
   EXPECT_EQ(config.endpoints.results, "ipc:///tmp/results");
   EXPECT_EQ(config.meta.at("operator"), "A. Person");
   EXPECT_EQ(config.meta.at("striker_speed_m_per_s"), "12.5");
@@ -209,6 +212,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadValue{"[digitiser]", "speed = -1", "speed"},
                     BadValue{"[digitiser]", "channels = \"voltage0\"", "channels"},
                     BadValue{"[ring]", "seconds = 0", "seconds"},
+                    BadValue{"[store]", "journal_limit_bytes = 100", "journal_limit_bytes"},
                     BadValue{"[endpoints]", "results = \"localhost:5600\"", "results"},
                     BadValue{"[endpoints]", "preview = \"tcp://127.0.0.1:5602\"", "control"},
                     BadValue{"[meta]", "list = [1]", "list"}));

@@ -37,7 +37,8 @@ StoreLayout fresh_store() {
 /// The recorder with all its real neighbours; the test writes the ring and the events itself.
 class RecorderTest : public testing::Test {
  protected:
-  RecorderTest() {
+  explicit RecorderTest(std::uint64_t journal_limit_bytes = 1U << 30U)
+      : journal_(store_, publisher_.boot_id(), journal_limit_bytes) {
     Apparatus apparatus;
     apparatus.bench_toml = kStrainBench;
     apparatus.bench = parse_bench(kStrainBench, "bench.toml");
@@ -95,7 +96,7 @@ class RecorderTest : public testing::Test {
   Acquirer acquirer_{digitiser_, ring_, events_, plan_};
   StoreLayout store_ = fresh_store();
   Publisher publisher_{free_ports()};
-  SharedJournal journal_{store_, publisher_.boot_id()};
+  SharedJournal journal_;
   std::vector<std::string> faults_;
   Archivist archivist_{store_, journal_,
                        [this](const std::string& text) { faults_.push_back(text); }};
@@ -161,6 +162,41 @@ class FileSizeLimit {
  private:
   rlimit before_{};
 };
+
+/// A record has 17 kB here: a journal takes three.
+class ShortJournalTest : public RecorderTest {
+ protected:
+  static constexpr std::uint64_t kLimit_bytes = 50'000;
+  ShortJournalTest() : RecorderTest(kLimit_bytes) {}
+};
+
+TEST_F(ShortJournalTest, RemovesJournalsWhoseShotsAreStored) {
+  constexpr std::size_t kShots = 40;
+  fill(4096);
+  for (std::size_t i = 0; i < kShots; ++i) {
+    window(0, 4096);
+  }
+  finish();
+  EXPECT_EQ(archivist_.stored(), kShots);
+  EXPECT_TRUE(faults_.empty()) << faults_.front();
+  const StoreReport report = verify_store(store_);
+  EXPECT_TRUE(report.problems.empty());
+  EXPECT_EQ(report.captures, kShots);
+  EXPECT_EQ(report.journals, 1U) << "the one that is open";
+  EXPECT_LE(report.journaled_shots, 3U);
+}
+
+TEST_F(ShortJournalTest, KeepsTheJournalOfAShotThatCouldNotBeStored) {
+  fill(4096);
+  std::filesystem::rename(store_.shots(), store_.root / "elsewhere");
+  for (std::size_t i = 0; i < 10; ++i) {
+    window(0, 4096);
+  }
+  finish();
+  EXPECT_EQ(archivist_.failed(), 10U);
+  std::filesystem::rename(store_.root / "elsewhere", store_.shots());
+  EXPECT_EQ(recover_store(store_, DoneJournals::keep).recovered.size(), 10U);
+}
 
 class FullJournalTest : public RecorderTest {
  protected:

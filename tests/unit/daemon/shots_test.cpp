@@ -192,7 +192,7 @@ TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
   const Apparatus apparatus = pmma_bench();
   Shot shot = rehearsal_shot(blank_shot(some_config(), apparatus, strain_stream()), 400, 3600);
   shot.id = "one";
-  SharedJournal journal(store, 0x12);
+  SharedJournal journal(store, 0x12, 1 << 20);
   journal.append_shot(shot);
   shot.id = "two";
   journal.append_shot(shot);
@@ -203,6 +203,66 @@ TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
   EXPECT_EQ(contents.shots[1].channels, shot.channels);
   ASSERT_EQ(contents.stored.size(), 1U);
   EXPECT_EQ(contents.stored[0].shot_id, "one");
+}
+
+/// Journals of a store that take one shot each.
+class TurningOver : public testing::Test {
+ protected:
+  void append(const std::string& id) {
+    shot_.id = id;
+    journal_.append_shot(shot_);
+  }
+  [[nodiscard]] std::vector<std::string> ids_in(const std::string& journal) const {
+    std::vector<std::string> ids;
+    for (const Shot& shot : read_journal(store_.journals() / journal).shots) {
+      ids.push_back(shot.id);
+    }
+    return ids;
+  }
+
+  const Folder folder_;
+  const StoreLayout store_{folder_.path()};
+  SharedJournal journal_{created(store_), 0x12, 1000};
+  Shot shot_ = rehearsal_shot(blank_shot(some_config(), pmma_bench(), strain_stream()), 400, 3600);
+
+ private:
+  static const StoreLayout& created(const StoreLayout& store) {
+    store.create();
+    return store;
+  }
+};
+
+TEST_F(TurningOver, BeginsAnotherFileAtTheLimit) {
+  journal_.turn_over();
+  append("one");
+  append("two");
+  journal_.turn_over();
+  append("three");
+  EXPECT_EQ(ids_in("0000000000000012.kj"), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(ids_in("0000000000000012-1.kj"), std::vector<std::string>{"three"});
+}
+
+TEST_F(TurningOver, NamesAJournalOnceAllOfItIsStored) {
+  append("one");
+  append("two");
+  EXPECT_TRUE(journal_.take_done().empty()) << "it is open";
+  journal_.turn_over();
+  EXPECT_TRUE(journal_.take_done().empty());
+  journal_.append_stored("two", store_.capture_of("two"));
+  EXPECT_TRUE(journal_.take_done().empty()) << "one is not stored";
+  journal_.append_stored("one", store_.capture_of("one"));
+  EXPECT_EQ(journal_.take_done(), std::vector{store_.journals() / "0000000000000012.kj"});
+  EXPECT_TRUE(journal_.take_done().empty());
+}
+
+TEST_F(TurningOver, GoesOnInTheOldFileWhereNoNewOneCanBeMade) {
+  append("one");
+  const auto elsewhere = store_.root / "elsewhere";
+  std::filesystem::rename(store_.journals(), elsewhere);
+  EXPECT_THROW(journal_.turn_over(), InputError);
+  append("two");
+  std::filesystem::rename(elsewhere, store_.journals());
+  EXPECT_EQ(ids_in("0000000000000012.kj"), (std::vector<std::string>{"one", "two"}));
 }
 
 TEST(Summary, TakesPeaksAndVerdict) {

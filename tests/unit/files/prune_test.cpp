@@ -134,6 +134,20 @@ TEST_F(Pruning, PassesOverATornEnd) {
   EXPECT_EQ(recover_store(store_, DoneJournals::prune).pruned.size(), 3U);
 }
 
+TEST_F(Pruning, TakesOneJournalOnRequest) {
+  const StoreReport report = prune_journal(store_, store_.journals() / "1.kj");
+  EXPECT_TRUE(report.problems.empty());
+  EXPECT_EQ(report.journaled_shots, 2U);
+  EXPECT_EQ(journals(store_), (std::set<std::string>{"2.kj", "3.kj"}));
+}
+
+TEST_F(Pruning, OnRequestKeepsAJournalWhoseShotHasNoCapture) {
+  const StoreReport report = prune_journal(store_, store_.journals() / "2.kj");
+  ASSERT_EQ(report.problems.size(), 1U);
+  EXPECT_EQ(report.problems[0].file, store_.capture_of(make_shot(4, kShape).id));
+  EXPECT_EQ(journals(store_).size(), 3U);
+}
+
 #if defined(__x86_64__) && !defined(KOLSKY_SANITIZED)
 
 /// A system call that changes what is on the disk, or makes it durable.
@@ -186,16 +200,17 @@ std::optional<Change> change_of(pid_t child, const user_regs_struct& call) {
   }
 }
 
-/// Recovers with pruning in a process of its own that is killed before its change number `last`.
+/// Runs a program in a process of its own that is killed before its change number `last`.
 /// @return the changes before that; all of them where it came to its end
-std::optional<std::vector<Change>> recover_until(const StoreLayout& store, std::size_t last) {
+template <typename Program>
+std::optional<std::vector<Change>> run_until(std::size_t last, const Program& program) {
   const pid_t child = ::fork();
   if (child == 0) {
     if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) {
       ::_exit(77);
     }
     ::raise(SIGSTOP);
-    ::_exit(recover_store(store, DoneJournals::prune).problems.empty() ? 0 : 1);
+    ::_exit(program() ? 0 : 1);
   }
   std::vector<Change> changes;
   int status = 0;
@@ -221,6 +236,64 @@ std::optional<std::vector<Change>> recover_until(const StoreLayout& store, std::
   }
   EXPECT_EQ(WEXITSTATUS(status), 0);
   return changes;
+}
+
+std::optional<std::vector<Change>> recover_until(const StoreLayout& store, std::size_t last) {
+  return run_until(last,
+                   [&] { return recover_store(store, DoneJournals::prune).problems.empty(); });
+}
+
+/// A run of the daemon whose journals take one shot each. Says which shots are journaled.
+bool live(const StoreLayout& store, int acknowledge) {
+  std::filesystem::path ended;
+  for (std::uint32_t seed = 11; seed < 14; ++seed) {
+    const auto path = store.journals() / (std::to_string(seed) + ".kj");
+    Journal journal(path);
+    const Shot shot = make_shot(seed, kShape);
+    journal.append_shot(shot);
+    if (::write(acknowledge, &seed, sizeof seed) != sizeof seed) {
+      return false;
+    }
+    write_capture(shot, store.capture_of(shot.id));
+    journal.append_stored(shot.id, store.capture_of(shot.id));
+    if (!ended.empty() && prune_journal(store, ended).pruned.empty()) {
+      return false;
+    }
+    ended = path;
+  }
+  return true;
+}
+
+TEST_F(Pruning, LosesNothingWhereverARunIsKilledThatTurnsItsJournalsOver) {
+  std::size_t kills = 0;
+  std::size_t pruned = 0;
+  for (bool ended = false; !ended; ++kills) {
+    const StoreLayout store{folder_ / ("run-" + std::to_string(kills))};
+    store.create();
+    int ends[2] = {};
+    ASSERT_EQ(::pipe(ends), 0);
+    const auto changes = run_until(kills, [&] { return live(store, ends[1]); });
+    ::close(ends[1]);
+    if (!changes) {
+      ::close(ends[0]);
+      GTEST_SKIP() << "processes cannot be traced here";
+    }
+    ended = changes->size() < kills;
+    pruned += std::count_if(changes->begin(), changes->end(), [](const Change& change) {
+      return change.kind == Change::Kind::unlink && change.path.ends_with(".kj");
+    });
+    EXPECT_TRUE(recover_store(store, DoneJournals::prune).problems.empty());
+    EXPECT_TRUE(journals(store).empty());
+    std::uint32_t seed = 0;
+    while (::read(ends[0], &seed, sizeof seed) == sizeof seed) {
+      const Shot expected = make_shot(seed, kShape);
+      testing::expect_same(read_capture(store.capture_of(expected.id)), expected);
+    }
+    ::close(ends[0]);
+    std::filesystem::remove_all(store.root);
+  }
+  EXPECT_GT(pruned, 10U) << "few kills came after a journal was removed";
+  std::cout << kills << " kill points\n";
 }
 
 TEST_F(Pruning, LosesNothingWhereverItIsKilled) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "processing/reduction/first_pulse.hpp"
 
 namespace kolsky {
 namespace {
@@ -69,6 +72,38 @@ TEST(FindFirstPulse, ASpikeIsNotAPulse) {
 TEST(FindFirstPulse, NothingInAConstantOrAnEmptyRecord) {
   EXPECT_FALSE(find_first_pulse(std::vector<double>(1000, 3.0), 5, 100));
   EXPECT_FALSE(find_first_pulse({}, 5, 100));
+}
+
+/// A ramp that takes `rise` samples from `foot` on, then a plateau.
+std::vector<double> ramp(double foot, double rise, double height, double offset) {
+  std::vector<double> record(3000, offset);
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    record[n] += height * std::clamp((static_cast<double>(n) - foot) / rise, 0.0, 1.0);
+  }
+  return record;
+}
+
+TEST(FirstPulse, IsMeasuredFromItsFootToItsHeight) {
+  const auto pulse = first_pulse(ramp(500.25, 40.0, -2e-3, 0.7), 1e6);
+  ASSERT_TRUE(pulse);
+  EXPECT_NEAR(pulse->foot, 500.25, 0.05);
+  EXPECT_NEAR(pulse->half, 520.25, 1e-6);
+  EXPECT_EQ(pulse->rise, 520U);
+  EXPECT_NEAR(pulse->height, 2e-3, 1e-12);
+  EXPECT_EQ(pulse->quiet, 490U) << "10 us before the foot";
+}
+
+TEST(FirstPulse, ReachesAndClearsInTimeNotInSamples) {
+  auto record = ramp(500.0, 40.0, 1e-3, 0.0);
+  const auto later = ramp(1300.0, 40.0, 5e-3, 0.0);
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    record[n] += later[n];
+  }
+  EXPECT_NEAR(first_pulse(record, 1e6)->height, 1e-3, 1e-12) << "the second is 800 us behind";
+  const auto twice_as_fast = first_pulse(record, 2e6);
+  EXPECT_NEAR(twice_as_fast->height, 6e-3, 1e-12) << "and 400 us at 2 MHz";
+  EXPECT_LT(first_pulse(ramp(15.0, 40.0, 1e-3, 0.0), 1e6)->quiet, kFewestQuiet);
+  EXPECT_FALSE(first_pulse(std::vector<double>(1000, 3.0), 1e6));
 }
 
 TEST(QuietBefore, AnOffsetDoesNotCostTheNoiseItsDigits) {

@@ -117,7 +117,7 @@ TEST(Program, ListsItsScenarios) {
     names.push_back(line.substr(0, line.find('\t')));
   }
   EXPECT_EQ(names, (std::vector<std::string>{"core", "cover", "core-6mm", "bars-together", "bar",
-                                             "steel", "quiet"}));
+                                             "steel", "impact", "impact-40", "impact-51", "quiet"}));
 }
 
 TEST(Program, PrintsABenchThatFitsItsOptions) {

@@ -134,6 +134,64 @@ TEST(BenchFile, ReadsABallOnABar) {
   EXPECT_FALSE(bench.output.has_value());
 }
 
+constexpr const char* kBeams =
+    "[[photo_sensors]]\nname = \"p1\"\ndistance_m = 0.09\ndistance_m_sd = 1e-4\n"
+    "[[photo_sensors]]\nname = \"p2\"\ndistance_m = 0.06\n";
+
+TEST(BenchFile, ReadsPhotoSensorsAsChannelsBehindTheGauges) {
+  const Bench bench = parse_bench(std::string(kImpact) + kBeams, "b.toml");
+  ASSERT_EQ(bench.photo_sensors.size(), 2U);
+  EXPECT_EQ(bench.photo_sensors[0].name, "p1");
+  EXPECT_EQ(bench.photo_sensors[0].distance_m.value, 0.09);
+  EXPECT_EQ(bench.photo_sensors[0].distance_m.sd, 1e-4);
+  const std::vector<BenchChannel> channels = bench.channels();
+  ASSERT_EQ(channels.size(), 3U);
+  EXPECT_EQ(channels[0].unit, "strain");
+  EXPECT_EQ(channels[2].name, "p2");
+  EXPECT_EQ(channels[2].unit, "V");
+}
+
+TEST(BenchFile, RefusesPhotoSensorsThatMeasureNothing) {
+  const auto refusal = [](const std::string& beams) {
+    return refusal_of([&] { (void)parse_bench(std::string(kImpact) + beams, "b.toml"); });
+  };
+  EXPECT_NE(refusal(replaced(kBeams, "0.06", "0.04")).find("still in the beam"), std::string::npos);
+  EXPECT_NE(refusal(replaced(kBeams, "0.06", "0.0899")).find("photo_sensors[1].distance_m"),
+            std::string::npos);
+  EXPECT_NE(refusal(replaced(kBeams, "\"p2\"", "\"g1\"")).find("names another channel"),
+            std::string::npos);
+  EXPECT_NE(refusal(replaced(kBeams, "distance_m = 0.06", "distance = 0.06")).find("distance"),
+            std::string::npos);
+  EXPECT_NE(refusal(std::string(kBeams) + "[[photo_sensors]]\nname = \"p3\"\ndistance_m = 0.2\n")
+                .find("one too many"),
+            std::string::npos);
+  EXPECT_NE(refusal_of([] {
+              (void)parse_bench(std::string(kShpb) + kBeams, "b.toml");
+            }).find("do not belong to kind = \"shpb\""),
+            std::string::npos);
+}
+
+TEST(BenchFile, ReadsHowAGaugeFactorGrows) {
+  const Bench bench = parse_bench(replaced(kShpb, "gauge_factor = 2.1",
+                                           "gauge_factor = 2.1\ngauge_factor_per_strain = 30\n"
+                                           "gauge_factor_per_strain_sd = 3"),
+                                  "b.toml");
+  EXPECT_EQ(bench.gauges[0].bridge->gauge_factor_per_strain.value, 30.0);
+  EXPECT_EQ(bench.gauges[0].bridge->gauge_factor_per_strain.sd, 3.0);
+  EXPECT_NE(refusal_of([] {
+              (void)parse_bench(replaced(kShpb, "gauge_factor = 2.1",
+                                         "gauge_factor = 2.1\ngauge_factor_per_strain = 4000"),
+                                "b.toml");
+            }).find("turns the gauge's answer round"),
+            std::string::npos);
+  EXPECT_NE(refusal_of([] {
+              (void)parse_bench(replaced(kImpact, "unit = \"strain\"",
+                                         "unit = \"strain\"\ngauge_factor_per_strain = 4000"),
+                                "b.toml");
+            }).find("in strain already"),
+            std::string::npos);
+}
+
 TEST(BenchFile, ReadsLeadsSeriesAndShunt) {
   const Bench bench = parse_bench(
       replaced(kShpb, "gain = 500",

@@ -17,12 +17,11 @@ namespace {
 
 using testing::ElasticShpb;
 
-Uncertainty propagated(const Shot& shot, std::size_t draws,
-                       const Executor& executor = run_in_order) {
+Uncertainty propagated(const Shot& shot, std::size_t draws, const Workers& workers = {}) {
   const Reduction reduction = Reducer().reduce(shot);
   UncertaintyOptions options;
   options.draws = draws;
-  return propagate(shot, {}, reduction, options, executor);
+  return propagate(shot, {}, reduction, options, workers);
 }
 
 const UncertainFigure& figure(const Uncertainty& u, const std::string& name) {
@@ -66,7 +65,7 @@ TEST(Uncertainty, OfNoiseIsTheScatterOfRepeatedShots) {
   const Reduction reduction = reducer.reduce(shot);
   UncertaintyOptions wanted;
   wanted.draws = 300;
-  const Uncertainty u = propagate(shot, options, reduction, wanted, run_in_order);
+  const Uncertainty u = propagate(shot, options, reduction, wanted, Workers{});
   EXPECT_EQ(u.draws, 300U);
   EXPECT_TRUE(u.sources.empty());
   const std::vector<double> stated(u.stress_Pa.sd.begin() + 30, u.stress_Pa.sd.begin() + 80);
@@ -110,7 +109,7 @@ TEST(Uncertainty, TheBudgetAddsUpToTheWhole) {
   options.draws = 800;
   options.bars.covariance[0][0] = std::pow(5e-4 * 5.66e9, 2);
   options.bars.covariance[2][2] = std::pow(5e-3 * 1.81e6, 2);
-  const Uncertainty u = propagate(shot, {}, Reducer().reduce(shot), options, run_in_order);
+  const Uncertainty u = propagate(shot, {}, Reducer().reduce(shot), options, Workers{});
   EXPECT_EQ(u.sources.size(),
             10U);  // 2 positions, 2 diameters, 1 density, 2 of the specimen, 2 + 1
   for (std::size_t f = 0; f < u.figures.size(); ++f) {
@@ -152,10 +151,11 @@ TEST(Uncertainty, IntervalsHoldTheTruth) {
 TEST(Uncertainty, IsTheSameHoweverTheWorkIsSpread) {
   const ElasticShpb model;
   const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 1);
-  const Executor threads = [](std::size_t count, const std::function<void(std::size_t)>& task) {
+  Workers threads;
+  threads.run = [](std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
     std::vector<std::jthread> pool;
     for (std::size_t i = 0; i < count; ++i) {
-      pool.emplace_back([&task, i] { task(i); });
+      pool.emplace_back([&work, i] { work(i, i); });
     }
   };
   const Uncertainty one = propagated(shot, 64);

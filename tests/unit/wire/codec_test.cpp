@@ -42,6 +42,39 @@ void expect_same(const Material& a, const Material& b) {
   EXPECT_EQ(a.source, b.source);
 }
 
+TEST(BallCodec, ComesBackExact) {
+  Reduction reduction;
+  reduction.quality.reducible = true;
+  BallImpact& ball = reduction.ball.emplace();
+  ball.time_s = {1e-7, 1.1e-6};
+  ball.force_N = {-0.0, std::numeric_limits<double>::denorm_min()};
+  ball.peak_force_N = {9444.1, 12.5};
+  ball.contact_over = true;
+  ball.contact_threshold = 0.02;
+  ball.restitution_by_speed = Measured{0.829, 0.001};
+  ball.speed_source = "meta";
+  ball.stations = {{"g1+g2", 0.25, 0.75, 49e-6, 1137e-6, 65.0, 2.5}};
+  const Reduction back = wire::decode(encoded(reduction));
+  ASSERT_TRUE(back.ball);
+  EXPECT_EQ(back.ball->time_s, ball.time_s);
+  EXPECT_EQ(bits_of(back.ball->force_N), bits_of(ball.force_N));
+  EXPECT_EQ(back.ball->peak_force_N.sd, 12.5);
+  EXPECT_EQ(back.ball->contact_threshold, 0.02);
+  EXPECT_EQ(back.ball->restitution_by_speed->value, 0.829);
+  EXPECT_FALSE(back.ball->restitution_by_impulse) << "what is not known stays unknown";
+  ASSERT_EQ(back.ball->stations.size(), 1U);
+  EXPECT_EQ(back.ball->stations[0].gauges, "g1+g2");
+  EXPECT_EQ(back.ball->stations[0].clean_from_s, 49e-6);
+  EXPECT_EQ(back.ball->stations[0].impulse_N_s, 2.5);
+  EXPECT_FALSE(wire::decode(encoded(Reduction{})).ball);
+}
+
+TEST(BallCodec, HistoriesOfUnequalLengthAreRefused) {
+  Reduction reduction;
+  reduction.ball.emplace().time_s = {0.0, 1e-6};
+  EXPECT_THROW((void)wire::decode(encoded(reduction)), InputError);
+}
+
 TEST(ShotCodec, ComesBackExact) {
   const Shot shot = full_shot(4000);
   const Shot back = wire::decode(over_the_wire(encoded(shot)));

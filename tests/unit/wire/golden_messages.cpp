@@ -189,6 +189,59 @@ v1::Result result() {
   return result;
 }
 
+v1::Measured measured(double value, double sd) {
+  v1::Measured number;
+  number.set_value(value);
+  number.set_sd(sd);
+  return number;
+}
+
+v1::Result ball_result() {
+  v1::Result result;
+  result.set_shot_id("20240102T030405.678901-3");
+  *result.mutable_quality() = quality();
+  v1::BallImpact& ball = *result.mutable_ball();
+  for (const char* name : {"time_s", "force_N"}) {
+    *ball.add_histories() = waveform(name, "1", v1::Waveform::FLOAT64, one_and_minus_two());
+  }
+  ball.set_low_pass_hz(25'000.0);
+  ball.set_force_noise_n(12.5);
+  ball.set_clean_from_s(49e-6);
+  ball.set_clean_until_s(1088e-6);
+  *ball.mutable_peak_force_n() = measured(9444.0, 30.0);
+  ball.set_peak_time_s(209e-6);
+  *ball.mutable_contact_time_s() = measured(451e-6, 1e-6);
+  ball.set_contact_threshold(0.01);
+  ball.set_contact_over(true);
+  *ball.mutable_impulse_n_s() = measured(2.5, 0.01);
+  *ball.mutable_mass_kg() = measured(0.0434, 0.0001);
+  *ball.mutable_incident_speed_m_per_s() = measured(31.1, 0.1);
+  *ball.mutable_rebound_speed_m_per_s() = measured(25.75, 0.1);
+  ball.set_speed_source("photo-sensors");
+  *ball.mutable_restitution_by_speed() = measured(0.828, 0.004);
+  *ball.mutable_restitution_by_impulse() = measured(0.852, 0.008);
+  *ball.mutable_restitution_difference() = measured(-0.024, 0.01);
+  *ball.mutable_momentum_excess() = measured(0.0133, 0.005);
+  v1::ForceStation& station = *ball.add_stations();
+  station.set_gauges("g1+g2");
+  station.set_position_m(0.25);
+  station.set_weight(1.0);
+  station.set_clean_from_s(49e-6);
+  station.set_clean_until_s(1137e-6);
+  station.set_noise_n(65.0);
+  station.set_impulse_n_s(2.5);
+  return result;
+}
+
+void fill_ball_shots(v1::ControlReply& reply) {
+  v1::ShotSummary& summary = *reply.mutable_shots()->add_shots();
+  summary.set_id("20240102T030405.678901-3");
+  summary.set_verdict(v1::Quality::PASS);
+  summary.set_reducible(true);
+  summary.set_peak_force_n(9444.0);
+  summary.set_restitution(0.828);
+}
+
 v1::Result irreducible() {
   v1::Result result;
   result.set_shot_id("20240102T030405.678901-2");
@@ -289,6 +342,7 @@ std::vector<Fixture> reply_fixtures() {
   return {
       fixture("reply_status", reply([](auto& r) { *r.mutable_status() = status(); })),
       fixture("reply_shots", reply(fill_shots)),
+      fixture("reply_ball_shots", reply(fill_ball_shots)),
       fixture("reply_shot", reply([](auto& r) {
                 *r.mutable_shot()->mutable_shot() = shot();
                 *r.mutable_shot()->mutable_result() = result();
@@ -336,10 +390,10 @@ void describe(const Descriptor& type, std::vector<std::string>& lines) {
 
 std::vector<Fixture> fixtures() {
   std::vector<Fixture> all = {
-      fixture("envelope", envelope()), fixture("status", status()),
-      fixture("preview", preview()),   fixture("shot", shot()),
-      fixture("result", result()),     fixture("result_irreducible", irreducible()),
-      fixture("fault", fault()),
+      fixture("envelope", envelope()),       fixture("status", status()),
+      fixture("preview", preview()),         fixture("shot", shot()),
+      fixture("result", result()),           fixture("result_irreducible", irreducible()),
+      fixture("result_ball", ball_result()), fixture("fault", fault()),
   };
   std::ranges::move(request_fixtures(), std::back_inserter(all));
   std::ranges::move(reply_fixtures(), std::back_inserter(all));

@@ -1,4 +1,4 @@
-#include "drivers/files/toml_text.hpp"
+#include "drivers/files/toml_values.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ std::string toml_number(double value) {
   return result;
 }
 
-std::string toml_quoted(const std::string& text) {
+std::string toml_text(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {

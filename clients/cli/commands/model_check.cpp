@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <ostream>
+
+#include "clients/cli/command.hpp"
+#include "clients/cli/json_value.hpp"
+#include "clients/cli/model_text.hpp"
+#include "drivers/files/model_file.hpp"
+#include "processing/base/error.hpp"
+#include "processing/criticism/distinction.hpp"
+#include "processing/models/admission.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+constexpr std::size_t kPlaces = 2048;
+constexpr std::size_t kRivalsShown = 4;
+
+struct Settings {
+  std::string model;
+  std::vector<std::string> captures;
+  std::optional<double> band_limit_Hz;
+};
+
+/// One expression, checked.
+struct Checked {
+  const ExpressionEffect* effect = nullptr;
+  bool used = false;
+  double time_s = 0.0;
+  std::vector<Distinction> distinctions;  ///< by gauge, for effects of one gauge
+};
+
+/// Of one application along a path of ordinary length: the shortest of several.
+double time_of(const ExpressionEffect& effect, BenchKind kind) {
+  const Bench bench = admission_bench(kind);
+  ShotFacts facts;
+  std::vector<Complex> path;
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    path.emplace_back(4000.0, 2.0 * std::numbers::pi * 100.0 * static_cast<double>(k));
+  }
+  std::vector<double> values;
+  for (const EffectParameter& own : effect.about().parameters) {
+    values.push_back(own.auxiliary() ? own.starts.front() : own.null_value);
+  }
+  double best = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < 8; ++run) {
+    Scene scene(bench, facts, path);
+    for (BarScene& bar : scene.bars) {
+      bar.gamma_per_m.assign(kPlaces, Complex(1.0, 1.0));
+    }
+    const auto start = std::chrono::steady_clock::now();
+    effect.apply(scene, values, 0);
+    for (const auto& maps : scene.record.maps) {
+      for (const RecordMap& map : maps) {
+        std::vector<double> record(kPlaces, 1e-3);
+        undo(map, record);
+      }
+    }
+    best = std::min(
+        best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return best;
+}
+
+/// Cosines beside a fit of the model without its expressions.
+void tell_apart(const Settings& settings, const Model& model, std::vector<Checked>& list) {
+  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
+  Model without = model;
+  std::erase_if(without.effects, [&](const EffectUse& use) {
+    return std::any_of(model.expressions.begin(), model.expressions.end(),
+                       [&](const auto& own) { return own.get() == use.effect; });
+  });
+  std::vector<std::string> ids;
+  for (const Checked& own : list) {
+    ids.push_back(own.effect->about().id);
+  }
+  for (Distinction& own : distinctions(study, study.fit(without), ids)) {
+    const std::string name = own.effect.substr(0, own.effect.find(':'));
+    const auto found = std::find_if(list.begin(), list.end(), [&](const Checked& checked) {
+      return checked.effect->about().id == name;
+    });
+    found->distinctions.push_back(std::move(own));
+  }
+}
+
+/// Of captures an expression is checked beside their bench too, not only one of ordinary size.
+void require_admitted_here(const Settings& settings, const Model& model) {
+  const std::vector<Shot> shots = read_shots(settings.captures);
+  for (const auto& own : model.expressions) {
+    if (const auto problem = admission_problem(*own, model, shots.front().bench)) {
+      throw InputError(settings.model + ": expression " + own->about().id + " on this bench",
+                       problem->check + ": " + problem->what, problem->mend);
+    }
+  }
+}
+
+JsonValue describe(const Checked& own) {
+  JsonList distinctions;
+  for (const Distinction& distinction : own.distinctions) {
+    JsonList rivals;
+    for (const Resemblance& rival : distinction.rivals) {
+      rivals.push_back(JsonObject{{"effect", rival.effect}, {"cosine", rival.cosine}});
+    }
+    distinctions.push_back(JsonObject{{"effect", distinction.effect},
+                                      {"parameter", distinction.parameter},
+                                      {"unit", distinction.unit},
+                                      {"absorbed_share", distinction.absorbed_share},
+                                      {"smallest_detectable", distinction.detectable},
+                                      {"smallest_identifiable", distinction.identifiable},
+                                      {"rivals", std::move(rivals)}});
+  }
+  return JsonObject{{"id", own.effect->about().id},
+                    {"stage", kolsky::name_of(own.effect->about().stage)},
+                    {"formula", own.effect->text().formula},
+                    {"admitted", true},
+                    {"used", own.used},
+                    {"time_s", own.time_s},
+                    {"here", std::move(distinctions)}};
+}
+
+std::string text_of(const Checked& own) {
+  const EffectAbout& about = own.effect->about();
+  std::string text = fmt::format(
+      "{} ({}): {}\n  admitted: nothing at null, derivative finite, "
+      "passive, causal, units right; {:.0f} us along {} places{}\n",
+      about.id, kolsky::name_of(about.stage), about.definition, own.time_s * 1e6, kPlaces,
+      own.used ? "" : "; declared, not used: `kolsky diagnose` tries it");
+  for (const Distinction& here : own.distinctions) {
+    if (here.rivals.empty()) {
+      text += fmt::format(
+          "  {}: untestable on these captures, the model's own numbers take it up\n", here.effect);
+      continue;
+    }
+    text += fmt::format(
+        "  {}: {} from {:.2g} {} on is seen here, from {:.2g} told apart; {:.0f} % "
+        "of it is taken up by the model\n      nearest:",
+        here.effect, here.parameter, here.detectable, here.unit, here.identifiable,
+        100.0 * here.absorbed_share);
+    for (std::size_t i = 0; i < std::min(kRivalsShown, here.rivals.size()); ++i) {
+      text += fmt::format("{} {} (cosine {:.3f})", i == 0 ? "" : ",", here.rivals[i].effect,
+                          here.rivals[i].cosine);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+int run(const Settings& settings, Context& context) {
+  const ModelFile file = read_model(settings.model);
+  std::vector<Checked> list;
+  for (const auto& own : file.model.expressions) {
+    const bool used = std::any_of(file.model.effects.begin(), file.model.effects.end(),
+                                  [&](const EffectUse& use) { return use.effect == own.get(); });
+    list.push_back({own.get(), used, time_of(*own, file.model.kind), {}});
+  }
+  if (!settings.captures.empty() && !list.empty()) {
+    require_admitted_here(settings, file.model);
+    tell_apart(settings, file.model, list);
+  }
+  if (context.json) {
+    JsonList expressions;
+    for (const Checked& own : list) {
+      expressions.push_back(describe(own));
+    }
+    context.out << to_text(JsonObject{{"model", settings.model},
+                                      {"effects", describe_effects(file.model)},
+                                      {"expressions", std::move(expressions)}})
+                << "\n";
+    return kDone;
+  }
+  context.out << settings.model << ": sound; " << file.model.effects.size() << " effects, "
+              << list.size() << " expressions of its own\n";
+  for (const Checked& own : list) {
+    context.out << "\n" << text_of(own);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command model_check_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Command command;
+  command.name = "model check";
+  command.purpose =
+      "checks a model file and the effects that it declares by formula\n"
+      "At null they must change nothing; no energy from nothing, no answer before the question, "
+      "units\n"
+      "right. With captures: what they could show of each, and which effects look like it there.\n"
+      "An effect of your own, in the model file (docs/methods/expressions.md tells all stages):\n"
+      "    [[expressions]]\n"
+      "    id = \"my-branch\"\n"
+      "    stage = \"material\"\n"
+      "    formula = \"D / (1 + s*tau)\"\n"
+      "    [expressions.parameters.D]\n"
+      "    unit = \"1/Pa\"\n"
+      "    null = 0.0\n"
+      "    bounds = [0.0, 1e-9]\n"
+      "    typical = 1e-12\n"
+      "    [expressions.parameters.tau]\n"
+      "    unit = \"s\"\n"
+      "    starts = [1e-5, 1e-4, 1e-3]\n"
+      "    bounds = [1e-6, 1e-1]\n"
+      "    typical = 1e-5\n"
+      "`kolsky model add M.toml my-branch` then uses it; `diagnose` tries it unasked.";
+  command.examples =
+      "  kolsky model check m.toml\n"
+      "  kolsky model check m.toml shots/*.h5\n";
+  command.arguments = {
+      needed("MODEL", "", "the model file", &s.model),
+      {"CAPTURE", "", "captures of one bench, or folders of them", &s.captures, false, {}},
+      option("--band-limit", "HZ",
+             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

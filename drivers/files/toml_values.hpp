@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace kolsky {
+
+/// A finite number as TOML has it; reads back as the same bits.
+[[nodiscard]] std::string toml_number(double value);
+
+/// A text as TOML has it, in quotes.
+[[nodiscard]] std::string toml_text(const std::string& text);
+
+}  // namespace kolsky

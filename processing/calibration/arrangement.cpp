@@ -1,0 +1,321 @@
+#include "processing/calibration/arrangement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "processing/base/error.hpp"
+#include "processing/bridge/bridge.hpp"
+#include "processing/identification/bar_records.hpp"
+#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/quality.hpp"
+#include "processing/waves/bar_modes.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kShortestPulse_s = 5e-6;
+constexpr double kReach_s = 500e-6;
+constexpr double kAlike = 0.01;
+/// A bar that shows less than this of the other one's pulse was not touched.
+constexpr double kSilent = 0.03;
+/// What is kept of the time until faces can part.
+constexpr double kSafely = 0.97;
+
+struct Arrival {
+  double sample = 0.0;
+  double peak = 0.0;
+};
+
+/// The first pulse of a channel where it rises through half its peak.
+std::optional<Arrival> arrival_of(const ChannelRecord& channel, double rate_Hz) {
+  const std::vector<double> readings = readings_of(channel);
+  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
+  const auto reach = static_cast<std::size_t>(kReach_s * rate_Hz);
+  const auto rise = find_first_pulse(readings, width, reach);
+  if (!rise) {
+    return std::nullopt;
+  }
+  const double baseline = quiet_before(readings, std::max<std::size_t>(1, rise->index / 2)).baseline;
+  Arrival arrival;
+  const std::size_t end = std::min(readings.size(), rise->index + reach);
+  for (std::size_t n = rise->index; n < end; ++n) {
+    arrival.peak = std::max(arrival.peak, rise->sense * (readings[n] - baseline));
+  }
+  const double below = rise->sense * (readings[rise->index] - baseline);
+  const double above = rise->sense * (readings[rise->index + 1] - baseline);
+  const double share = above > below ? (0.5 * arrival.peak - below) / (above - below) : 0.0;
+  arrival.sample = static_cast<double>(rise->index) + std::clamp(share, 0.0, 1.0);
+  return arrival;
+}
+
+double strain_per_reading(const Bench& bench, const Gauge& gauge) {
+  return std::abs(BridgeConversion(gauge, bench.bar_of(gauge), bench.positive).sensitivity());
+}
+
+/// Largest first pulse on a bar, in strain; 0 where there is none.
+double loudest(const Shot& shot, const std::string& bar) {
+  double peak = 0.0;
+  for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
+    const Gauge& gauge = shot.bench.gauges[j];
+    if (gauge.bar == bar) {
+      if (const auto arrival = arrival_of(shot.channels[j], shot.rate.Hz())) {
+        peak = std::max(peak, arrival->peak * strain_per_reading(shot.bench, gauge));
+      }
+    }
+  }
+  return peak;
+}
+
+BarsLay lay_of(const Shot& shot) {
+  if (shot.bench.kind == BenchKind::bar) {
+    return BarsLay::one_bar;
+  }
+  const double input = loudest(shot, "input");
+  const double output = loudest(shot, "output");
+  if (input == 0.0 && output == 0.0) {
+    throw InputError("capture " + shot.id, "holds no pulse that stands out of its noise",
+                     "give the shot's whole record, from before the impact");
+  }
+  if (output < kSilent * input) {
+    return BarsLay::input_alone;
+  }
+  return input < kSilent * output ? BarsLay::output_alone : BarsLay::together;
+}
+
+/// Gives every gauge the place whose turn it was: cables that were exchanged show in the order in
+/// which the pulse arrives.
+std::vector<std::pair<std::string, std::string>> set_in_order(Bench& bench, const Shot& shot) {
+  std::vector<std::pair<std::string, std::string>> swapped;
+  std::vector<std::size_t> by_way(bench.gauges.size());
+  std::iota(by_way.begin(), by_way.end(), std::size_t{0});
+  std::vector<double> seen;
+  for (const ChannelRecord& channel : shot.channels) {
+    const auto arrival = arrival_of(channel, shot.rate.Hz());
+    if (!arrival) {
+      return {};
+    }
+    seen.push_back(arrival->sample);
+  }
+  std::stable_sort(by_way.begin(), by_way.end(), [&](std::size_t a, std::size_t b) {
+    return way_to_m(bench, bench.gauges[a]) < way_to_m(bench, bench.gauges[b]);
+  });
+  constexpr double kClearly = 3.0;  // samples
+  for (std::size_t round = 0; round < by_way.size(); ++round) {
+    bool in_order = true;
+    for (std::size_t i = 0; i + 1 < by_way.size(); ++i) {
+      Gauge& first = bench.gauges[by_way[i]];
+      Gauge& second = bench.gauges[by_way[i + 1]];
+      if (seen[by_way[i]] > seen[by_way[i + 1]] + kClearly) {
+        std::swap(first.position_m, second.position_m);
+        std::swap(first.bar, second.bar);
+        swapped.emplace_back(first.name, second.name);
+        std::swap(by_way[i], by_way[i + 1]);
+        in_order = false;
+      }
+    }
+    if (in_order) {
+      break;
+    }
+  }
+  return swapped;
+}
+
+void cut(Shot& shot, std::size_t samples) {
+  for (ChannelRecord& channel : shot.channels) {
+    channel.codes.resize(std::min(channel.codes.size(), samples));
+  }
+}
+
+/// Leaves of a shot on bars that touch what happens before the far end's answer can part them.
+void cut_before_faces_part(Shot& shot, const BarPrior& bars) {
+  const Bench& bench = shot.bench;
+  if (bench.output->far_end != FarEnd::free) {
+    return;
+  }
+  std::size_t first = 0;
+  double nearest_m = bench.input.length_m;
+  for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
+    if (way_to_m(bench, bench.gauges[j]) < way_to_m(bench, bench.gauges[first])) {
+      first = j;
+    }
+    nearest_m = std::min(nearest_m, bench.distance_to_specimen_m(bench.gauges[j]));
+  }
+  const auto arrival = arrival_of(shot.channels[first], shot.rate.Hz());
+  if (!arrival) {
+    return;
+  }
+  const double speed_in =
+      front_speed_m_per_s(bench.input, *compliance_of(bench.input, bars.material));
+  const double speed_out =
+      front_speed_m_per_s(*bench.output, *compliance_of(*bench.output, bars.material));
+  const double time_s = bench.distance_to_specimen_m(bench.gauges[first]) / speed_in +
+                        2.0 * bench.output->length_m / speed_out +
+                        nearest_m / std::max(speed_in, speed_out);
+  cut(shot, static_cast<std::size_t>(arrival->sample + kSafely * time_s * shot.rate.Hz()));
+}
+
+/// One bar of a split bench by itself.
+void leave_one_bar(Shot& shot, const std::string& name) {
+  Bench& bench = shot.bench;
+  std::vector<Gauge> gauges;
+  std::vector<ChannelRecord> channels;
+  for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
+    if (bench.gauges[j].bar == name) {
+      gauges.push_back(bench.gauges[j]);
+      gauges.back().bar = "input";
+      channels.push_back(std::move(shot.channels[j]));
+    }
+  }
+  if (name == "output") {
+    bench.input = *bench.output;
+  }
+  bench.kind = BenchKind::bar;
+  bench.output.reset();
+  bench.specimen.reset();
+  bench.gauges = std::move(gauges);
+  shot.channels = std::move(channels);
+}
+
+/// Makes a second gauge of one that sees the pulse come back from the free end: what it reads from
+/// then on, inverted, on a bar that has no end. What the first one reads from then on would reach
+/// the second only after the record's new end. The way between them is known as well as the bar's
+/// length and the gauge's place.
+void split_passes(Shot& shot, const BarPrior& bars) {
+  Gauge& gauge = shot.bench.gauges.front();
+  const Bar bar = shot.bench.input;
+  const double rate_Hz = shot.rate.Hz();
+  const auto arrival = arrival_of(shot.channels.front(), rate_Hz);
+  const double speed = front_speed_m_per_s(bar, *compliance_of(bar, bars.material));
+  constexpr double kClear_s = 40e-6;  // of the front's foot before its half rise
+  const auto sample = [&](double after_s) {
+    return static_cast<std::size_t>(
+        std::max(0.0, (arrival ? arrival->sample : 0.0) + (after_s - kClear_s) * rate_Hz));
+  };
+  const double to_end_s = (bar.length_m - gauge.position_m) / speed;
+  const double to_start_s = gauge.position_m / speed;
+  const std::size_t quiet = sample(0.0);
+  const std::size_t back = sample(2.0 * to_end_s);
+  const std::size_t end = std::min(
+      shot.samples(), std::min(sample(2.0 * (to_end_s + to_start_s)), sample(4.0 * to_end_s)));
+  constexpr std::size_t kFewest = 64;
+  if (!arrival || quiet < kFewest || back + kFewest >= end) {
+    throw InputError("gauge " + gauge.name, "sees too little of what the free end returns",
+                     "place it farther from the end, record longer, or use two gauges");
+  }
+  auto& codes = shot.channels.front().codes;
+  double baseline = 0.0;
+  for (std::size_t n = 0; n < quiet; ++n) {
+    baseline += static_cast<double>(codes[n]) / static_cast<double>(quiet);
+  }
+  ChannelRecord returned = shot.channels.front();
+  for (std::size_t n = 0; n < end; ++n) {
+    // Noise of before the pulse, to and fro, stands where the first pass was.
+    const std::size_t phase = n % (2 * quiet);
+    returned.codes[n] = n < back ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
+                                 : static_cast<std::int32_t>(std::lround(2.0 * baseline)) - codes[n];
+  }
+  Gauge second = gauge;
+  second.name += " returned";
+  second.position_m = {2.0 * bar.length_m - gauge.position_m,
+                       2.0 * std::hypot(bar.length_m.sd, gauge.position_m.sd)};
+  returned.gauge = second.name;
+  gauge.position_m.sd = 0.0;
+  shot.bench.gauges.push_back(second);
+  shot.channels.push_back(returned);
+  shot.bench.input.length_m = {2.0 * bar.length_m, 0.0};
+  cut(shot, end);
+}
+
+CalibrationPart& part_of(std::vector<CalibrationPart>& parts, BarsLay lay) {
+  const auto found =
+      std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.lay == lay; });
+  return found != parts.end() ? *found : parts.emplace_back(CalibrationPart{lay, {}, false, {}});
+}
+
+void prepare(CalibrationPart& part, const BarPrior& bars) {
+  for (Shot& shot : part.shots) {
+    if (part.lay == BarsLay::input_alone || part.lay == BarsLay::output_alone) {
+      leave_one_bar(shot, part.lay == BarsLay::input_alone ? "input" : "output");
+    }
+  }
+  Bench bench = part.shots.front().bench;
+  part.two_passes = bench.gauges.size() == 1;
+  if (part.two_passes && part.lay == BarsLay::one_bar) {
+    throw InputError("gauges", "are too few: one on a bar to be characterised",
+                     "record the pulse with two gauges");
+  }
+  part.swapped = set_in_order(bench, part.shots.front());
+  for (Shot& shot : part.shots) {
+    shot.bench = bench;
+    if (part.two_passes) {
+      split_passes(shot, bars);
+    } else if (part.lay == BarsLay::together) {
+      cut_before_faces_part(shot, bars);
+    }
+  }
+}
+
+}  // namespace
+
+std::string name_of(BarsLay lay) {
+  switch (lay) {
+    case BarsLay::one_bar:
+      return "bar";
+    case BarsLay::together:
+      return "bars together";
+    case BarsLay::input_alone:
+      return "input bar alone";
+    case BarsLay::output_alone:
+      break;
+  }
+  return "output bar alone";
+}
+
+bool specimen_is_slice_of_bar(const Bench& bench) {
+  const auto alike = [](double a, double b) { return std::abs(a - b) <= kAlike * std::abs(b); };
+  return bench.specimen && bench.specimen->density_kg_m3 &&
+         alike(*bench.specimen->density_kg_m3, bench.input.density_kg_m3) &&
+         alike(bench.specimen->area_m2(), bench.input.area_m2());
+}
+
+double way_to_m(const Bench& bench, const Gauge& gauge) {
+  if (gauge.bar != "output") {
+    return gauge.position_m;
+  }
+  const double slice_m = specimen_is_slice_of_bar(bench) ? bench.specimen->length_m.value : 0.0;
+  return bench.input.length_m + slice_m + gauge.position_m;
+}
+
+std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPrior& bars) {
+  if (shots.empty()) {
+    throw InputError("captures", "are none", "give at least one shot");
+  }
+  std::vector<CalibrationPart> parts;
+  for (const Shot& shot : shots) {
+    if (shot.bench.kind == BenchKind::impact) {
+      throw InputError("capture " + shot.id, "is of a ball on a bar, which is not calibrated",
+                       "strike the bar alone, with a bench file of kind \"bar\"");
+    }
+    if (shot.rate != shots.front().rate || shot.bench_toml != shots.front().bench_toml) {
+      throw InputError("capture " + shot.id, "is of another bench or rate than " + shots.front().id,
+                       "calibrate one bench at a time");
+    }
+    if (shot.channels.size() != shot.bench.gauges.size()) {
+      throw InputError("capture " + shot.id, "has not one channel per gauge",
+                       "file one gauge per channel, in their order");
+    }
+    if (const std::string reason = unusable_because(shot); !reason.empty()) {
+      throw InputError("capture " + shot.id, reason, "repeat the shot, or leave this capture out");
+    }
+    part_of(parts, lay_of(shot)).shots.push_back(shot);
+  }
+  for (CalibrationPart& part : parts) {
+    prepare(part, bars);
+  }
+  return parts;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,122 @@
+#include "processing/calibration/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/calibration/part_fit.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Above this more than noise is left.
+constexpr double kMoreThanNoise = 1.3;
+constexpr double kDeviations = 3.0;
+
+void require_trusted(const Bench& bench, const std::vector<std::string>& trusted) {
+  for (const std::string& name : trusted) {
+    const bool known = std::any_of(bench.gauges.begin(), bench.gauges.end(),
+                                   [&](const Gauge& gauge) { return gauge.name == name; });
+    if (!known) {
+      throw InputError("gauge " + name, "is not one of the bench",
+                       "trust a gauge that the bench file names");
+    }
+  }
+}
+
+/// What the areas and the model say of the same gains.
+void compare_areas(const PartResult& part, std::vector<std::string>& warnings) {
+  const auto gain_of = [&](const std::string& gauge) {
+    for (const CalibratedNumber& number : part.numbers) {
+      if (number.of == CalibratedNumber::Of::gain && number.gauge == gauge) {
+        return number.combined;
+      }
+    }
+    return Measured{1.0, 0.0};
+  };
+  for (const AreaRatio& ratio : part.areas.ratios) {
+    const Measured own = gain_of(ratio.gauge);
+    const Measured first = gain_of(part.areas.first_gauge);
+    const double expected = own.value / first.value;
+    const double sd = std::hypot(ratio.ratio.sd, own.sd, first.sd);
+    if (std::abs(ratio.ratio.value - expected) > kDeviations * sd) {
+      warnings.push_back("pulse areas give gauge " + ratio.gauge + " another gain than the waves");
+    }
+  }
+}
+
+}  // namespace
+
+std::string name_of(Standing standing) {
+  switch (standing) {
+    case Standing::agrees:
+      return "agrees";
+    case Standing::differs:
+      return "differs";
+    case Standing::tied:
+      return "tied";
+    case Standing::unseen:
+      return "unseen";
+    case Standing::unfiled:
+      break;
+  }
+  return "unfiled";
+}
+
+std::string name_of(Certificate certificate) {
+  switch (certificate) {
+    case Certificate::pass:
+      return "pass";
+    case Certificate::fail:
+      return "fail";
+    case Certificate::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& options) {
+  const BarPrior bars = options.bars.value_or(BarPrior(paper_pmma()));
+  const std::vector<CalibrationPart> parts = arrange(shots, bars);
+  require_trusted(shots.front().bench, options.trusted);
+  Calibration result;
+  bool differs = false;
+  bool undecided = false;
+  for (const CalibrationPart& part : parts) {
+    PartResult fitted = fit_part(part, options);
+    for (const CalibratedNumber& number : fitted.numbers) {
+      differs = differs || number.standing == Standing::differs;
+      undecided = undecided || number.standing == Standing::tied;
+    }
+    for (const auto& [one, other] : fitted.swapped) {
+      differs = true;
+      result.reasons.push_back("gauges " + one + " and " + other +
+                               " are exchanged: the pulse arrives in the other order");
+    }
+    if (fitted.chi2_reduced > kMoreThanNoise) {
+      undecided = true;
+      result.reasons.push_back(name_of(part.lay) +
+                               ": no number of the bench explains all that is left; "
+                               "`kolsky diagnose` looks for what else it may be");
+    }
+    if (fitted.areas.momentum) {
+      const Measured& gain = fitted.areas.momentum->gain;
+      if (std::abs(fitted.areas.momentum_left) > kDeviations) {
+        undecided = true;
+        result.reasons.push_back("the striker's momentum gives gauge " +
+                                 fitted.areas.momentum->gauge + " the gain " +
+                                 std::to_string(gain.value) +
+                                 ": all gains together, or the striker's numbers, are off");
+      }
+    }
+    compare_areas(fitted, result.warnings);
+    result.parts.push_back(std::move(fitted));
+  }
+  result.certificate = differs     ? Certificate::fail
+                       : undecided ? Certificate::undecided
+                                   : Certificate::pass;
+  return result;
+}
+
+}  // namespace kolsky

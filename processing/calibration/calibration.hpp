@@ -1,0 +1,83 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processing/base/measured.hpp"
+#include "processing/calibration/arrangement.hpp"
+#include "processing/calibration/pulse_areas.hpp"
+#include "processing/base/workers.hpp"
+
+namespace kolsky {
+
+/// How a filed number stands beside the shots.
+enum class Standing {
+  agrees,
+  differs,  ///< by more than three deviations, and nothing explains the records as simply
+  tied,     ///< it or one of `tied_with` differs: the shots cannot tell which
+  unseen,   ///< the shots say less of it than is filed
+  unfiled,  ///< nothing is filed of it: found by the shots
+};
+
+[[nodiscard]] std::string name_of(Standing standing);
+
+/// A number of the bench or of its bars under calibration, as a change of what is filed.
+struct CalibratedNumber {
+  enum class Of { gain, position, delay, bar_length, elastic_modulus, E1, E2, eta2 };
+  Of of = Of::gain;
+  std::string id;      ///< as the effect that would name it: "gauge-position:g3"
+  std::string gauge;   ///< of gain, position and delay
+  Measured filed;      ///< gain: 1, delay: 0, else the number itself; sd 0 where filed as exact
+  Measured measured;   ///< by the shots and all other filed numbers, without its own
+  Measured combined;   ///< by shots and its own filed number; where it differs, `measured`
+  double deviations = 0.0;  ///< measured from filed
+  Standing standing = Standing::agrees;
+  std::vector<std::string> tied_with;
+};
+
+/// What the shots of one arrangement say.
+struct PartResult {
+  BarsLay lay = BarsLay::one_bar;
+  bool two_passes = false;
+  std::size_t shots = 0;
+  bool exact_waves = false;  ///< else elementary
+  bool far_end_seen = false;
+  double chi2_reduced = 0.0;  ///< with what differs set right
+  double chi2_reduced_as_filed = 0.0;
+  Measured wave_speed_m_per_s;  ///< phase speed at `wave_speed_at_Hz`
+  double wave_speed_at_Hz = 0.0;
+  std::vector<CalibratedNumber> numbers;
+  std::vector<std::pair<std::string, std::string>> swapped;
+  PulseAreas areas;
+  std::vector<std::string> cannot_tell;  ///< combinations of numbers that leave no trace
+};
+
+enum class Certificate { pass, fail, undecided };
+[[nodiscard]] std::string name_of(Certificate certificate);
+
+struct Calibration {
+  Certificate certificate = Certificate::pass;
+  std::vector<PartResult> parts;
+  std::vector<std::string> reasons;   ///< what keeps the certificate from being a pass
+  std::vector<std::string> warnings;
+};
+
+struct CalibrationOptions {
+  /// Moduli of viscoelastic bars as filed; none: a bar's own are found, those of a split bench are
+  /// the paper's PMMA, held.
+  std::optional<BarPrior> bars;
+  double band_limit_Hz = 0.0;
+  std::vector<std::string> trusted;  ///< gauges whose gain, place and time count as right
+  Workers workers;
+};
+
+/// Holds a bench file against shots that were fired to check it. Each shot's source is free at all
+/// times. Filed numbers move within their deviations; where that does not do, the one whose release
+/// explains most is named and set free, and so on until what is filed agrees with the rest.
+/// @throws InputError as arrange and read_campaign, and where the bench lacks a trusted gauge
+[[nodiscard]] Calibration calibrate(const std::vector<Shot>& shots,
+                                    const CalibrationOptions& options);
+
+}  // namespace kolsky

@@ -1,0 +1,429 @@
+#include "processing/calibration/part_fit.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "processing/calibration/null_directions.hpp"
+#include "processing/calibration/part_model.hpp"
+#include "processing/criticism/candidates.hpp"
+#include "processing/criticism/study.hpp"
+#include "processing/identification/known_unknowns.hpp"
+#include "processing/waves/bar_modes.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// What differs by more of its deviations is named.
+constexpr double kNamed = 3.0;
+/// Explanations whose objectives lie nearer to each other are not told apart.
+constexpr double kTie = 9.0;
+/// Tolerances while waves and far end are chosen, so that a misfiled bench does not choose them.
+constexpr double kLoosely = 5.0;
+constexpr double kClearlyBetter = 10.0;
+constexpr std::size_t kMostRefits = 8;
+/// Shots that are enough to tell waves and far end.
+constexpr std::size_t kShotsToChoose = 2;
+constexpr double kSpeedAt_Hz = 1e4;
+
+/// What the data by themselves, with all other priors, say of one number of a fit.
+struct Alone {
+  double value = 0.0;  ///< of the effect
+  double sd = 0.0;
+  double deviations = 0.0;  ///< from its prior
+};
+
+class PartFit {
+ public:
+  PartFit(const CalibrationPart& part, const CalibrationOptions& options)
+      : part_(part),
+        options_(options),
+        bars_(options.bars.value_or(BarPrior(paper_pmma()))),
+        campaign_(read_campaign(part.shots)) {
+    result_.lay = part.lay;
+    result_.two_passes = part.two_passes;
+    result_.shots = part.shots.size();
+    result_.swapped = part.swapped;
+    result_.areas = pulse_areas(part, campaign_, bars_);
+  }
+
+  PartResult run() {
+    choose_variant();
+    numbers_ = numbers_of(part_, campaign_.bench, options_, variant_);
+    release_what_differs();
+    describe();
+    return std::move(result_);
+  }
+
+ private:
+  /// A fit with its study, whose weights it was made under.
+  struct Fitted {
+    Study study;
+    Studied studied;
+    Fitted(const Campaign& campaign, const CalibrationOptions& options, const Model& model)
+        : study(campaign, options.band_limit_Hz, options.workers), studied(study.fit(model)) {}
+    [[nodiscard]] double widening() const { return std::max(1.0, studied.misfit.chi2_reduced); }
+  };
+
+  [[nodiscard]] Model model(const PartVariant& variant, const std::vector<ModelNumber>& numbers,
+                            const std::set<std::string>& released, double loosen) const {
+    return part_model(part_, campaign_.bench, options_, variant, numbers, released, loosen);
+  }
+
+  [[nodiscard]] double objective(const PartVariant& variant) const {
+    const auto numbers = numbers_of(part_, campaign_.bench, options_, variant);
+    Campaign few = campaign_;
+    few.shots.resize(std::min(few.shots.size(), kShotsToChoose));
+    return Fitted(few, options_, model(variant, numbers, {}, kLoosely)).studied.fit.objective();
+  }
+
+  void choose_variant() {
+    const bool may_return = part_.lay != BarsLay::together && !part_.two_passes;
+    variant_.far_end_seen = may_return;
+    double best = objective(variant_);
+    const auto attempt = [&](const PartVariant& other, double margin) {
+      const double tried = objective(other);
+      if (tried < best - margin) {
+        best = tried;
+        variant_ = other;
+      }
+    };
+    attempt({true, may_return}, kClearlyBetter);
+    if (may_return) {
+      // Where nothing of a return is in the records, its absence is the simpler story.
+      attempt({variant_.exact_waves, false}, -kClearlyBetter);
+    }
+    result_.exact_waves = variant_.exact_waves;
+    result_.far_end_seen = variant_.far_end_seen;
+  }
+
+  [[nodiscard]] static std::size_t place_of(const Composition& composition,
+                                            const ModelNumber& number) {
+    for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+      const FreeNumber& free = composition.numbers()[i];
+      if (composition.uses()[free.use].id() == number.effect && free.parameter == number.parameter) {
+        return i;
+      }
+    }
+    return composition.numbers().size();
+  }
+
+  /// Prior's weights in the fit's scales.
+  [[nodiscard]] static Eigen::VectorXd weights(const Composition& composition) {
+    Eigen::VectorXd weight =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(composition.numbers().size()));
+    for (Eigen::Index i = 0; i < weight.size(); ++i) {
+      const FreeNumber& free = composition.numbers()[static_cast<std::size_t>(i)];
+      if (free.prior_sd > 0.0) {
+        weight[i] = free.scale * free.scale / (free.prior_sd * free.prior_sd);
+      }
+    }
+    return weight;
+  }
+
+  [[nodiscard]] static Alone alone(const Fitted& fitted, const ModelNumber& number) {
+    const Composition& composition = fitted.studied.composition;
+    const ModelFit& fit = fitted.studied.fit;
+    const auto i = static_cast<Eigen::Index>(place_of(composition, number));
+    const FreeNumber& free = composition.numbers()[static_cast<std::size_t>(i)];
+    Eigen::VectorXd weight = weights(composition);
+    const double own = weight[i];
+    weight[i] = 0.0;
+    Eigen::MatrixXd without = fit.jacobian.transpose() * fit.jacobian;
+    without.diagonal() += weight;
+    const double variance =
+        std::abs(without.ldlt().solve(Eigen::VectorXd::Unit(weight.size(), i))[i]) *
+        fitted.widening();
+    const double mean = free.prior_mean / free.scale;
+    const double at = fit.theta[static_cast<std::size_t>(i)];
+    Alone result;
+    const double shifted = at + variance / fitted.widening() * own * (at - mean);
+    result.value = shifted * free.scale;
+    result.sd = std::sqrt(variance) * free.scale;
+    result.deviations =
+        own > 0.0 ? (shifted - mean) / std::sqrt(variance + 1.0 / own) : 0.0;
+    return result;
+  }
+
+  struct Explanation {
+    const ModelNumber* number = nullptr;
+    double objective = 0.0;
+    Alone measured;
+  };
+
+  /// Fits with one more number released, under the same weights.
+  [[nodiscard]] Explanation explain(Fitted& fitted, const ModelNumber& number) {
+    std::set<std::string> more = released_;
+    more.insert(number.id);
+    const Composition composition(model(variant_, numbers_, more, 0.0), campaign_);
+    std::vector<double> start =
+        carry(fitted.studied.composition, fitted.studied.fit.theta, composition);
+    const std::size_t place = place_of(composition, number);
+    start[place] = alone(fitted, number).value / composition.numbers()[place].scale;
+    const ModelFit fit =
+        fit_model(composition, fitted.study.residuals(), fitted.study.executor(), start);
+    Explanation explanation{&number, fit.objective() + momentum_penalty(composition, fit), {}};
+    const auto at = static_cast<Eigen::Index>(place);
+    explanation.measured.value = fit.theta[place] * composition.numbers()[place].scale;
+    explanation.measured.sd =
+        std::sqrt(fit.covariance(at, at)) * composition.numbers()[place].scale;
+    return explanation;
+  }
+
+  /// What the striker's momentum says against a fit's gain of the first gauge.
+  [[nodiscard]] double momentum_penalty(const Composition& composition, const ModelFit& fit) const {
+    const double left = momentum_left(composition, fit);
+    return left * left;
+  }
+  [[nodiscard]] double momentum_left(const Composition& composition, const ModelFit& fit) const {
+    if (!result_.areas.momentum) {
+      return 0.0;
+    }
+    double gain = 1.0;
+    double sd = result_.areas.momentum->gain.sd;
+    for (const ModelNumber& number : numbers_) {
+      if (number.of == CalibratedNumber::Of::gain &&
+          number.gauge == result_.areas.momentum->gauge) {
+        const std::size_t place = place_of(composition, number);
+        const double scale = composition.numbers()[place].scale;
+        gain += fit.theta[place] * scale;
+        const auto at = static_cast<Eigen::Index>(place);
+        sd = std::hypot(sd, std::sqrt(fit.covariance(at, at)) * scale);
+      }
+    }
+    return (result_.areas.momentum->gain.value - gain) / sd;
+  }
+
+  void release_what_differs() {
+    for (std::size_t round = 0;; ++round) {
+      fitted_ = std::make_unique<Fitted>(campaign_, options_,
+                                         model(variant_, numbers_, released_, 0.0));
+      if (round == 0) {
+        result_.chi2_reduced_as_filed = fitted_->studied.misfit.chi2_reduced;
+      }
+      std::vector<std::pair<double, const ModelNumber*>> suspects;
+      for (const ModelNumber& number : numbers_) {
+        const double z = std::abs(alone(*fitted_, number).deviations);
+        if (number.believed && released_.count(number.id) == 0 && z > kNamed) {
+          suspects.emplace_back(z, &number);
+        }
+      }
+      if (suspects.empty() || round >= numbers_.size()) {
+        return;
+      }
+      release_best_of(suspects);
+    }
+  }
+
+  void release_best_of(std::vector<std::pair<double, const ModelNumber*>>& suspects) {
+    std::sort(suspects.begin(), suspects.end(),
+              [](const auto& a, const auto& b) { return a.first > b.first; });
+    suspects.resize(std::min(suspects.size(), kMostRefits));
+    std::vector<Explanation> explanations;
+    for (const auto& [z, number] : suspects) {
+      explanations.push_back(explain(*fitted_, *number));
+    }
+    std::stable_sort(
+        explanations.begin(), explanations.end(),
+        [](const Explanation& a, const Explanation& b) { return a.objective < b.objective; });
+    const Explanation& best = explanations.front();
+    released_.insert(best.number->id);
+    // Under a model that leaves more than noise, differences count for less.
+    const double residuals = static_cast<double>(fitted_->studied.fit.residual.size());
+    const double near = kTie * std::max(1.0, best.objective / residuals);
+    for (const Explanation& other : explanations) {
+      if (other.number != best.number && other.objective < best.objective + near) {
+        ties_[best.number->id].push_back(other.number->id);
+        ties_[other.number->id].push_back(best.number->id);
+        measured_if_tied_[other.number->id] = other.measured;
+      }
+    }
+  }
+
+  [[nodiscard]] static Measured number_from(const ModelNumber& number, double value, double sd) {
+    if (number.relative) {
+      return {number.filed.value * (1.0 + value), number.filed.value * sd};
+    }
+    return {number.filed.value + value - number.origin, sd};
+  }
+
+  void describe() {
+    const Studied& studied = fitted_->studied;
+    result_.chi2_reduced = studied.misfit.chi2_reduced;
+    result_.areas.momentum_left = momentum_left(studied.composition, studied.fit);
+    for (const ModelNumber& number : numbers_) {
+      result_.numbers.push_back(describe(number));
+    }
+    describe_speed();
+    describe_null_directions();
+  }
+
+  [[nodiscard]] CalibratedNumber describe(const ModelNumber& number) const {
+    CalibratedNumber out;
+    out.of = number.of;
+    out.id = number.id;
+    out.gauge = number.gauge;
+    out.filed = number.filed;
+    const auto& [composition, fit] =
+        std::tie(fitted_->studied.composition, fitted_->studied.fit);
+    const std::size_t place = place_of(composition, number);
+    const auto at = static_cast<Eigen::Index>(place);
+    const double scale = composition.numbers()[place].scale;
+    const double posterior_sd =
+        std::sqrt(fit.covariance(at, at) * fitted_->widening()) * scale;
+    out.combined = number_from(number, fit.theta[place] * scale, posterior_sd);
+    Alone own = alone(*fitted_, number);
+    const auto tied = ties_.find(number.id);
+    if (const auto other = measured_if_tied_.find(number.id); other != measured_if_tied_.end()) {
+      own.value = other->second.value;
+      own.sd = other->second.sd;
+    }
+    out.measured = number_from(number, own.value, own.sd);
+    const bool released = released_.count(number.id) > 0;
+    if (number.believed) {
+      out.deviations = (out.measured.value - out.filed.value) /
+                       std::hypot(out.measured.sd, out.filed.sd);
+    }
+    const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
+    if (!number.believed) {
+      out.standing = Standing::unfiled;
+    } else if (tied != ties_.end()) {
+      out.standing = Standing::tied;
+      out.tied_with = tied->second;
+    } else if (released) {
+      out.standing = Standing::differs;
+      out.combined = out.measured;
+    } else if (own.sd > kNamed * std::max(filed_sd, number.step)) {
+      out.standing = Standing::unseen;
+    }
+    return out;
+  }
+
+  /// Phase speed in the input bar with these moduli and, last, the density by this factor.
+  [[nodiscard]] double speed(const std::vector<double>& values) const {
+    Bar bar = campaign_.bench.input;
+    bar.density_kg_m3.value *= values.back();
+    Material material = bars_.material;
+    for (std::size_t i = 0, m = 0; i < numbers_.size(); ++i) {
+      switch (numbers_[i].of) {
+        case CalibratedNumber::Of::elastic_modulus:
+          bar.youngs_modulus_Pa->value = values[m++];
+          break;
+        case CalibratedNumber::Of::E1:
+          material.E1_Pa.value = values[m++];
+          break;
+        case CalibratedNumber::Of::E2:
+          material.E2_Pa.value = values[m++];
+          break;
+        case CalibratedNumber::Of::eta2:
+          material.eta2_Pa_s.value = values[m++];
+          break;
+        default:
+          break;
+      }
+    }
+    std::vector<Complex> path;
+    constexpr int kSteps = 50;
+    for (int k = 1; k <= kSteps; ++k) {
+      path.emplace_back(0.0, 2.0 * std::numbers::pi * kSpeedAt_Hz * k / kSteps);
+    }
+    const auto modes = bar_modes(variant_.exact_waves ? WaveTheory::exact : WaveTheory::elementary,
+                                 bar, *compliance_of(bar, material), path);
+    return path.back().imag() / modes.back().gamma.imag();
+  }
+
+  void describe_speed() {
+    std::vector<Eigen::Index> places;
+    std::vector<double> values;
+    std::vector<double> per_theta;
+    const auto& composition = fitted_->studied.composition;
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const ModelNumber& number = numbers_[i];
+      if (number.of < CalibratedNumber::Of::elastic_modulus) {
+        continue;
+      }
+      const std::size_t place = place_of(composition, number);
+      const double scale = composition.numbers()[place].scale;
+      places.push_back(static_cast<Eigen::Index>(place));
+      values.push_back(
+          number_from(number, fitted_->studied.fit.theta[place] * scale, 0.0).value);
+      per_theta.push_back(number.relative ? number.filed.value * scale : scale);
+    }
+    values.push_back(1.0);
+    for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+      const FreeNumber& free = composition.numbers()[i];
+      if (composition.uses()[free.use].id() == "bar-density") {
+        places.push_back(static_cast<Eigen::Index>(i));
+        values.back() += fitted_->studied.fit.theta[i] * free.scale;
+        per_theta.push_back(free.scale);
+      }
+    }
+    const auto count = static_cast<Eigen::Index>(places.size());
+    const double at = speed(values);
+    Eigen::VectorXd slope(count);
+    Eigen::MatrixXd covariance(count, count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      std::vector<double> moved = values;
+      const double step = 1e-4 * values[i];
+      moved[i] += step;
+      slope[a] = (speed(moved) - at) / step * per_theta[i];
+      for (Eigen::Index b = 0; b < count; ++b) {
+        covariance(a, b) = fitted_->studied.fit.covariance(places[i],
+                                                           places[static_cast<std::size_t>(b)]);
+      }
+    }
+    result_.wave_speed_at_Hz = kSpeedAt_Hz;
+    result_.wave_speed_m_per_s = {
+        at, std::sqrt(std::max(0.0, slope.dot(covariance * slope) * fitted_->widening()))};
+  }
+
+  void describe_null_directions() {
+    const ModelFit& fit = fitted_->studied.fit;
+    const auto& composition = fitted_->studied.composition;
+    const Eigen::MatrixXd all = fit.jacobian.transpose() * fit.jacobian;
+    const auto count = static_cast<Eigen::Index>(numbers_.size());
+    Eigen::MatrixXd information(count, count);
+    std::vector<std::string> names;
+    std::vector<Eigen::Index> places;
+    std::vector<double> steps;
+    for (const ModelNumber& number : numbers_) {
+      const std::size_t place = place_of(composition, number);
+      places.push_back(static_cast<Eigen::Index>(place));
+      steps.push_back(number.step / composition.numbers()[place].scale);
+      names.push_back(number.id);
+    }
+    for (Eigen::Index a = 0; a < count; ++a) {
+      for (Eigen::Index b = 0; b < count; ++b) {
+        const auto i = static_cast<std::size_t>(a);
+        const auto j = static_cast<std::size_t>(b);
+        information(a, b) = all(places[i], places[j]) * steps[i] * steps[j];
+      }
+    }
+    result_.cannot_tell = null_directions(information, names);
+  }
+
+  const CalibrationPart& part_;
+  const CalibrationOptions& options_;
+  BarPrior bars_;
+  Campaign campaign_;
+  PartVariant variant_;
+  std::vector<ModelNumber> numbers_;
+  std::set<std::string> released_;
+  std::map<std::string, std::vector<std::string>> ties_;
+  std::map<std::string, Alone> measured_if_tied_;
+  std::unique_ptr<Fitted> fitted_;
+  PartResult result_;
+};
+
+}  // namespace
+
+PartResult fit_part(const CalibrationPart& part, const CalibrationOptions& options) {
+  return PartFit(part, options).run();
+}
+
+}  // namespace kolsky

@@ -1,0 +1,183 @@
+#include "processing/calibration/part_model.hpp"
+
+#include <algorithm>
+
+#include "processing/identification/known_unknowns.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kGainStep = 0.01;
+constexpr double kPlaceStep_m = 1e-3;
+constexpr double kDelayStep_s = 2e-7;
+constexpr double kModulusStep = 0.01;
+/// What is filed as exact is held to this share of a step that matters.
+constexpr double kExactly = 1e-4;
+/// Stiffness of a specimen that is not there, Pa.
+constexpr double kRigid_Pa = 1e13;
+
+bool trusted(const CalibrationOptions& options, const std::string& gauge) {
+  return std::find(options.trusted.begin(), options.trusted.end(), gauge) != options.trusted.end();
+}
+
+ModelNumber of_gauge(CalibratedNumber::Of of, const std::string& effect, const Gauge& gauge,
+                     const Measured& filed, double step) {
+  ModelNumber number;
+  number.of = of;
+  number.id = number.effect = effect + ":" + gauge.name;
+  number.gauge = gauge.name;
+  number.filed = filed;
+  number.step = step;
+  number.least_sd = kExactly * step;
+  return number;
+}
+
+ModelNumber of_material(CalibratedNumber::Of of, std::size_t parameter, const std::string& id,
+                        const Measured& filed, bool believed) {
+  ModelNumber number;
+  number.of = of;
+  number.id = id;
+  number.effect = "three-element-bar";
+  number.parameter = parameter;
+  number.filed = filed;
+  number.origin = filed.value;
+  number.believed = believed;
+  number.step = kModulusStep * filed.value;
+  number.least_sd = kExactly * number.step;
+  return number;
+}
+
+bool elastic(const Bench& bench) {
+  return bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa);
+}
+
+void hold(EffectUse& use) {
+  for (ModelValue& value : use.values) {
+    value.free = false;
+  }
+}
+
+EffectUse specimen_use(const Bench& bench, const BarPrior& bars) {
+  EffectUse use = use_named("three-element-specimen");
+  hold(use);
+  const bool slice = specimen_is_slice_of_bar(bench);
+  const Material& material = bars.material;
+  const double E = bench.input.youngs_modulus_Pa ? bench.input.youngs_modulus_Pa->value : 0.0;
+  use.values[0].value = !slice ? kRigid_Pa : E > 0.0 ? E : material.E1_Pa.value;
+  use.values[1].value = !slice || E > 0.0 ? kRigid_Pa : material.E2_Pa.value;
+  use.values[2].value = !slice || E > 0.0 ? 1.0 : material.eta2_Pa_s.value;
+  return use;
+}
+
+}  // namespace
+
+std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& bench,
+                                    const CalibrationOptions& options,
+                                    const PartVariant& variant) {
+  using Of = CalibratedNumber::Of;
+  std::vector<ModelNumber> list;
+  for (const Gauge& gauge : bench.gauges) {
+    if (part.two_passes || trusted(options, gauge.name)) {
+      continue;
+    }
+    list.push_back(of_gauge(Of::gain, "gauge-factor", gauge, {1.0, gain_sd(gauge)}, kGainStep));
+    list.push_back(of_gauge(Of::position, "gauge-position", gauge, gauge.position_m, kPlaceStep_m));
+    list.push_back(of_gauge(Of::delay, "channel-delay", gauge, {0.0, 0.0}, kDelayStep_s));
+  }
+  if (bench.kind == BenchKind::bar && variant.far_end_seen) {
+    ModelNumber number;
+    number.of = Of::bar_length;
+    number.id = number.effect = "bar-length";
+    number.filed = bench.input.length_m;
+    number.step = kPlaceStep_m;
+    number.least_sd = kExactly * kPlaceStep_m;
+    list.push_back(number);
+  }
+  if (elastic(bench)) {
+    ModelNumber number;
+    number.of = Of::elastic_modulus;
+    number.id = number.effect = "bar-modulus";
+    number.filed = *bench.input.youngs_modulus_Pa;
+    number.relative = true;
+    number.step = kModulusStep;
+    number.least_sd = kExactly * kModulusStep;
+    list.push_back(number);
+  } else {
+    const bool believed = options.bars.has_value() || bench.kind == BenchKind::shpb;
+    const Material material = options.bars ? options.bars->material : paper_pmma();
+    list.push_back(of_material(Of::E1, 0, "E1_Pa", material.E1_Pa, believed));
+    list.push_back(of_material(Of::E2, 1, "E2_Pa", material.E2_Pa, believed));
+    list.push_back(of_material(Of::eta2, 2, "eta2_Pa_s", material.eta2_Pa_s, believed));
+  }
+  return list;
+}
+
+Model part_model(const CalibrationPart& part, const Bench& bench,
+                 const CalibrationOptions& options, const PartVariant& variant,
+                 const std::vector<ModelNumber>& numbers, const std::set<std::string>& released,
+                 double loosen) {
+  const BarPrior bars = options.bars.value_or(BarPrior(paper_pmma()));
+  Model model;
+  model.kind = bench.kind;
+  if (!elastic(bench)) {
+    model.effects.push_back(use_named("three-element-bar"));
+    hold(model.effects.back());
+  }
+  model.effects.push_back(use_named("elementary-waves"));
+  if (variant.exact_waves) {
+    EffectUse use = use_named("geometric-dispersion");
+    use.values[0].value = 1.0;
+    hold(use);
+    model.effects.push_back(use);
+  }
+  if (variant.far_end_seen) {
+    EffectUse use = use_named("end-reflection");
+    hold(use);
+    model.effects.push_back(use);
+  }
+  if (bench.kind == BenchKind::shpb) {
+    model.effects.push_back(specimen_use(bench, bars));
+    if (specimen_is_slice_of_bar(bench)) {
+      EffectUse use = use_named("specimen-inertia");
+      use.values[0].value = 1.0;
+      hold(use);
+      model.effects.push_back(use);
+    }
+  }
+  if (part.two_passes) {
+    // Both passes are one gauge's: only the way between them is open.
+    EffectUse use = use_named("gauge-position:" + bench.gauges[1].name);
+    use.values[0].prior_sd = std::max(bench.gauges[1].position_m.sd, kExactly * kPlaceStep_m);
+    model.effects.push_back(use);
+    for (const Gauge& gauge : bench.gauges) {
+      EffectUse factor = use_named("gauge-factor:" + gauge.name);
+      hold(factor);
+      model.effects.push_back(factor);
+    }
+  }
+  for (const std::string& gauge : options.trusted) {
+    for (const char* const effect : {"gauge-factor:", "gauge-position:"}) {
+      EffectUse use = use_named(effect + gauge);
+      hold(use);
+      model.effects.push_back(use);
+    }
+  }
+  for (const ModelNumber& number : numbers) {
+    EffectUse* use = model.find(number.effect);
+    if (use == nullptr) {
+      model.effects.push_back(use_named(number.effect));
+      use = &model.effects.back();
+    }
+    ModelValue& value = use->values[number.parameter];
+    value.free = true;
+    value.value = value.prior_mean = number.origin;
+    const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
+    const bool held = number.believed && released.count(number.id) == 0;
+    value.prior_sd =
+        held ? std::max({filed_sd, number.least_sd, loosen * number.step}) : 0.0;
+  }
+  return model;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "processing/calibration/calibration.hpp"
+#include "processing/criticism/composition.hpp"
+#include "processing/models/model.hpp"
+
+namespace kolsky {
+
+/// A number under calibration with its place in a model.
+struct ModelNumber {
+  CalibratedNumber::Of of = CalibratedNumber::Of::gain;
+  std::string id;
+  std::string gauge;
+  std::string effect;  ///< id of the effect's use
+  std::size_t parameter = 0;
+  Measured filed;        ///< as CalibratedNumber
+  double origin = 0.0;   ///< `filed` + the effect's value - `origin` is the number
+  double per_value = 1.0;
+  bool relative = false;  ///< the effect's value is a relative change of the number
+  bool believed = true;   ///< something is filed of it
+  double step = 0.0;      ///< of the effect's value, that matters
+  double least_sd = 0.0;  ///< stands for exact
+};
+
+/// Waves and far end of a part's model.
+struct PartVariant {
+  bool exact_waves = false;
+  bool far_end_seen = false;
+};
+
+/// Numbers that a part of the shots can be held against.
+[[nodiscard]] std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& bench,
+                                                  const CalibrationOptions& options,
+                                                  const PartVariant& variant);
+
+/// A model in which each number has what is filed of it for prior, but for the released.
+/// @param loosen  the least deviation of any prior, in steps that matter; 0: as filed
+[[nodiscard]] Model part_model(const CalibrationPart& part, const Bench& bench,
+                               const CalibrationOptions& options, const PartVariant& variant,
+                               const std::vector<ModelNumber>& numbers,
+                               const std::set<std::string>& released, double loosen);
+
+}  // namespace kolsky

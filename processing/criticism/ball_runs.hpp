@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "processing/base/bench.hpp"
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+
+/// What an impact gives, as the comparison needs it.
+struct BallRun {
+  std::vector<double> force_N;  ///< from first touch, kRunStep_s apart, to the end of the contact
+  double rebound_m_per_s = 0.0;
+};
+
+constexpr double kRunStep_s = 1e-6;
+
+/// Meshes of the ball [elements, about]: derivatives cost the coarse one, the model stands on the
+/// fine one, and the middle one shows what the fine one may still be off by.
+constexpr std::size_t kCoarseBall = 512;
+constexpr std::size_t kMiddleBall = 2048;
+constexpr std::size_t kFineBall = 8192;
+
+/// Impacts on one bench, each calculated once: a fit comes back to the same numbers, and effects of
+/// the sensors leave the ball alone. May be asked by several workers at once.
+class BallRuns {
+ public:
+  /// @param bench  outlives this
+  explicit BallRuns(const Bench& bench) : bench_(bench) {}
+
+  /// @param cauchy  the law's finite-strain form; the scene's share of it is not looked at
+  /// @throws InputError what the solver refuses
+  [[nodiscard]] std::shared_ptr<const BallRun> run(const BallScene& ball, double speed_m_per_s,
+                                                   std::size_t elements, bool cauchy = false);
+
+ private:
+  const Bench& bench_;
+  std::mutex lock_;
+  std::map<std::vector<double>, std::shared_ptr<const BallRun>> known_;
+};
+
+/// a + share b, ended where the longer one ends.
+[[nodiscard]] BallRun sum_of(const BallRun& a, double share, const BallRun& b);
+
+}  // namespace kolsky

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "processing/criticism/campaign.hpp"
+
+namespace kolsky {
+
+/// Shots at nearly one speed: they repeat each other, and share the solver's runs.
+struct SpeedGroup {
+  double speed_m_per_s = 0.0;  ///< mean
+  double low_m_per_s = 0.0;    ///< speeds that are calculated: between them forces are
+  double high_m_per_s = 0.0;   ///< interpolated
+  std::vector<std::size_t> shots;
+};
+
+/// What of an impact's records is judged: gauge by gauge from before the arrival on, low-passed and
+/// thinned out alike in measurement and model.
+struct ImpactWindow {
+  double cutoff_Hz = 0.0;       ///< Gaussian low-pass, half the power here
+  double period_s = 0.0;        ///< between judged samples
+  std::size_t samples = 0;      ///< of a gauge
+  double lead_s = 0.0;          ///< from the first one to the arrival at the reference gauge
+  bool to_far_end_only = true;  ///< ends before the far end's reflection is back
+};
+
+/// The judged records of a campaign of impacts and their noise.
+struct ImpactRecords {
+  ImpactWindow window;
+  std::vector<SpeedGroup> groups;           ///< by rising speed
+  std::vector<std::size_t> group_of;        ///< by shot
+  std::vector<std::vector<double>> judged;  ///< by shot: gauge after gauge [strain]
+  std::vector<double> first_s;              ///< by shot: time of the first judged sample
+  std::vector<std::vector<double>> noise;   ///< by gauge: autocovariance, judged samples apart
+  std::vector<double> peak;                 ///< by shot: largest judged strain
+};
+
+/// @param whole  judge beyond the far end's reflection, up to where the struck end sends it back
+/// @param cutoff_Hz  0: 10 kHz; above it forces carry the ripple of a contact that grows node by
+/// node, whatever the mesh
+/// @throws InputError where too little of a pulse is left to judge
+[[nodiscard]] ImpactRecords read_impact_records(const Campaign& campaign, bool whole,
+                                                double cutoff_Hz);
+
+}  // namespace kolsky

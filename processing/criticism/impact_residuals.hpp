@@ -1,0 +1,135 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "processing/criticism/ball_runs.hpp"
+#include "processing/criticism/impact_records.hpp"
+#include "processing/criticism/shot_residuals.hpp"
+#include "processing/base/workers.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// Whitened residuals of impacts: the records less what the ball's solver and the bar foretell, at
+/// every shot's own speed. Nothing of the source is free but its arrival.
+///
+/// A shot's residual is r_n = y_n - m(theta, V_n, t_n), t_n where it fits best. Its covariance:
+///     S = N + sV^2 g g^T + arrival and offsets, free      for each shot by itself,
+///     D                                                   shared by all shots of a speed,
+/// N the gauges' noise before the pulse (scaled by what repeats scatter), g = V dm/dV, sV the
+/// deviation of a speed. D is what the calculation itself may be off by, in the shape of the force:
+/// of its mesh, contact and integration, twice what the middle mesh differs from the fine one and a
+/// floor. The white residuals of K shots of one speed, S^-1/2 (r_n - mean) + (S + K D)^-1/2 mean,
+/// have as their squares' sum the whole quadratic form.
+///
+/// Three meshes: m = fine(theta_0) + coarse(theta) - coarse(theta_0), theta_0 as prepared.
+class ImpactResiduals : public ShotResiduals {
+ public:
+  /// @param whole  judge beyond the far end's reflection
+  ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz, const Workers& executor);
+
+  /// Takes from this model the fine forces, the arrivals and the whitener.
+  /// @throws InputError what the solver refuses there
+  void prepare(const Composition& composition, const std::vector<double>& theta);
+  /// Corrects noise and speeds' deviation by how shots of one speed scatter about their mean.
+  void calibrate(const Composition& composition, const std::vector<double>& theta);
+
+  [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
+                                         const std::vector<double>& theta,
+                                         std::size_t worker) override;
+  [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
+                                              const std::vector<double>& theta, std::size_t shot,
+                                              std::size_t worker) override;
+  [[nodiscard]] std::size_t per_shot() const override;
+  [[nodiscard]] bool shots_hang_together() const override { return true; }
+
+  /// What is foretold of every shot at its judged samples, aligned, and its residual.
+  struct Foretold {
+    std::vector<Eigen::VectorXd> reading;   ///< by shot
+    std::vector<Eigen::VectorXd> residual;  ///< by shot, not whitened
+    std::vector<double> arrival_s;          ///< of the first touch, from the record's start
+    std::vector<double> rebound_m_per_s;    ///< by shot
+    bool sound = true;                      ///< false where the solver refused
+  };
+  [[nodiscard]] Foretold foretell(const Composition& composition, const std::vector<double>& theta,
+                                  std::size_t worker);
+
+  [[nodiscard]] const ImpactRecords& records() const { return records_; }
+  [[nodiscard]] const Campaign& campaign() const { return campaign_; }
+  /// Covariance of one shot by itself, and what all shots of a group share of the solver's error.
+  [[nodiscard]] const Eigen::MatrixXd& own_covariance(std::size_t group) const {
+    return whiteners_[group].own;
+  }
+  [[nodiscard]] const Eigen::MatrixXd& shared_covariance(std::size_t group) const {
+    return whiteners_[group].shared;
+  }
+  /// Residuals of a shot that its own arrival and offsets take up.
+  [[nodiscard]] double eliminated() const { return 1.0 + static_cast<double>(campaign_.gauges()); }
+  /// Energy of all records over that of their noise.
+  [[nodiscard]] double signal_energy() const { return signal_energy_; }
+  [[nodiscard]] double speed_sd() const { return speed_sd_; }  ///< relative
+  [[nodiscard]] double noise_scale() const { return noise_scale_; }
+  /// Relative size of what the calculation may be off by.
+  [[nodiscard]] double solver_sd() const { return solver_sd_; }
+  /// Rms of the middle mesh's difference from the fine one over the rms of the record.
+  [[nodiscard]] double mesh_difference() const { return mesh_difference_; }
+  /// Times of a gauge's judged samples from the arrival at the reference gauge.
+  [[nodiscard]] std::vector<double> times_s() const;
+  /// Strain at a gauge times this is the force there, at low frequencies.
+  [[nodiscard]] double force_per_strain_N() const;
+
+ private:
+  struct Whitener {
+    Eigen::MatrixXd own;
+    Eigen::MatrixXd shared;
+    Eigen::MatrixXd own_root;   ///< S^-1/2
+    Eigen::MatrixXd mean_root;  ///< (S + K D)^-1/2
+    Eigen::MatrixXd noise_inverse;
+  };
+  /// What gauges read of a group's two calculated impacts, on a fine grid from `kBefore_s` before
+  /// the first touch on.
+  struct Readings {
+    std::vector<std::vector<double>> low, high;  ///< by gauge
+    double rebound_low = 0.0;
+    double rebound_high = 0.0;
+  };
+  struct Anchor {
+    BallRun fine_less_coarse;  ///< at the prepared numbers
+    BallRun law;               ///< Cauchy's less Kirchhoff's
+    BallRun mesh;              ///< fine less middle
+  };
+
+  [[nodiscard]] BallRun force(const BallScene& ball, std::size_t group, bool high);
+  [[nodiscard]] std::vector<std::vector<Complex>> transfers(const Composition& composition,
+                                                            const std::vector<double>& theta,
+                                                            std::size_t shot,
+                                                            BallScene& ball) const;
+  [[nodiscard]] std::vector<std::vector<double>> read(
+      const BallRun& run, const std::vector<std::vector<Complex>>& transfer,
+      std::size_t worker) const;
+  [[nodiscard]] std::vector<std::vector<double>> recorded(std::vector<std::vector<double>> strain,
+                                                          double bridge_b) const;
+  void set_whiteners(const Foretold& foretold, const Composition& composition,
+                     const std::vector<double>& theta);
+  [[nodiscard]] Eigen::MatrixXd noise_matrix() const;
+
+  const Campaign& campaign_;
+  Workers executor_;
+  ImpactRecords records_;
+  BallRuns runs_;
+  std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
+  std::vector<Whitener> whiteners_;
+  std::vector<Complex> path_;
+  std::vector<double> touch_s_;  ///< by shot: where the search for the arrival begins
+  std::vector<std::unique_ptr<DampedTransform>> transforms_;  ///< by worker
+  double noise_scale_ = 1.0;
+  double speed_sd_ = 0.0;
+  double solver_sd_ = 0.0;
+  double mesh_difference_ = 0.0;
+  double signal_energy_ = 0.0;
+};
+
+}  // namespace kolsky

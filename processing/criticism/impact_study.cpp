@@ -1,0 +1,290 @@
+#include "processing/criticism/impact_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "processing/criticism/statistics.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Rows of a group's shots, one below the other.
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& all, const SpeedGroup& group, Eigen::Index size) {
+  Eigen::MatrixXd rows(size * static_cast<Eigen::Index>(group.shots.size()), all.cols());
+  Eigen::Index at = 0;
+  for (const std::size_t n : group.shots) {
+    rows.middleRows(at, size) = all.middleRows(static_cast<Eigen::Index>(n) * size, size);
+    at += size;
+  }
+  return rows;
+}
+
+double rms(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+/// Cosines over part of a record: orthonormal, one column per half cycle.
+Eigen::MatrixXd cosines(std::size_t first, std::size_t count, std::size_t from, std::size_t end,
+                        Eigen::Index size) {
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(end - from));
+  for (std::size_t c = from; c < end; ++c) {
+    for (std::size_t k = 0; k < count; ++k) {
+      basis(static_cast<Eigen::Index>(first + k), static_cast<Eigen::Index>(c - from)) =
+          std::sqrt((c == 0 ? 1.0 : 2.0) / static_cast<double>(count)) *
+          std::cos(std::numbers::pi * static_cast<double>(c) * (static_cast<double>(k) + 0.5) /
+                   static_cast<double>(count));
+    }
+  }
+  return basis;
+}
+
+struct Window {
+  std::string name;
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// By the course of what is foretold at a gauge.
+std::vector<Window> windows_of(const Eigen::VectorXd& reading) {
+  Eigen::Index top = 0;
+  const double peak = reading.maxCoeff(&top);
+  Eigen::Index begin = 0;
+  while (begin < top && reading[begin] < 0.01 * peak) {
+    ++begin;
+  }
+  Eigen::Index end = top;
+  while (end < reading.size() && reading[end] > 0.01 * peak) {
+    ++end;
+  }
+  std::vector<Window> windows;
+  const auto add = [&](const char* name, Eigen::Index from, Eigen::Index to) {
+    if (to - from >= 2) {
+      windows.push_back(
+          {name, static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)});
+    }
+  };
+  add("before", 0, begin);
+  add("loading", begin, top);
+  add("unloading", top, end);
+  add("after", end, reading.size());
+  return windows;
+}
+
+/// False discovery held at 0.5 % (Benjamini and Hochberg).
+void mark_significant(std::vector<ImpactTile>& tiles) {
+  std::vector<ImpactTile*> ranked;
+  for (ImpactTile& tile : tiles) {
+    ranked.push_back(&tile);
+  }
+  std::sort(ranked.begin(), ranked.end(),
+            [](const ImpactTile* a, const ImpactTile* b) { return a->log_p < b->log_p; });
+  constexpr double kFalse = 0.005;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    if (ranked[i]->log_p <=
+        std::log(kFalse * static_cast<double>(i + 1) / static_cast<double>(ranked.size()))) {
+      last = i + 1;
+    }
+  }
+  for (std::size_t i = 0; i < last; ++i) {
+    ranked[i]->significant = true;
+  }
+}
+
+}  // namespace
+
+Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFit fit) const {
+  const double used =
+      static_cast<double>(fit.residual.size()) - fit.degrees_of_freedom(composition);
+  const Misfit misfit = misfit_of(fit.residual, used);
+  Model after = fitted(model, composition, fit);
+  return {std::move(after), std::move(composition), std::move(fit), misfit};
+}
+
+Studied ImpactStudy::fit(const Model& model) {
+  Composition composition(model, campaign_);
+  residuals_.prepare(composition, composition.start());
+  ModelFit fit = fit_model(composition, residuals_, executor_);
+  residuals_.calibrate(composition, fit.theta);
+  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  return finish(model, std::move(composition), std::move(fit));
+}
+
+Studied ImpactStudy::refit(const Model& model, const Workers& executor) {
+  Composition composition(model, campaign_);
+  ModelFit fit = fit_model(composition, residuals_, executor);
+  return finish(model, std::move(composition), std::move(fit));
+}
+
+Studied ImpactStudy::as_it_is(const Model& model) {
+  Composition composition(model, campaign_);
+  ModelFit fit;
+  fit.theta = composition.start();
+  residuals_.prepare(composition, fit.theta);
+  residuals_.calibrate(composition, fit.theta);
+  fit.residual = residuals_.evaluate(composition, fit.theta, executor_.first);
+  fit.chi2 = fit.residual.squaredNorm();
+  fit.converged = true;
+  const Misfit misfit = misfit_of(fit.residual, 0.0);
+  return {model, std::move(composition), std::move(fit), misfit};
+}
+
+std::pair<double, double> ImpactStudy::repeated(const Eigen::VectorXd& white) const {
+  const auto size = static_cast<Eigen::Index>(residuals_.per_shot());
+  double chi2 = 0.0;
+  double freedom = 0.0;
+  for (const SpeedGroup& group : residuals_.records().groups) {
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    for (const std::size_t n : group.shots) {
+      mean += white.segment(static_cast<Eigen::Index>(n) * size, size);
+    }
+    chi2 += mean.squaredNorm() / static_cast<double>(group.shots.size());
+    freedom += static_cast<double>(size) - residuals_.eliminated();
+  }
+  return {chi2, freedom};
+}
+
+Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
+  Misfit misfit;
+  const auto shots = static_cast<double>(campaign_.shots.size());
+  const double all = shots * (static_cast<double>(residuals_.per_shot()) - residuals_.eliminated());
+  misfit.degrees_of_freedom = std::max(1.0, all - used);
+  misfit.chi2_reduced = white.squaredNorm() / misfit.degrees_of_freedom;
+  const auto [chi2, freedom] = repeated(white);
+  misfit.noise_scale = all > freedom ? (white.squaredNorm() - chi2) / (all - freedom) : 1.0;
+  misfit.repeatable_share = std::max(0.0, chi2 - freedom) / residuals_.signal_energy();
+  misfit.noise_floor_share = all / residuals_.signal_energy();
+  misfit.repeatable_log_p = log_chi2_tail(chi2 / std::max(1.0, misfit.noise_scale), freedom);
+  return misfit;
+}
+
+ImpactComparison ImpactStudy::compare(const Studied& studied) {
+  ImpactComparison out;
+  out.misfit = studied.misfit;
+  const auto foretold =
+      residuals_.foretell(studied.composition, studied.fit.theta, executor_.first);
+  const ImpactRecords& records = residuals_.records();
+  const std::size_t samples = records.window.samples;
+  const auto size = static_cast<Eigen::Index>(residuals_.per_shot());
+  const double force_per_strain = residuals_.force_per_strain_N();
+  double excess = 0.0;
+  for (std::size_t g = 0; g < records.groups.size(); ++g) {
+    const SpeedGroup& group = records.groups[g];
+    const auto count = static_cast<double>(group.shots.size());
+    SpeedSummary summary;
+    summary.speed_m_per_s = group.speed_m_per_s;
+    summary.shots = group.shots.size();
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    Eigen::VectorXd reading = Eigen::VectorXd::Zero(size);
+    double rebounds = 0.0;
+    for (const std::size_t n : group.shots) {
+      mean += foretold.residual[n] / count;
+      reading += foretold.reading[n] / count;
+      const ShotFacts& facts = campaign_.shots[n].facts;
+      summary.restitution_foretold +=
+          foretold.rebound_m_per_s[n] / *facts.incident_speed_m_per_s / count;
+      if (facts.rebound_speed_m_per_s) {
+        summary.restitution_measured +=
+            std::abs(*facts.rebound_speed_m_per_s) / *facts.incident_speed_m_per_s;
+        rebounds += 1.0;
+      }
+    }
+    summary.restitution_measured /= std::max(1.0, rebounds);
+    // What every shot may offset by itself is no misfit.
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      auto own =
+          mean.segment(static_cast<Eigen::Index>(j * samples), static_cast<Eigen::Index>(samples));
+      own.array() -= own.mean();
+    }
+    const double peak = reading.cwiseAbs().maxCoeff();
+    summary.rms_percent = 100.0 * rms(mean) / peak;
+    summary.noise_percent = 100.0 * std::sqrt(records.noise[0][0] / count) / peak;
+    for (std::size_t k = 0; k < samples; ++k) {
+      const auto i = static_cast<Eigen::Index>(campaign_.reference * samples + k);
+      summary.foretold_N.push_back(reading[i] * force_per_strain);
+      summary.measured_N.push_back((reading[i] + mean[i]) * force_per_strain);
+    }
+    summary.peak_foretold_N =
+        *std::max_element(summary.foretold_N.begin(), summary.foretold_N.end());
+    summary.peak_measured_N =
+        *std::max_element(summary.measured_N.begin(), summary.measured_N.end());
+    Eigen::VectorXd white = Eigen::VectorXd::Zero(size);
+    for (const std::size_t n : group.shots) {
+      white += studied.fit.residual.segment(static_cast<Eigen::Index>(n) * size, size);
+    }
+    summary.chi2_reduced =
+        white.squaredNorm() / count / (static_cast<double>(size) - residuals_.eliminated());
+    out.speeds.push_back(std::move(summary));
+
+    const Eigen::MatrixXd covariance =
+        residuals_.own_covariance(g) + residuals_.shared_covariance(g);
+    for (const std::size_t n : group.shots) {
+      for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+        const auto first = static_cast<Eigen::Index>(j * samples);
+        const Eigen::VectorXd own =
+            foretold.reading[n].segment(first, static_cast<Eigen::Index>(samples));
+        for (const Window& window : windows_of(own)) {
+          const std::size_t half = std::max<std::size_t>(1, window.count / 3);
+          for (const bool slow : {true, false}) {
+            const std::size_t from = slow ? 0 : half;
+            const std::size_t end = slow ? half : window.count;
+            if (from == end) {
+              continue;
+            }
+            const Eigen::MatrixXd basis = cosines(static_cast<std::size_t>(first) + window.first,
+                                                  window.count, from, end, size);
+            const Eigen::VectorXd part = basis.transpose() * foretold.residual[n];
+            const Eigen::MatrixXd spread = basis.transpose() * covariance * basis;
+            ImpactTile tile;
+            tile.gauge = j;
+            tile.shot = n;
+            tile.window = window.name;
+            const double cycle_s =
+                2.0 * static_cast<double>(window.count) * records.window.period_s;
+            tile.low_Hz = static_cast<double>(from) / cycle_s;
+            tile.high_Hz = static_cast<double>(end) / cycle_s;
+            tile.chi2 = part.dot(spread.ldlt().solve(part));
+            tile.freedom = static_cast<double>(end - from);
+            tile.sigma = std::sqrt(tile.chi2 / tile.freedom);
+            tile.percent_of_peak =
+                100.0 * part.norm() / std::sqrt(static_cast<double>(window.count)) / peak;
+            tile.log_p = log_chi2_tail(tile.chi2, tile.freedom);
+            excess += std::max(0.0, tile.chi2 - tile.freedom);
+            out.tiles.push_back(std::move(tile));
+          }
+        }
+      }
+    }
+  }
+  for (ImpactTile& tile : out.tiles) {
+    tile.share = excess > 0.0 ? std::max(0.0, tile.chi2 - tile.freedom) / excess : 0.0;
+  }
+  mark_significant(out.tiles);
+  std::sort(out.tiles.begin(), out.tiles.end(),
+            [](const ImpactTile& a, const ImpactTile& b) { return a.share > b.share; });
+  return out;
+}
+
+std::vector<double> held_out_speeds(const Studied& studied, const ImpactRecords& records,
+                                    std::size_t per_shot) {
+  const ModelFit& fit = studied.fit;
+  const auto size = static_cast<Eigen::Index>(per_shot);
+  std::vector<double> squares;
+  for (const SpeedGroup& group : records.groups) {
+    const Eigen::VectorXd own = rows_of(fit.residual, group, size);
+    if (fit.theta.empty() || records.groups.size() < 2) {
+      squares.push_back(own.squaredNorm());
+      continue;
+    }
+    const Eigen::MatrixXd columns = rows_of(fit.jacobian, group, size);
+    const Eigen::MatrixXd others = fit.information - columns.transpose() * columns;
+    const Eigen::VectorXd move =
+        others.completeOrthogonalDecomposition().solve(columns.transpose() * own);
+    squares.push_back((own + columns * move).squaredNorm());
+  }
+  return squares;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/criticism/impact_residuals.hpp"
+#include "processing/criticism/study.hpp"
+
+namespace kolsky {
+
+/// What a model of an impact leaves unexplained in a stretch of a gauge's record of one shot.
+struct ImpactTile {
+  std::size_t gauge = 0;
+  std::size_t shot = 0;
+  std::string window;   ///< "before", "loading", "unloading", "after"
+  double low_Hz = 0.0;  ///< of the band
+  double high_Hz = 0.0;
+  double chi2 = 0.0;  ///< by noise, speed's deviation and the solver's error
+  double freedom = 0.0;
+  double sigma = 0.0;            ///< rms in units of those: 1 under the true model
+  double percent_of_peak = 0.0;  ///< rms of the deviation
+  double share = 0.0;            ///< of the excess over all tiles
+  double log_p = 0.0;
+  bool significant = false;  ///< false discovery held at 0.5 %
+};
+
+/// A group of shots of one speed, as people look at it.
+struct SpeedSummary {
+  double speed_m_per_s = 0.0;
+  std::size_t shots = 0;
+  double rms_percent = 0.0;      ///< of the mean residual, of the record's peak
+  double noise_percent = 0.0;    ///< what noise and speeds alone leave there
+  double peak_measured_N = 0.0;  ///< of the low-passed mean
+  double peak_foretold_N = 0.0;
+  double restitution_foretold = 0.0;
+  double restitution_measured = 0.0;  ///< mean; 0: no rebound speed in the captures
+  double chi2_reduced = 0.0;          ///< of the mean, the solver's error within its bounds
+  std::vector<double> measured_N;     ///< mean force at the first gauge, at times_s()
+  std::vector<double> foretold_N;
+};
+
+struct ImpactComparison {
+  Misfit misfit;
+  std::vector<ImpactTile> tiles;
+  std::vector<SpeedSummary> speeds;
+};
+
+/// A campaign of impacts under study.
+class ImpactStudy {
+ public:
+  /// @param whole  judge beyond the far end's reflection, as a model with end-reflection asks for
+  ImpactStudy(const Campaign& campaign, bool whole, double cutoff_Hz, Workers executor)
+      : campaign_(campaign),
+        executor_(std::move(executor)),
+        residuals_(campaign, whole, cutoff_Hz, executor_) {}
+
+  [[nodiscard]] Studied fit(const Model& model);
+  /// With the noise and the fine forces as they are by now.
+  [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
+  [[nodiscard]] Studied as_it_is(const Model& model);
+  [[nodiscard]] ImpactComparison compare(const Studied& studied);
+
+  /// Misfit of white residuals. @param used  degrees of freedom that fitted numbers took
+  [[nodiscard]] Misfit misfit_of(const Eigen::VectorXd& white, double used) const;
+  /// chi2 of the groups' means and its degrees of freedom: what repeats.
+  [[nodiscard]] std::pair<double, double> repeated(const Eigen::VectorXd& white) const;
+
+  [[nodiscard]] ImpactResiduals& residuals() { return residuals_; }
+  [[nodiscard]] const Campaign& campaign() const { return campaign_; }
+  [[nodiscard]] const Workers& executor() const { return executor_; }
+
+ private:
+  [[nodiscard]] Studied finish(const Model& model, Composition composition, ModelFit fit) const;
+
+  const Campaign& campaign_;
+  Workers executor_;
+  ImpactResiduals residuals_;
+};
+
+/// Sum of squared white residuals of every group of shots with the shared numbers fitted to the
+/// other groups, to first order around the common fit: speeds the fit never saw.
+[[nodiscard]] std::vector<double> held_out_speeds(const Studied& studied,
+                                                  const ImpactRecords& records,
+                                                  std::size_t per_shot);
+
+}  // namespace kolsky

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "processing/criticism/study.hpp"
+
+namespace kolsky {
+
+/// What smooth distortions of every gauge still find in a model's residuals.
+struct Unexplained {
+  double log_p = 0.0;   ///< ln of the chance that noise alone leaves as much
+  double excess = 0.0;  ///< chi2 beyond what noise leaves
+};
+
+/// Distortions by frequency, amplitude and shot (distortion.hpp), clear of the model's own numbers.
+/// With three shots or more the noise in their directions is taken from what differs between the
+/// shots there, which slow noise raises above its spectrum; else from the fit as a whole.
+[[nodiscard]] Unexplained unexplained(Study& study, const Studied& studied);
+
+}  // namespace kolsky

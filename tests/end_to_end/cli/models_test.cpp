@@ -1,0 +1,138 @@
+// From a model's first form to the noise, as a user goes there.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/end_to_end/cli/kolsky.hpp"
+
+namespace kolsky {
+namespace {
+
+using nlohmann::json;
+using scene::json_of;
+using scene::kolsky;
+using scene::refused;
+
+std::string content(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Shots of a simulated bar of which gauge g3 is recorded 3.6 us late, and a model of it.
+class SimulatedBar : public ::testing::Test {
+ protected:
+  SimulatedBar() {
+    EXPECT_EQ(
+        kolsky({"tour", "--seed", "3", "--quick", "--shots-only", "--folder", folder_ / "campaign"})
+            .code,
+        0);
+    std::filesystem::create_directory(folder_ / "shots");
+    for (const char* shot : {"shot01", "shot02", "shot03", "shot04"}) {
+      EXPECT_EQ(
+          kolsky({"import", "csv", file(std::string("campaign/") + shot + ".csv"), "--bench",
+                  file("campaign/bench.toml"), "-o", file(std::string("shots/") + shot + ".h5")})
+              .code,
+          0);
+    }
+    EXPECT_EQ(kolsky({"model", "new", "--kind", "bar", "--bench", file("campaign/bench.toml"), "-o",
+                      file("m.toml")})
+                  .code,
+              0);
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_ / name; }
+
+  scene::Folder folder_;
+};
+
+TEST_F(SimulatedBar, FallsToTheNoiseByTheEffectAddedByHand) {
+  ASSERT_EQ(kolsky({"model", "add", file("m.toml"), "channel-delay:g3", "-o", file("m1.toml"),
+                    "--note", "the long cable"})
+                .code,
+            0);
+  ASSERT_EQ(kolsky({"fit", file("shots"), "--model", file("m1.toml"), "-o", file("m2.toml")}).code,
+            0);
+  const json fall = json_of(kolsky({"model", "waterfall", file("m2.toml"), file("shots"), "--json",
+                                    "--report", file("fall.html"), "--svg", file("fall.svg")}));
+  ASSERT_EQ(fall["steps"].size(), 2U);
+  EXPECT_EQ(fall["steps"][0]["effect"], "");
+  EXPECT_EQ(fall["steps"][1]["effect"], "channel-delay:g3");
+  EXPECT_GT(fall["steps"][0]["held_out"], fall["steps"][1]["held_out"]);
+  EXPECT_NEAR(fall["steps"][1]["held_out"], fall["floor"], 0.1);
+  EXPECT_GT(fall["closed"], 0.7);
+  // What the simulation was drawn with.
+  const json delay = fall["steps"][1]["strengths"]["tau"];
+  const json truth = json_of(kolsky({"tour", "--seed", "3", "--quick", "--truth-only", "--json"}));
+  ASSERT_EQ(truth["truth"]["effect"], "channel-delay:g3");
+  EXPECT_NEAR(delay["value"].get<double>(), truth["truth"]["strength"].get<double>(),
+              4.0 * delay["sd"].get<double>());
+  EXPECT_NE(content(file("fall.html")).find("<svg class=\"cascade\""), std::string::npos);
+  EXPECT_NE(content(file("fall.svg")).find("+ channel-delay:g3"), std::string::npos);
+
+  const json history = json_of(kolsky({"model", "history", file("m2.toml"), "--json"}))["history"];
+  ASSERT_EQ(history.size(), 2U);
+  EXPECT_EQ(history[0]["note"], "the long cable");
+  EXPECT_EQ(history[0]["added"], json({"channel-delay:g3"}));
+  EXPECT_EQ(history[1]["fit"]["captures"], 4);
+  EXPECT_EQ(history[1]["data_sha256"].get<std::string>().size(), 64U);
+
+  const json difference =
+      json_of(kolsky({"model", "diff", file("m2.toml") + "@0", file("m2.toml"), "--json"}));
+  EXPECT_NE(std::find(difference["added"].begin(), difference["added"].end(), "channel-delay:g3"),
+            difference["added"].end());
+  const scene::Answer same = kolsky({"model", "diff", file("m2.toml"), file("m2.toml")});
+  EXPECT_EQ(same.out, "the two models are the same\n");
+}
+
+TEST_F(SimulatedBar, KeepsTheLedgerOfADiagnosisAndRevertsIt) {
+  ASSERT_EQ(kolsky({"diagnose", file("shots"), "--model", file("m.toml"), "-o", file("m2.toml"),
+                    "--note", "first look"})
+                .code,
+            0);
+  const json step = json_of(kolsky({"model", "history", file("m2.toml"), "--json"}))["history"][0];
+  EXPECT_EQ(step["note"], "first look");
+  EXPECT_FALSE(step["verdict"].get<std::string>().empty());
+  EXPECT_FALSE(step["seeds"].empty());
+  EXPECT_GT(step["tests"].size(), 10U);
+  EXPECT_GT(step["held_out"]["before"], step["held_out"]["after"]);
+  ASSERT_EQ(kolsky({"model", "revert", file("m2.toml")}).code, 0);
+  const scene::Answer same = kolsky({"model", "diff", file("m.toml"), file("m2.toml")});
+  EXPECT_EQ(same.out, "the two models are the same\n");
+  EXPECT_EQ(json_of(kolsky({"model", "history", file("m2.toml"), "--json"}))["history"].size(), 2U);
+}
+
+TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
+  EXPECT_TRUE(refused(kolsky({"model", "diff", file("m.toml") + "@3", file("m.toml")}),
+                      {"names no step", "from 0 to 0"}));
+  EXPECT_TRUE(
+      refused(kolsky({"model", "waterfall", file("m.toml"), file("nowhere")}), {"nowhere"}));
+  EXPECT_TRUE(
+      refused(kolsky({"selftest", file("shots"), "--model", file("m.toml"), "--sizes", "0.001"}),
+              {"--sizes", "--effects"}));
+  EXPECT_TRUE(refused(kolsky({"selftest", file("shots"), "--model", file("m.toml"), "--effects",
+                              "warp", "--sizes", "0.001"}),
+                      {"warp"}));
+  EXPECT_TRUE(refused(kolsky({"selftest", file("shots"), "--model", file("m.toml"), "--effects",
+                              "gauge-position:g9", "--sizes", "0.001"}),
+                      {"gauge-position:g9"}));
+  EXPECT_TRUE(refused(kolsky({"tour", "--truth-only"}), {"--seed"}));
+  EXPECT_TRUE(refused(kolsky({"tour", "--seed", "1", "--shots-only"}), {"--folder"}));
+  EXPECT_TRUE(refused(kolsky({"tour", "--folder", file("shots")}), {"empty folder"}));
+}
+
+TEST(TourCommand, RunsRealCommandsFindsWhatItHidAndLeavesNothingWhereAsked) {
+  const json said = json_of(kolsky({"tour", "--seed", "3", "--quick", "--remove", "--json"}));
+  EXPECT_EQ(said["truth"]["effect"], "channel-delay:g3");
+  EXPECT_TRUE(said["end"] == "found" || said["end"] == "among-tied") << said.dump();
+  EXPECT_GE(said["commands"].size(), 8U);
+  EXPECT_EQ(said["folder"], "");
+}
+
+TEST(TourCommand, ClaimsNothingWhereNothingIsHidden) {
+  const json said = json_of(kolsky({"tour", "--seed", "7", "--quick", "--remove", "--json"}));
+  EXPECT_EQ(said["truth"]["effect"], "");
+  EXPECT_EQ(said["verdict"], "adequate");
+  EXPECT_EQ(said["end"], "rightly-quiet");
+}
+
+}  // namespace
+}  // namespace kolsky

@@ -1,0 +1,119 @@
+#include "tests/generators/impact_campaign.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "tests/generators/digitise.hpp"
+
+namespace kolsky::testing {
+
+namespace {
+
+constexpr double kGauge_m = 0.25;
+constexpr std::size_t kSamples = 2000;
+constexpr double kTrigger_s = 400e-6;
+
+Bench paper_bench() {
+  Bench bench;
+  bench.kind = BenchKind::impact;
+  bench.sampling_frequency_Hz = 1e6;
+  bench.input.length_m = {3.0, 0.0};
+  bench.input.diameter_m = {0.027, 0.0};
+  bench.input.density_kg_m3 = {4420.0, 0.0};
+  bench.input.poisson_ratio = {0.33, 0.0};
+  bench.input.youngs_modulus_Pa = Measured{113e9, 0.0};
+  Gauge gauge;
+  gauge.name = "g1";
+  gauge.bar = "input";
+  gauge.position_m = {kGauge_m, 0.0};
+  gauge.unit = "strain";
+  bench.gauges = {gauge};
+  Ball ball;
+  ball.outer_diameter_m = {0.0427, 0.0};
+  ball.core_diameter_m = {0.03565, 0.0};
+  ball.mass_kg = Measured{0.0434, 0.0};
+  bench.ball = ball;
+  return bench;
+}
+
+double at(const BallForce& force, double time_s) {
+  // A sample is the mean over its microsecond: it stands for its middle.
+  const double place = time_s / force.period_s - 0.5;
+  if (place < 0.0 || place + 1.0 >= static_cast<double>(force.force_N.size())) {
+    return 0.0;
+  }
+  const auto n = static_cast<std::size_t>(place);
+  const double u = place - static_cast<double>(n);
+  return (1.0 - u) * force.force_N[n] + u * force.force_N[n + 1];
+}
+
+}  // namespace
+
+std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
+  const Bench bench = paper_bench();
+  const Bar& bar = bench.input;
+  const double c0 = std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3);
+  const double stiffness_N = *bar.youngs_modulus_Pa * bar.area_m2();
+  BallImpact impact;
+  impact.core_diameter_m = bench.ball->core_diameter_m;
+  impact.outer_diameter_m = bench.ball->outer_diameter_m;
+  impact.core = {1140.0, 0.376, 121e6, 143e6, 2860.0};
+  impact.core.b = wishes.core_b;
+  impact.core.D_per_Pa = wishes.core_D_per_Pa;
+  impact.core.tau_s = wishes.core_tau_s;
+  impact.cover = {960.0, 0.319, 987e6, 452e6, 6020.0};
+  impact.cover.b = wishes.cover_b;
+  impact.friction = wishes.friction;
+  impact.impedance_kg_per_s = bar.density_kg_m3 * c0 * bar.area_m2();
+  impact.target_radius_m = bar.diameter_m / 2.0;
+  impact.across = wishes.across;
+  std::mt19937_64 random(wishes.seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::vector<Shot> shots;
+  for (const double nominal : wishes.speeds_m_per_s) {
+    // Two impacts to either side; a shot between them. Over 4 % a straight line is good to 1e-4.
+    std::vector<BallForce> ends;
+    for (const double factor : {0.98, 1.02}) {
+      impact.speed_m_per_s = factor * nominal;
+      ends.push_back(strike(impact));
+    }
+    for (std::size_t n = 0; n < wishes.shots; ++n) {
+      const double factor =
+          1.0 + std::min(0.019, std::max(-0.019, wishes.speed_scatter * normal(random)));
+      const double share = (factor - 0.98) / 0.04;
+      const double speed = factor * nominal;
+      const double touch_s = kTrigger_s + 1e-6 * uniform(random);
+      const auto force = [&](double time_s) {
+        return (1.0 - share) * at(ends[0], time_s) + share * at(ends[1], time_s);
+      };
+      std::vector<double> reading(kSamples);
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        const double t = static_cast<double>(i) / bench.sampling_frequency_Hz - touch_s;
+        const double x = bench.gauges[0].position_m;
+        const double e =
+            (force(t - x / c0) - force(t - (2.0 * bar.length_m - x) / c0)) / stiffness_N;
+        reading[i] = (1.0 + wishes.gauge_factor) * e * (1.0 + wishes.bridge_b * e);
+      }
+      Digitiser digitiser;
+      digitiser.noise_strain = wishes.noise_strain;
+      digitiser.bits = 16;
+      digitiser.full_scale_strain = 1e-3;
+      digitiser.pretrigger = static_cast<std::size_t>(kTrigger_s * bench.sampling_frequency_Hz);
+      digitiser.seed = random();
+      std::map<std::string, std::string> meta;
+      meta["incident_speed_m_per_s"] =
+          std::to_string(speed * (1.0 + wishes.speed_error * normal(random)));
+      if (wishes.rebound) {
+        meta["rebound_speed_m_per_s"] = std::to_string((1.0 - share) * ends[0].rebound_m_per_s +
+                                                       share * ends[1].rebound_m_per_s);
+      }
+      shots.push_back(digitised(bench, {reading}, {2e-6 * normal(random)}, digitiser, meta));
+      shots.back().id = "shot" + std::to_string(shots.size());
+    }
+  }
+  return shots;
+}
+
+}  // namespace kolsky::testing

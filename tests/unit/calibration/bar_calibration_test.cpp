@@ -1,0 +1,182 @@
+// Records of bars are made in the time domain (tests/generators), with benches that are filed wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+#include "processing/calibration/calibration.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+testing::Campaign campaign(std::uint64_t seed, testing::Tolerances tolerances, int shots,
+                           const std::vector<std::string>& effects = {}) {
+  testing::CampaignWishes wishes;
+  wishes.seed = seed;
+  wishes.shots = shots;
+  wishes.samples = 2048;
+  wishes.rate_Hz = 5e5;
+  wishes.tolerances = tolerances;
+  testing::Campaign made = testing::draw_campaign(wishes);
+  testing::hide(made, testing::parse_effect("end-reflection=0"));
+  for (const std::string& effect : effects) {
+    testing::hide(made, testing::parse_effect(effect));
+  }
+  return made;
+}
+
+const CalibratedNumber& number(const PartResult& part, const std::string& id) {
+  const auto found = std::find_if(part.numbers.begin(), part.numbers.end(),
+                                  [&](const auto& n) { return n.id == id; });
+  EXPECT_NE(found, part.numbers.end()) << id;
+  return *found;
+}
+
+std::vector<std::string> named(const Calibration& calibration) {
+  std::vector<std::string> ids;
+  for (const PartResult& part : calibration.parts) {
+    for (const CalibratedNumber& n : part.numbers) {
+      if (n.standing == Standing::differs || n.standing == Standing::tied) {
+        ids.push_back(n.id);
+      }
+    }
+  }
+  return ids;
+}
+
+TEST(BarCalibration, BenchFiledWithinItsDeviationsPasses) {
+  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 4);
+  const Calibration calibration = calibrate(testing::shots_of(made), {});
+  EXPECT_EQ(calibration.certificate, Certificate::pass);
+  ASSERT_EQ(calibration.parts.size(), 1U);
+  const PartResult& part = calibration.parts.front();
+  EXPECT_TRUE(part.far_end_seen);
+  EXPECT_FALSE(part.exact_waves);
+  EXPECT_NEAR(part.chi2_reduced, 1.0, 0.1);
+  EXPECT_TRUE(named(calibration).empty());
+  EXPECT_TRUE(calibration.reasons.empty());
+  // No shot tells a common gain: what enters the bar is free.
+  EXPECT_EQ(part.cannot_tell.front(),
+            "gauge-factor:g1, gauge-factor:g2, gauge-factor:g3, gauge-factor:g4");
+}
+
+TEST(BarCalibration, GaugeFiveMillimetresOffIsNamedWithItsPlace) {
+  const testing::Campaign made =
+      campaign(3, testing::Tolerances::filed, 4, {"gauge-position:g3=0.005"});
+  const Calibration calibration = calibrate(testing::shots_of(made), {});
+  EXPECT_EQ(calibration.certificate, Certificate::fail);
+  EXPECT_EQ(named(calibration), std::vector<std::string>{"gauge-position:g3"});
+  const CalibratedNumber& found = number(calibration.parts.front(), "gauge-position:g3");
+  EXPECT_NEAR(found.measured.value, made.world.gauges[2].position_m, 3.0 * found.measured.sd);
+  EXPECT_LT(found.measured.sd, 0.5e-3);
+  EXPECT_GT(calibration.parts.front().chi2_reduced_as_filed,
+            calibration.parts.front().chi2_reduced);
+}
+
+TEST(BarCalibration, GainThreePerCentOffIsNamedWithItsFactor) {
+  const testing::Campaign made =
+      campaign(5, testing::Tolerances::none, 4, {"gauge-factor:g2=0.03"});
+  const Calibration calibration = calibrate(testing::shots_of(made), {});
+  EXPECT_EQ(calibration.certificate, Certificate::fail);
+  EXPECT_EQ(named(calibration), std::vector<std::string>{"gauge-factor:g2"});
+  const PartResult& part = calibration.parts.front();
+  const CalibratedNumber& found = number(part, "gauge-factor:g2");
+  EXPECT_NEAR(found.measured.value, 1.03, 3.0 * found.measured.sd);
+  EXPECT_LT(found.measured.sd, 1e-3);
+  // The same without any model of the waves.
+  ASSERT_EQ(part.areas.ratios.size(), 3U);
+  EXPECT_NEAR(part.areas.ratios[0].ratio.value, 1.03, 4.0 * part.areas.ratios[0].ratio.sd);
+  EXPECT_NEAR(part.areas.ratios[1].ratio.value, 1.0, 4.0 * part.areas.ratios[1].ratio.sd);
+}
+
+TEST(BarCalibration, SeveralFaultsAreNamedTogether) {
+  const testing::Campaign made = campaign(
+      5, testing::Tolerances::none, 4, {"gauge-factor:g2=0.03", "channel-delay:g4=2e-6"});
+  const Calibration calibration = calibrate(testing::shots_of(made), {});
+  EXPECT_EQ(named(calibration),
+            (std::vector<std::string>{"gauge-factor:g2", "channel-delay:g4"}));
+  const CalibratedNumber& late = number(calibration.parts.front(), "channel-delay:g4");
+  EXPECT_NEAR(late.measured.value, 2e-6, 3.0 * late.measured.sd);
+}
+
+TEST(BarCalibration, ExchangedGaugesAreSeen) {
+  testing::Campaign made = campaign(5, testing::Tolerances::filed, 3);
+  std::vector<Shot> shots = testing::shots_of(made);
+  for (Shot& shot : shots) {
+    std::swap(shot.channels[1].codes, shot.channels[2].codes);
+  }
+  const Calibration calibration = calibrate(shots, {});
+  EXPECT_EQ(calibration.certificate, Certificate::fail);
+  const PartResult& part = calibration.parts.front();
+  ASSERT_EQ(part.swapped.size(), 1U);
+  EXPECT_EQ(part.swapped.front(), (std::pair<std::string, std::string>{"g2", "g3"}));
+  EXPECT_EQ(named(calibration), std::vector<std::string>{});
+}
+
+TEST(BarCalibration, MaterialFiledOffIsNamed) {
+  const testing::Campaign made = campaign(8, testing::Tolerances::none, 4);
+  Material material;
+  material.density_kg_m3 = {made.world.material.density_kg_m3};
+  material.poisson_ratio = {made.world.material.poisson_ratio};
+  material.E1_Pa = {made.world.material.E1_Pa * 1.02, made.world.material.E1_Pa * 1e-3};
+  material.E2_Pa = {made.world.material.E2_Pa, made.world.material.E2_Pa * 1e-2};
+  material.eta2_Pa_s = {made.world.material.eta2_Pa_s, made.world.material.eta2_Pa_s * 1e-2};
+  CalibrationOptions options;
+  options.bars = BarPrior(material);
+  const Calibration calibration = calibrate(testing::shots_of(made), options);
+  EXPECT_EQ(named(calibration), std::vector<std::string>{"E1_Pa"});
+  const CalibratedNumber& found = number(calibration.parts.front(), "E1_Pa");
+  EXPECT_NEAR(found.measured.value, made.world.material.E1_Pa, 3.0 * found.measured.sd);
+}
+
+/// How often the truth lies within 1.96 stated deviations.
+TEST(BarCalibration, StatedIntervalsHoldTheTruth) {
+  constexpr int kRepeats = 24;
+  int inside = 0;
+  int all = 0;
+  int passed = 0;
+  double squares = 0.0;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const testing::Campaign made =
+        campaign(100 + static_cast<std::uint64_t>(repeat), testing::Tolerances::filed, 3);
+    const Calibration calibration = calibrate(testing::shots_of(made), {});
+    passed += calibration.certificate == Certificate::pass ? 1 : 0;
+    const PartResult& part = calibration.parts.front();
+    for (const testing::TrueGauge& gauge : made.world.gauges) {
+      const CalibratedNumber& gain = number(part, "gauge-factor:" + gauge.name);
+      const CalibratedNumber& place = number(part, "gauge-position:" + gauge.name);
+      for (const double z : {(gain.combined.value - gauge.gain) / gain.combined.sd,
+                             (place.combined.value - gauge.position_m) / place.combined.sd}) {
+        inside += std::abs(z) < 1.96 ? 1 : 0;
+        squares += z * z;
+        ++all;
+      }
+    }
+  }
+  std::printf("inside 95 %%: %d of %d, mean square %.3f, passed %d of %d\n", inside, all,
+              squares / all, passed, kRepeats);
+  EXPECT_GE(passed, kRepeats - 3);
+  EXPECT_GT(inside, all * 9 / 10);
+  EXPECT_GT(squares / all, 0.6);
+}
+
+TEST(BarCalibration, RefusesWhatCannotServe) {
+  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 2);
+  std::vector<Shot> shots = testing::shots_of(made);
+  EXPECT_THROW((void)calibrate({}, {}), InputError);
+  CalibrationOptions options;
+  options.trusted = {"g9"};
+  EXPECT_THROW((void)calibrate(shots, options), InputError);
+  std::vector<Shot> silent = shots;
+  for (ChannelRecord& channel : silent[1].channels) {
+    std::fill(channel.codes.begin() + 200, channel.codes.end(), channel.codes[100]);
+  }
+  EXPECT_THROW((void)calibrate(silent, {}), InputError);
+  shots[1].bench_toml += "\n# another\n";
+  EXPECT_THROW((void)calibrate(shots, {}), InputError);
+}
+
+}  // namespace
+}  // namespace kolsky

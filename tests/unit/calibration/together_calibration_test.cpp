@@ -1,0 +1,174 @@
+// Bars that touch, or lie apart, solved in the time domain (tests/generators).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/calibration/calibration.hpp"
+#include "tests/generators/elastic_shpb.hpp"
+#include "tests/generators/linear_shpb.hpp"
+
+namespace kolsky {
+namespace {
+
+constexpr double kNoise = 4e-6;
+constexpr int kBits = 16;
+constexpr double kRange = 0.005;
+
+/// The paper's bars with a slice of themselves for a specimen.
+testing::LinearShpb one_long_bar() {
+  testing::LinearShpb model;
+  model.specimen = model.input;
+  model.massless = false;
+  model.specimen_diameter_m = model.bar_diameter_m;
+  return model;
+}
+
+std::vector<Shot> shots_of(const Bench& bench, const std::vector<std::vector<double>>& records,
+                           unsigned count) {
+  std::vector<Shot> shots;
+  for (unsigned i = 0; i < count; ++i) {
+    shots.push_back(testing::digitise(bench, records, kNoise, kBits, kRange, 11U + i));
+  }
+  return shots;
+}
+
+const CalibratedNumber& number(const PartResult& part, const std::string& id) {
+  const auto found = std::find_if(part.numbers.begin(), part.numbers.end(),
+                                  [&](const auto& n) { return n.id == id; });
+  EXPECT_NE(found, part.numbers.end()) << id;
+  return *found;
+}
+
+std::vector<std::string> standing(const Calibration& calibration, Standing wanted) {
+  std::vector<std::string> ids;
+  for (const PartResult& part : calibration.parts) {
+    for (const CalibratedNumber& n : part.numbers) {
+      if (n.standing == wanted) {
+        ids.push_back(n.id);
+      }
+    }
+  }
+  return ids;
+}
+
+TEST(BarsTogether, RightBenchPasses) {
+  const testing::LinearShpb model = one_long_bar();
+  const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 5), {});
+  ASSERT_EQ(calibration.parts.size(), 1U);
+  const PartResult& part = calibration.parts.front();
+  EXPECT_EQ(part.lay, BarsLay::together);
+  EXPECT_EQ(calibration.certificate, Certificate::pass);
+  EXPECT_NEAR(part.chi2_reduced, 1.0, 0.15);
+  ASSERT_EQ(part.areas.ratios.size(), 1U);
+  EXPECT_NEAR(part.areas.ratios.front().ratio.value, 1.0,
+              4.0 * part.areas.ratios.front().ratio.sd);
+  // Speed of the paper's PMMA at 10 kHz, physics.md.
+  EXPECT_NEAR(part.wave_speed_m_per_s.value, 2173.72, 0.05);
+}
+
+TEST(BarsTogether, WhichOfTwoGainsIsOffIsSaidToBeOpen) {
+  testing::LinearShpb model = one_long_bar();
+  const Bench filed = model.bench();
+  model.gain_out = 1.03;
+  const std::vector<Shot> shots = shots_of(filed, model.solve(), 5);
+  const Calibration open = calibrate(shots, {});
+  EXPECT_EQ(open.certificate, Certificate::undecided);
+  EXPECT_EQ(standing(open, Standing::tied),
+            (std::vector<std::string>{"gauge-factor:g1", "gauge-factor:g2"}));
+  EXPECT_NEAR(number(open.parts.front(), "gauge-factor:g1").measured.value, 1.0 / 1.03, 1e-3);
+  EXPECT_NEAR(number(open.parts.front(), "gauge-factor:g2").measured.value, 1.03, 1e-3);
+  CalibrationOptions options;
+  options.trusted = {"g1"};
+  const Calibration told = calibrate(shots, options);
+  EXPECT_EQ(told.certificate, Certificate::fail);
+  EXPECT_EQ(standing(told, Standing::differs), std::vector<std::string>{"gauge-factor:g2"});
+  const CalibratedNumber& gain = number(told.parts.front(), "gauge-factor:g2");
+  EXPECT_NEAR(gain.measured.value, 1.03, 3.0 * gain.measured.sd);
+}
+
+/// Elastic bars end to end, struck by a bar of the same section: d'Alembert gives the pulse.
+struct Struck {
+  testing::ElasticShpb model;
+  Bench bench;
+  std::vector<std::vector<double>> records;
+};
+
+Struck struck(double gain_in, double gain_out) {
+  Struck made;
+  testing::ElasticShpb& model = made.model;
+  model.length_in_m = 1.5;
+  model.length_out_m = 1.5;
+  model.specimen_diameter_m = model.diameter_m;
+  model.specimen_modulus_Pa = 1e16;  // there is none
+  const double speed = std::sqrt(model.youngs_modulus_Pa / model.density_kg_m3);
+  constexpr double kStriker_m = 0.25;
+  constexpr double kSpeed_m_per_s = 8.0;
+  model.pulse_strain = kSpeed_m_per_s / (2.0 * speed);
+  model.rise_s = 10e-6;
+  model.pulse_s = 2.0 * kStriker_m / speed + model.rise_s;  // its area is the rectangle's
+  made.bench = model.bench();
+  made.bench.striker = Striker{Measured{kStriker_m}, Measured{model.diameter_m},
+                               Measured{model.density_kg_m3}, Measured{kSpeed_m_per_s, 0.02}};
+  const auto solved = model.solve();
+  made.records = {solved.input_strain, solved.output_strain};
+  for (double& strain : made.records[0]) {
+    strain *= gain_in;
+  }
+  for (double& strain : made.records[1]) {
+    strain *= gain_out;
+  }
+  return made;
+}
+
+TEST(BarsTogether, StrikersMomentumTellsWhichGainIsOff) {
+  for (const bool input_off : {true, false}) {
+    const Struck made = struck(input_off ? 1.03 : 1.0, input_off ? 1.0 : 1.03);
+    const Calibration calibration = calibrate(shots_of(made.bench, made.records, 4), {});
+    const std::string guilty = input_off ? "gauge-factor:g1" : "gauge-factor:g2";
+    EXPECT_EQ(standing(calibration, Standing::differs), std::vector<std::string>{guilty});
+    EXPECT_EQ(calibration.certificate, Certificate::fail);
+    const PartResult& part = calibration.parts.front();
+    ASSERT_TRUE(part.areas.momentum.has_value());
+    EXPECT_NEAR(part.areas.momentum->gain.value, input_off ? 1.03 : 1.0,
+                3.0 * part.areas.momentum->gain.sd);
+  }
+}
+
+TEST(BarsTogether, MomentumSeesWhatAllGaugesShare) {
+  const Struck made = struck(1.05, 1.05);
+  const Calibration calibration = calibrate(shots_of(made.bench, made.records, 4), {});
+  EXPECT_TRUE(standing(calibration, Standing::differs).empty());
+  EXPECT_EQ(calibration.certificate, Certificate::undecided);
+  ASSERT_EQ(calibration.reasons.size(), 1U);
+  EXPECT_NE(calibration.reasons.front().find("momentum"), std::string::npos);
+}
+
+TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
+  testing::LinearShpb model;
+  model.specimen = {1140.0, 1.0, 0.0, 0.0};  // nothing behind the input bar
+  model.pulse_s = 100e-6;
+  model.ramp_s = 30e-6;
+  const std::vector<Shot> shots = shots_of(model.bench(), model.solve(), 5);
+  Material filed = paper_pmma();
+  filed.E1_Pa = {5.5e9, 0.3e9};
+  filed.E2_Pa.sd = 0.3 * filed.E2_Pa;
+  filed.eta2_Pa_s.sd = 0.3 * filed.eta2_Pa_s;
+  CalibrationOptions options;
+  options.bars = BarPrior(filed);
+  const Calibration calibration = calibrate(shots, options);
+  ASSERT_EQ(calibration.parts.size(), 1U);
+  const PartResult& part = calibration.parts.front();
+  EXPECT_EQ(part.lay, BarsLay::input_alone);
+  EXPECT_TRUE(part.two_passes);
+  EXPECT_NEAR(part.wave_speed_m_per_s.value, 2173.72,
+              std::max(1.0, 4.0 * part.wave_speed_m_per_s.sd));
+  EXPECT_NEAR(number(part, "E1_Pa").combined.value, 5.66e9, 0.02 * 5.66e9);
+  std::printf("one gauge: c %.2f +- %.2f m/s, E1 %.4g +- %.2g, E2 %.4g +- %.2g\n",
+              part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd,
+              number(part, "E1_Pa").combined.value, number(part, "E1_Pa").combined.sd,
+              number(part, "E2_Pa").combined.value, number(part, "E2_Pa").combined.sd);
+}
+
+}  // namespace
+}  // namespace kolsky
