@@ -159,7 +159,7 @@ std::string format_use(const EffectUse& use) {
   if (!use.prior_correlation.empty()) {
     text += "prior_correlation = [";
     for (std::size_t i = 0; i < use.prior_correlation.size(); ++i) {
-      text += (i == 0 ? "" : ", ") + digits(use.prior_correlation[i]);
+      text += (i == 0 ? "" : ", ") + toml_number(use.prior_correlation[i]);
     }
     text += "]\n";
   }

@@ -116,7 +116,8 @@ std::vector<Planter::Record> Planter::through(const Composition& composition,
     transform.inverse(spectrum, reading);
     const std::vector<double>& addition = scene.record.additions[j];
     for (std::size_t i = 0; i < reading.size(); ++i) {
-      reading[i] *= 1.0 + scene.record.bridge_b * reading[i];
+      const double strain = reading[i];
+      reading[i] *= 1.0 + scene.record.bridge_b * strain + scene.record.bridge_c * strain * strain;
       reading[i] += addition.empty() ? 0.0 : addition[i];
     }
     readings.push_back(std::move(reading));
@@ -130,6 +131,9 @@ std::string Planter::impossible_because(const EffectUse& use) const {
   shape(composition.applied(composition.start(), 0), scene);
   if (scene.specimen && scene.specimen->nonlinear()) {
     return "the specimen's answer is not linear: records cannot be changed by adding to them";
+  }
+  if (!scene.record.maps.empty()) {
+    return "a map of records that an expression gives is not planted yet";
   }
   return use.effect->untestable_because(campaign_.bench);
 }

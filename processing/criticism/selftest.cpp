@@ -270,6 +270,10 @@ std::vector<Selftest::Power> Selftest::power() const {
 
 Selftest selftest(const std::vector<Shot>& shots, const Model& model,
                   const SelftestOptions& options, const Workers& workers) {
+  if (model.kind == BenchKind::impact) {
+    throw InputError("model", "is of a ball on a bar, into whose records nothing is planted yet",
+                     "give a model and captures of a bar or a split bar");
+  }
   for (const double size : options.sizes) {
     if (!(size > 0.0) || !std::isfinite(size)) {
       throw InputError("sizes", "must be above 0", "give sizes off the effect's null, in its unit");

@@ -8,6 +8,7 @@
 #include "clients/cli/waterfall_text.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -51,6 +52,10 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
 
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
+  if (file.model.kind == BenchKind::impact) {
+    throw InputError(settings.model, "is of a ball on a bar, whose lineage is not refitted yet",
+                     "`kolsky model history` has the misfit of every step");
+  }
   const Model first =
       file.history.empty()
           ? file.model
