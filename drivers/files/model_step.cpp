@@ -15,7 +15,7 @@ namespace {
 std::string list_of(const std::vector<std::string>& texts) {
   std::string list;
   for (const std::string& text : texts) {
-    list += (list.empty() ? "" : ", ") + toml_text(text);
+    list += (list.empty() ? "" : ", ") + toml_quoted(text);
   }
   return "[" + list + "]";
 }
@@ -25,7 +25,7 @@ std::string line(const std::string& key, double value) {
 }
 
 std::string line(const std::string& key, const std::string& text) {
-  return text.empty() ? "" : key + " = " + toml_text(text) + "\n";
+  return text.empty() ? "" : key + " = " + toml_quoted(text) + "\n";
 }
 
 std::string line(const std::string& key, const std::vector<std::string>& texts) {
@@ -73,10 +73,10 @@ bool finite(const StepTest& test) {
 }
 
 std::string format_test(const StepTest& test) {
-  return "[[history.tests]]\neffect = " + toml_text(test.effect) + "\n" +
-         line("strength", test.strength) + line("sd", test.sd) + "unit = " + toml_text(test.unit) +
+  return "[[history.tests]]\neffect = " + toml_quoted(test.effect) + "\n" +
+         line("strength", test.strength) + line("sd", test.sd) + "unit = " + toml_quoted(test.unit) +
          "\n" + line("log_p", test.log_p) + line("held_out_gain", test.held_out_gain) +
-         "verdict = " + toml_text(test.verdict) + "\n" + line("tied_with", test.tied_with);
+         "verdict = " + toml_quoted(test.verdict) + "\n" + line("tied_with", test.tied_with);
 }
 
 }  // namespace
@@ -114,8 +114,8 @@ ModelStep read_step(const TomlTable& table) {
 }
 
 std::string format_step(const ModelStep& step) {
-  std::string text = "\n[[history]]\naction = " + toml_text(step.action) +
-                     "\nwhen = " + toml_text(step.when) + "\n";
+  std::string text = "\n[[history]]\naction = " + toml_quoted(step.action) +
+                     "\nwhen = " + toml_quoted(step.when) + "\n";
   text += line("note", step.note) + line("data_sha256", step.data_sha256) +
           line("software", step.software) + line("verdict", step.verdict) +
           line("added", step.added);
@@ -126,7 +126,7 @@ std::string format_step(const ModelStep& step) {
     }
     text += "seeds = [" + seeds + "]\n";
   }
-  text += "parent = " + toml_text(step.parent) + "\nbefore = " + toml_text(step.before) + "\n";
+  text += "parent = " + toml_quoted(step.parent) + "\nbefore = " + toml_quoted(step.before) + "\n";
   if (step.fit) {
     text += format_fit(*step.fit);
   }

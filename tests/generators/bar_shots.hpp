@@ -14,7 +14,7 @@ namespace kolsky::testing {
 class BarShots {
  public:
   struct Setup {
-    RodMaterial material;
+    RodMaterial material{};
     double length_m = 2.0;
     double diameter_m = 0.020;
     double poisson_ratio = 0.36;

@@ -35,7 +35,8 @@ class Calibrate : public ::testing::Test {
     folder_.write("bench.toml", bench);
     std::mt19937_64 random(3);
     int number = 0;
-    for (const Shot& shot : testing::BarShots({}).draw(3, {}, random)) {
+    const testing::BarShots::Setup setup;
+    for (const Shot& shot : testing::BarShots(setup).draw(3, {}, random)) {
       std::string table = "time_s,g1,g2,g3,g4\n";
       for (std::size_t n = 0; n < shot.samples(); ++n) {
         table += fmt::format("{:.7f}", static_cast<double>(n) * 1e-6);
