@@ -405,8 +405,7 @@ Command chain_command() {
   Command command;
   command.name = "chain";
   command.purpose =
-      "from bar to specimen to ball: what Hopkinson-bar shots foretell of an impact, beside the "
-      "measured\n"
+      "from bar to specimen to ball: what bar shots foretell of an impact, beside the measured\n"
       "Identifies the bar, then core and cover with the bar's covariance, draws both from what is\n"
       "left open, throws each ball by finite elements at the measured speeds, and prints force,\n"
       "contact time and restitution beside the measured ones with their distance in deviations "

@@ -35,7 +35,8 @@ class Calibrate : public ::testing::Test {
     folder_.write("bench.toml", bench);
     std::mt19937_64 random(3);
     int number = 0;
-    const testing::BarShots::Setup setup;
+    testing::BarShots::Setup setup;
+    setup.material = RodMaterial{1180.0, 5.66e9, 37.0e9, 1.81e6};
     for (const Shot& shot : testing::BarShots(setup).draw(3, {}, random)) {
       std::string table = "time_s,g1,g2,g3,g4\n";
       for (std::size_t n = 0; n < shot.samples(); ++n) {

@@ -235,7 +235,8 @@ TEST(Help, ListsTheCommandsThatBeginWithAWord) {
   EXPECT_EQ(model.code, 0);
   EXPECT_EQ(listed(model.out),
             (std::vector<std::string>{"model new", "model add", "model remove", "model show",
-                                      "model history", "model revert"}));
+                                      "model history", "model revert", "model check", "model diff",
+                                      "model waterfall"}));
   const Answer unknown = scene::kolsky({"modle", "--help"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_EQ(lines_of(unknown.err).size(), 1U);

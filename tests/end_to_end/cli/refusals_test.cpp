@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(
     Options, Usage,
     ::testing::Values(
         Misuse{{"reduce"}, {"kolsky reduce", "CAPTURE is missing"}},
-        Misuse{{"reduce", "a.h5", "b.h5"}, {"\"b.h5\" is one word too many"}},
+        Misuse{{"verify", "a", "b"}, {"\"b\" is one word too many"}},
         Misuse{{"reduce", "a.h5", "--bandlimit", "3"},
                {"--bandlimit", "the nearest is --band-limit"}},
         Misuse{{"reduce", "a.h5", "--sgv=x"}, {"--sgv=x", "--svg"}},

@@ -363,12 +363,12 @@ TEST(Commands, ThatChangeSomethingAreTold) {
     v1::ControlRequest request;
     request.CopyFrom(*fixture.message);
     const std::string name = fixture.name.substr(8);
-    const bool question =
-        name == "status" || name == "list_shots" || name == "get_shot" || name == "snapshot";
+    const bool question = name == "status" || name == "list_shots" || name == "get_shot" ||
+                          name == "snapshot" || name == "diagnosis";
     EXPECT_EQ(wire::changes_state(request), !question) << name;
     ++commands;
   }
-  EXPECT_EQ(commands, 11);
+  EXPECT_EQ(commands, 14);
 }
 
 }  // namespace

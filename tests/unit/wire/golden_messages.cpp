@@ -373,6 +373,22 @@ void fill_refusal(v1::ControlReply& reply) {
   check.set_text("1 MB is free");
 }
 
+/// Of a daemon that compares shots with a model.
+v1::Status status_with_model() {
+  v1::Status own = status();
+  own.set_model_path("m.toml");
+  *own.mutable_comparison() = comparison();
+  *own.mutable_diagnosis() = diagnosis().summary();
+  return own;
+}
+
+void fill_snapshot_with_model(v1::ControlReply& reply) {
+  v1::Snapshot& snapshot = *reply.mutable_snapshot();
+  *snapshot.mutable_status() = status_with_model();
+  *snapshot.mutable_last_comparison() = comparison();
+  *snapshot.mutable_last_diagnosis() = diagnosis();
+}
+
 void fill_snapshot(v1::ControlReply& reply) {
   v1::Snapshot& snapshot = *reply.mutable_snapshot();
   *snapshot.mutable_status() = status();
@@ -421,6 +437,7 @@ std::vector<Fixture> reply_fixtures() {
               })),
       fixture("reply_refusal", reply(fill_refusal)),
       fixture("reply_snapshot", reply(fill_snapshot)),
+      fixture("reply_snapshot_model", reply(fill_snapshot_with_model)),
       fixture("reply_diagnosis", reply([](auto& r) { *r.mutable_diagnosis() = diagnosis(); })),
   };
 }
