@@ -74,9 +74,10 @@ bool finite(const StepTest& test) {
 
 std::string format_test(const StepTest& test) {
   return "[[history.tests]]\neffect = " + toml_quoted(test.effect) + "\n" +
-         line("strength", test.strength) + line("sd", test.sd) + "unit = " + toml_quoted(test.unit) +
-         "\n" + line("log_p", test.log_p) + line("held_out_gain", test.held_out_gain) +
-         "verdict = " + toml_quoted(test.verdict) + "\n" + line("tied_with", test.tied_with);
+         line("strength", test.strength) + line("sd", test.sd) +
+         "unit = " + toml_quoted(test.unit) + "\n" + line("log_p", test.log_p) +
+         line("held_out_gain", test.held_out_gain) + "verdict = " + toml_quoted(test.verdict) +
+         "\n" + line("tied_with", test.tied_with);
 }
 
 }  // namespace

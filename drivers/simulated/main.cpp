@@ -93,8 +93,9 @@ void declare(CLI::App& app, Options& o) {
   app.add_flag("--no-counter", o.no_counter, "leave out the sample counter channel count0");
   app.add_flag("--list", o.list, "print the scenarios, name<TAB>text, and leave");
   app.add_flag("--print-bench", o.print_bench, "print the bench file that fits, and leave");
-  app.add_option("--truth", o.truth,
-                 "write what the model knows of the specimen or the ball as CSV, and leave unless --listen");
+  app.add_option(
+      "--truth", o.truth,
+      "write what the model knows of the specimen or the ball as CSV, and leave unless --listen");
   app.add_flag("--json", o.json, "print the address as a JSON object");
 }
 

@@ -2,8 +2,8 @@
 
 namespace kolsky {
 
-/// A number of the apparatus or of a material, with the standard deviation filed beside it. The unit is
-/// in the name of whatever holds it. sd == 0 means the number counts as exact.
+/// A number of the apparatus or of a material, with the standard deviation filed beside it. The
+/// unit is in the name of whatever holds it. sd == 0 means the number counts as exact.
 struct Measured {
   double value = 0.0;
   double sd = 0.0;

@@ -15,11 +15,11 @@ namespace kolsky {
 /// One digitiser channel over a shot: raw codes and what turns them into the gauge's unit,
 /// value = (code + offset) * scale.
 struct ChannelRecord {
-  std::string gauge;          ///< name in the bench
-  std::string unit;           ///< of the values: "V" or "strain"
-  double scale = 1.0;         ///< unit per code
-  double offset = 0.0;        ///< codes
-  int bits = 16;              ///< of the converter; at most 16 are stored as 16-bit integers
+  std::string gauge;               ///< name in the bench
+  std::string unit;                ///< of the values: "V" or "strain"
+  double scale = 1.0;              ///< unit per code
+  double offset = 0.0;             ///< codes
+  int bits = 16;                   ///< of the converter; at most 16 are stored as 16-bit integers
   std::int32_t code_min = -32768;  ///< codes at or beyond these are clipped
   std::int32_t code_max = 32767;
   std::vector<std::int32_t> codes;
@@ -30,8 +30,8 @@ struct ChannelRecord {
   friend bool operator==(const ChannelRecord&, const ChannelRecord&) = default;
 };
 
-/// Samples that are not there. In a window with gaps the codes after it follow at their true ticks; the
-/// hole itself is filled with the last code before it and named here.
+/// Samples that are not there. In a window with gaps the codes after it follow at their true ticks;
+/// the hole itself is filled with the last code before it and named here.
 struct Gap {
   Tick first_tick = 0;       ///< of the first missing sample
   std::int64_t samples = 0;  ///< how many are missing; 0 where nobody knows
@@ -48,26 +48,27 @@ enum class TriggerKind {
 /// When the shot began: tick + fraction, in samples, with its one-sigma error.
 struct TriggerEvent {
   Tick tick = 0;
-  double fraction = 0.0;        ///< in [0, 1)
+  double fraction = 0.0;  ///< in [0, 1)
   double sigma_samples = 0.0;
   TriggerKind kind = TriggerKind::incident;
   friend bool operator==(const TriggerEvent&, const TriggerEvent&) = default;
 };
 
-/// A stored window of samples with everything needed to reduce it again. The only thing that crosses from
-/// the live side and from replay into processing. All channels have the same number of samples.
+/// A stored window of samples with everything needed to reduce it again. The only thing that
+/// crosses from the live side and from replay into processing. All channels have the same number of
+/// samples.
 struct Shot {
   std::string id;
   Bench bench;
-  std::string bench_toml;                     ///< the text the bench was read from
-  std::optional<Material> bar_model;          ///< the one in force at the shot, if any was set
+  std::string bench_toml;             ///< the text the bench was read from
+  std::optional<Material> bar_model;  ///< the one in force at the shot, if any was set
   SampleRate rate;
-  Tick first_tick = 0;                        ///< tick of sample 0
-  std::optional<TriggerEvent> trigger;        ///< none for an imported table
-  std::vector<ChannelRecord> channels;        ///< in the order of bench.gauges
+  Tick first_tick = 0;                  ///< tick of sample 0
+  std::optional<TriggerEvent> trigger;  ///< none for an imported table
+  std::vector<ChannelRecord> channels;  ///< in the order of bench.gauges
   std::vector<Gap> gaps;
-  std::map<std::string, std::string> meta;    ///< per-shot facts: striker speed, specimen id, ...
-  std::int64_t utc_ns = 0;                    ///< of the trigger (live) or of the import
+  std::map<std::string, std::string> meta;  ///< per-shot facts: striker speed, specimen id, ...
+  std::int64_t utc_ns = 0;                  ///< of the trigger (live) or of the import
   std::int64_t monotonic_ns = 0;
   std::string software_version;
 

@@ -9,7 +9,7 @@ using Tick = std::int64_t;
 
 /// Samples per second as a rational number, so that an index and a rate give a time without drift.
 struct SampleRate {
-  std::int64_t numerator = 0;  ///< samples
+  std::int64_t numerator = 0;    ///< samples
   std::int64_t denominator = 1;  ///< seconds
 
   [[nodiscard]] double Hz() const noexcept {

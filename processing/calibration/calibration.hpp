@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "processing/base/measured.hpp"
+#include "processing/base/workers.hpp"
 #include "processing/calibration/arrangement.hpp"
 #include "processing/calibration/pulse_areas.hpp"
-#include "processing/base/workers.hpp"
 
 namespace kolsky {
 

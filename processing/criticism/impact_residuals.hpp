@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/criticism/ball_runs.hpp"
 #include "processing/criticism/impact_records.hpp"
 #include "processing/criticism/shot_residuals.hpp"
-#include "processing/base/workers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {

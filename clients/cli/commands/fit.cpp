@@ -38,8 +38,7 @@ int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
-  const Studied studied =
-      fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);
+  const Studied studied = fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);
   begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
   file.history.back().data_sha256 = digest_of(settings.captures);
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());

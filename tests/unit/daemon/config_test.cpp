@@ -72,8 +72,8 @@ TEST_F(ConfigTest, TakesTheModelThatShotsAreComparedWith) {
   EXPECT_EQ(config.light.green_chi2, 2.0);
   EXPECT_EQ(config.light.amber_share, 1e-3);
   EXPECT_TRUE(holds(error_of(least + "[model]\n"), {"model.file"}));
-  EXPECT_TRUE(holds(error_of(least + "[model]\nfile = \"m\"\ngreen_chi2 = 0.5\n"),
-                    {"model.green_chi2"}));
+  EXPECT_TRUE(
+      holds(error_of(least + "[model]\nfile = \"m\"\ngreen_chi2 = 0.5\n"), {"model.green_chi2"}));
   EXPECT_TRUE(holds(error_of(least + "[model]\nfile = \"m\"\nlight = 1\n"), {"model.light"}));
 }
 

@@ -116,8 +116,9 @@ TEST(Program, ListsItsScenarios) {
     EXPECT_EQ(std::count(line.begin(), line.end(), '\t'), 1) << line;
     names.push_back(line.substr(0, line.find('\t')));
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"core", "cover", "core-6mm", "bars-together", "bar",
-                                             "steel", "impact", "impact-40", "impact-51", "quiet"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"core", "cover", "core-6mm", "bars-together", "bar", "steel",
+                                      "impact", "impact-40", "impact-51", "quiet"}));
 }
 
 TEST(Program, PrintsABenchThatFitsItsOptions) {
