@@ -1,6 +1,7 @@
 #include "processing/criticism/composition.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "processing/base/error.hpp"
 #include "processing/identification/known_unknowns.hpp"
@@ -56,6 +57,15 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
   }
   if (bench.input.density_kg_m3.sd > 0.0) {
     list.push_back(filed("bar-density", {relative_sd(bench.input.density_kg_m3)}));
+  }
+  if (bench.input.youngs_modulus_Pa && bench.input.youngs_modulus_Pa->sd > 0.0) {
+    const double sd = relative_sd(*bench.input.youngs_modulus_Pa);
+    list.push_back(filed("bar-modulus", {sd}));
+    if (bench.output && bench.output->youngs_modulus_Pa) {
+      // Each bar's is off by itself.
+      list.push_back(filed("output-bar-modulus",
+                           {std::hypot(sd, relative_sd(*bench.output->youngs_modulus_Pa))}));
+    }
   }
   if (bench.specimen &&
       (bench.specimen->length_m.sd > 0.0 || bench.specimen->diameter_m.sd > 0.0)) {
