@@ -1,17 +1,18 @@
 #include "processing/criticism/product_test.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "processing/criticism/search_trials.hpp"
-#include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
 
 namespace {
 
-constexpr int kDraws = 40;
+constexpr int kDraws = 100;
 constexpr int kSteps = 8;
 constexpr double kSeen = 1e-2;  ///< of the prior's information
 
@@ -86,6 +87,46 @@ class Products {
   Eigen::Index gauges_;
 };
 
+struct Moments {
+  double mean = 0.0;
+  double variance = 0.0;
+};
+
+/// The share that products explain of noise: of strengths that are independent from place to place,
+/// with the powers of cosine and sine that were found over all places.
+Moments shares_of_noise(const Products& products, const Eigen::MatrixXd& root,
+                        const Eigen::VectorXd& white, std::size_t places) {
+  const auto count = static_cast<Eigen::Index>(places);
+  const Eigen::VectorXd found = root.transpose() * (root * root.transpose()).ldlt().solve(white);
+  const Eigen::Map<const Eigen::MatrixXd> parts(found.data(), count, 2);
+  const Eigen::Matrix2d power = parts.transpose() * parts / static_cast<double>(places);
+  const Eigen::Matrix2d spread = power.llt().matrixU();
+  std::mt19937_64 random(kSearchSeed);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd drawn(count, 2);
+  Moments shares;
+  double squares = 0.0;
+  for (int n = 0; n < kDraws; ++n) {
+    for (double& value : drawn.reshaped()) {
+      value = normal(random);
+    }
+    const Eigen::MatrixXd noise = drawn * spread;
+    const Eigen::VectorXd z = root * noise.reshaped();
+    const double share = products.explained(z) / z.squaredNorm();
+    shares.mean += share / kDraws;
+    squares += share * share / kDraws;
+  }
+  shares.variance = squares - shares.mean * shares.mean;
+  return shares;
+}
+
+/// ln of the chance that a beta-distributed share with these moments is as large.
+double log_beta_tail(double share, double mean, double variance) {
+  const double both = mean * (1.0 - mean) / variance - 1.0;
+  const double tail = boost::math::ibetac(mean * both, (1.0 - mean) * both, std::min(share, 1.0));
+  return std::log(std::max(tail, std::numeric_limits<double>::min()));
+}
+
 }  // namespace
 
 ProductTest test_products(const Eigen::VectorXd& strengths, const Eigen::MatrixXd& information,
@@ -106,22 +147,16 @@ ProductTest test_products(const Eigen::VectorXd& strengths, const Eigen::MatrixX
   const double all = white.squaredNorm();
   const double explained = products.explained(white);
 
-  std::mt19937_64 random(kSearchSeed);
-  std::normal_distribution<double> normal;
-  double taken = 0.0;
-  for (int n = 0; n < kDraws; ++n) {
-    const Eigen::VectorXd noise =
-        Eigen::VectorXd::NullaryExpr(seen, [&](Eigen::Index) { return normal(random); });
-    taken += products.explained(noise) / noise.squaredNorm() * static_cast<double>(seen) / kDraws;
-  }
-  const double left = static_cast<double>(seen) - taken;
-  if (left < 1.0 || all <= 0.0) {
+  const double share = all > 0.0 ? explained / all : 0.0;
+  const auto [mean, variance] = shares_of_noise(products, root, white, shots * gauges);
+  if (share <= mean || variance <= 0.0) {
     return {};
   }
-  const double rest = std::max(all - explained, 1e-12 * all);
   ProductTest test;
-  test.log_p = log_f_tail(explained / taken * left / rest, taken, left);
-  test.beyond_one_gauge = (explained - products.at_one_gauge(white)) / (rest / left);
+  test.log_p = log_beta_tail(share, mean, variance);
+  const double freedom = static_cast<double>(seen) * (1.0 - mean);
+  const double rest = std::max(all - explained, 1e-12 * all) / freedom;
+  test.beyond_one_gauge = (explained - products.at_one_gauge(white)) / rest;
   return test;
 }
 

@@ -14,9 +14,8 @@ struct ProductTest {
   double beyond_one_gauge = 0.0;
 };
 
-/// Noise here is whatever has a power of its own in each shot and gauge: the test compares what
-/// products explain of the strengths with what they leave, whatever the power. How much of noise
-/// products explain by themselves comes from simulated noise.
+/// Noise here is whatever differs from place to place, whatever its power in cosine and sine: the
+/// share that products explain is compared with the share that they explain of simulated noise.
 /// @param strengths    cosine parts, then sine parts; in each by shot and then by gauge; under a
 ///                     prior of unit deviation around zero
 /// @param information  inverse of their posterior covariance, that prior included

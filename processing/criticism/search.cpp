@@ -241,10 +241,14 @@ double Search::scatter_of(const Studied& studied, const std::string& id) const {
 /// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no
 /// better than so many degrees of freedom do.
 double Search::chance_of(const Refit& refit) const {
-  if (refit.products) {
-    return refit.products->log_p;
-  }
   const EffectUse& use = candidates_[refit.candidate].use;
+  if (refit.products) {
+    // Nothing else is judged by products: what has been sought among is the effect's own variants.
+    const auto variants = std::count_if(candidates_.begin(), candidates_.end(), [&](const auto& c) {
+      return c.id() == use.id() && c.use.per_shot && !c.use.alike;
+    });
+    return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
+  }
   const std::size_t shots = study_.campaign().shots.size();
   if (use.per_shot || shots < 3 || refit.gain <= 0.0) {
     return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
