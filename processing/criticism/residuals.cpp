@@ -27,6 +27,10 @@ constexpr double kFilteredFrom = 2.2;
 constexpr double kEdge = 8.0;
 constexpr double kWrapDamping = 1e-8;
 constexpr std::size_t kFewestJudged = 64;
+/// Power over noise at the highest frequency judged. Where the source is as much noise as signal,
+/// an effect's test rests on how well the noise of each gauge is known, and says little of the
+/// effect.
+constexpr double kPowerOverNoise = 30.0;
 
 std::size_t small_factors(std::size_t n) {
   for (;; ++n) {
@@ -138,13 +142,17 @@ void WhiteResiduals::choose_band(double asked_Hz) {
   BandLimit limit(transform, transform.length());
   band_.limit_Hz = asked_Hz;
   if (asked_Hz <= 0.0) {
+    std::vector<double> limits_Hz;
     for (const CampaignShot& shot : campaign_.shots) {
       const auto& record = shot.strain[reference];
       const double step = campaign_.step[reference];
       const double noise =
           std::hypot(quiet_before(record, shot.quiet_samples).noise_rms, step / std::sqrt(12.0));
-      band_.limit_Hz = std::max(band_.limit_Hz, limit.from_noise(record, noise));
+      limits_Hz.push_back(limit.from_noise(record, noise, kPowerOverNoise));
     }
+    const auto middle = limits_Hz.begin() + static_cast<std::ptrdiff_t>(limits_Hz.size() / 2);
+    std::nth_element(limits_Hz.begin(), middle, limits_Hz.end());
+    band_.limit_Hz = *middle;
     // Surface gauges see little of waves as short as the bar is thick.
     constexpr double kBlind = 0.25;
     for (const Bar* bar :
