@@ -1,6 +1,9 @@
 #include "processing/criticism/own_strengths.hpp"
 
 #include <cmath>
+#include <random>
+
+#include "processing/criticism/search_trials.hpp"
 
 namespace kolsky {
 
@@ -25,14 +28,35 @@ double slope_before(const CampaignShot& shot, const std::vector<double>& record)
   return cross / square;
 }
 
-/// A hum is as strong in every shot; slow noise that was taken for one is not.
-bool amplitudes_agree(const Eigen::VectorXcd& amplitudes) {
-  const Eigen::VectorXd size = amplitudes.cwiseAbs();
-  const double mean = size.mean();
-  const auto count = static_cast<double>(size.size());
-  const double variance = (size.array() - mean).square().sum() / std::max(1.0, count - 1.0);
-  constexpr double kScatter = 0.3;  // of noise it is 0.5
-  return size.size() > 2 && std::sqrt(variance) < kScatter * mean;
+/// Standard deviation over mean.
+double spread_of(const Eigen::VectorXd& sizes) {
+  const double mean = sizes.mean();
+  const auto count = static_cast<double>(sizes.size());
+  const double variance = (sizes.array() - mean).square().sum() / std::max(1.0, count - 1.0);
+  return mean > 0.0 ? std::sqrt(variance) / mean : 1.0;
+}
+
+/// A hum is as strong in every shot; slow noise that was taken for one is not. Its amplitudes are
+/// normal in cosine and sine: so much alike they must be as fewer than one in a hundred such sets.
+bool amplitudes_agree(const Eigen::VectorXd& sizes) {
+  constexpr int kDraws = 20000;
+  constexpr double kChance = 0.01;
+  if (sizes.size() < 3) {
+    return false;
+  }
+  const double found = spread_of(sizes);
+  std::mt19937_64 random(kSearchSeed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd draw(sizes.size());
+  int alike = 0;
+  for (int n = 0; n < kDraws; ++n) {
+    for (double& size : draw) {
+      const double cosine = normal(random);
+      size = std::hypot(cosine, normal(random));
+    }
+    alike += spread_of(draw) <= found ? 1 : 0;
+  }
+  return alike < kChance * kDraws;
 }
 
 /// The slopes before the pulses must follow those found: regression through the origin.
@@ -54,15 +78,18 @@ bool slopes_agree(const std::vector<double>& found, const std::vector<double>& b
   return found.size() > 2 && share > 0.5 && share < 1.5 && share > kSigma * sd;
 }
 
-bool one_phase(Eigen::MatrixXcd amplitudes) {
+/// One phase in a shot, whatever the gauge, and one strength in all shots: a single gauge's slow
+/// noise, seen against the others, has the first, but not both.
+bool one_hum(Eigen::MatrixXcd amplitudes) {
   // What all gauges have alike the shot's source takes up: it is not there to be judged.
   const Eigen::VectorXcd common = amplitudes.rowwise().mean();
   amplitudes.colwise() -= common;
-  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(amplitudes);
+  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(amplitudes, Eigen::ComputeThinU);
   constexpr double kOfOneProduct = 0.85;
   const double all = svd.singularValues().squaredNorm();
   return amplitudes.cols() > 2 && amplitudes.rows() > 2 &&
-         svd.singularValues()[0] * svd.singularValues()[0] > kOfOneProduct * all;
+         svd.singularValues()[0] * svd.singularValues()[0] > kOfOneProduct * all &&
+         amplitudes_agree(svd.matrixU().col(0).cwiseAbs());
 }
 
 /// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
@@ -133,9 +160,9 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
     return true;
   }
   if (use->effect->about().each_gauge && !use->alike) {
-    return one_phase(amplitudes_of(studied, id, campaign));
+    return one_hum(amplitudes_of(studied, id, campaign));
   }
-  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0))) {
+  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0).cwiseAbs())) {
     return false;
   }
   const Slopes slopes = slopes_of(studied, id, campaign);
