@@ -1,5 +1,7 @@
 #include "processing/criticism/study.hpp"
 
+#include "processing/criticism/branch_order.hpp"
+
 namespace kolsky {
 
 Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
@@ -14,6 +16,7 @@ Studied Study::fit(const Model& model) {
   residuals_.freeze(composition, composition.start());
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
+  (void)put_branches_in_order(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
   residuals_.calibrate(fit.residual);
   residuals_.freeze(composition, fit.theta);
