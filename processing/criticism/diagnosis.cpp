@@ -106,12 +106,7 @@ class Diagnostician {
 
   std::optional<Choice> choose(Search& search, const Studied& base, bool note) {
     std::vector<Refit> refits = search.refits();
-    std::vector<Certification> held_out;
-    const std::vector<double> before = held_out_of(base);
-    for (const Refit& refit : refits) {
-      held_out.push_back(certification(before, held_out_of(refit.studied),
-                                       base.fit.penalty - refit.studied.fit.penalty));
-    }
+    const std::vector<Certification> held_out = certify(search, refits, base);
     const std::size_t per_shot = study_.residuals().per_shot();
     if (note) {
       note_refits(search, refits, held_out, per_shot, diagnosis_.candidates);
@@ -122,7 +117,7 @@ class Diagnostician {
     for (std::size_t i = 0; i < refits.size(); ++i) {
       const Refit& refit = refits[i];
       // What slow noise does by itself is no rival.
-      if (search.with_search(refit.log_p) > options_.log_alpha) {
+      if (!claimable(search, refit)) {
         continue;
       }
       leading = std::max(leading, refit.evidence);
@@ -146,6 +141,28 @@ class Diagnostician {
     Refit& refit = refits[*best];
     return Choice{search.candidates()[refit.candidate].id(), refit.candidate,
                   std::move(refit.studied), std::move(ties)};
+  }
+
+  [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
+    return search.with_search(refit.log_p) <= options_.log_alpha;
+  }
+
+  /// Exact for those that may be named; of the others first order tells enough.
+  std::vector<Certification> certify(const Search& search, const std::vector<Refit>& refits,
+                                     const Studied& base) {
+    const auto leading = std::find_if(refits.begin(), refits.end(),
+                                      [&](const Refit& refit) { return claimable(search, refit); });
+    std::vector<Certification> held_out;
+    const std::vector<double> before = held_out_of(base);
+    for (const Refit& refit : refits) {
+      const bool near = leading != refits.end() && claimable(search, refit) &&
+                        refit.evidence > leading->evidence - 2.0 * kTie;
+      const Studied& own = refit.studied;
+      held_out.push_back(certification(
+          before, near ? held_out_of(own) : held_out_squares(own, study_.residuals().per_shot()),
+          base.fit.penalty - own.fit.penalty));
+    }
+    return held_out;
   }
 
   /// The model goes on with it.

@@ -16,11 +16,13 @@ Studied Study::fit(const Model& model) {
   residuals_.freeze(composition, composition.start());
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
-  (void)put_branches_in_order(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
   residuals_.calibrate(fit.residual);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
+  if (put_branches_in_order(composition, fit.theta)) {
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
   const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
   Model after = fitted(started, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};
