@@ -130,7 +130,7 @@ Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
     const FreeNumber& number = studied.composition.numbers()[i];
     if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id &&
         number.parameter < found.size()) {
-      found[number.parameter].push_back(studied.fit.theta[i] * number.scale);
+      found[number.parameter].push_back(number.value_at(studied.fit.theta[i]));
     }
   }
   const auto shots = static_cast<Eigen::Index>(campaign.shots.size());
