@@ -172,7 +172,7 @@ class Diagnostician {
     // The noise shows better now.
     study_.residuals().freeze(choice.studied.composition, choice.studied.fit.theta);
     Studied next = study_.refit(choice.studied);
-    study_.residuals().calibrate(next.fit.residual);
+    study_.residuals().calibrate(next.composition, next.fit.theta);
     current = study_.refit(next);
     diagnosis_.tied_with[choice.id] = std::move(choice.ties);
   }

@@ -135,6 +135,7 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
     own_noise_.emplace_back(campaign.gauges(), std::vector<double>(shot.strain.front().size()));
   }
   prepare_noise();
+  noise_scale_.assign(campaign.gauges(), std::vector<double>(band_.bins_judged, 1.0));
   prepare_spectra();
   measure_signal();
 }
@@ -409,23 +410,22 @@ Eigen::MatrixXcd WhiteResiduals::whitener(const CarriedBin& carried, std::size_t
     G(i, static_cast<Eigen::Index>(others_[other])) = 1.0;
     G(i, static_cast<Eigen::Index>(campaign_.reference)) = -carried.ratio[i];
   }
-  cross.noalias() = noise_[bin] * G.adjoint();
+  Eigen::VectorXd scale(gauges);
+  for (Eigen::Index j = 0; j < gauges; ++j) {
+    scale[j] = std::sqrt(noise_scale_[static_cast<std::size_t>(j)][bin]);
+  }
+  const Eigen::MatrixXd noise = scale.asDiagonal() * noise_[bin] * scale.asDiagonal();
+  cross.noalias() = noise * G.adjoint();
   const auto reference = static_cast<Eigen::Index>(campaign_.reference);
-  const double of_reference = noise_[bin](reference, reference);
   const Eigen::MatrixXcd own =
-      G * cross - of_reference * carried.ratio * carried.ratio.adjoint() + carried.power;
+      G * cross - noise(reference, reference) * carried.ratio * carried.ratio.adjoint() +
+      noise_scale_[campaign_.reference][bin] * carried.power;
   Eigen::LLT<Eigen::MatrixXcd> factor(own);
   if (factor.info() != Eigen::Success) {
     // What gauges share is known as if it were stationary: among long echoes it can contradict.
     factor.compute(Eigen::MatrixXcd(own.diagonal().real().cast<Complex>().asDiagonal()));
   }
-  Eigen::MatrixXcd inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
-  if (!correction_.empty()) {
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      inverse.row(i) /= std::sqrt(correction_[bin][static_cast<std::size_t>(i)]);
-    }
-  }
-  return inverse;
+  return factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
 }
 
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
@@ -460,41 +460,63 @@ void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
   }
 }
 
-void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
+void WhiteResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {
+  // Expectation and maximisation: what the residuals say of each gauge's noise, given the noise of
+  // all as known so far. The slowest part halves its error at each step.
+  constexpr int kSteps = 6;
+  for (int step = 0; step < kSteps; ++step) {
+    freeze(composition, theta);
+    share_out_noise(evaluate(composition, theta));
+  }
+  freeze(composition, theta);
+}
+
+void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white) {
   const std::size_t shots = campaign_.shots.size();
   const std::size_t bins = band_.bins_judged;
-  const bool repeated = shots > 1;
   std::vector<Spectrum> sources;
+  std::vector<std::vector<Spectrum>> noise;
   for (std::size_t n = 0; n < shots; ++n) {
     sources.push_back(source_spectrum(n, white));
+    noise.push_back(
+        deviation_spectra(std::span<const double>(white.data() + n * per_shot(), per_shot())));
   }
-  std::vector<std::vector<double>> correction(bins, std::vector<double>(others_.size(), 1.0));
-  for (std::size_t i = 0; i < others_.size(); ++i) {
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     std::vector<double> power(bins);
     for (std::size_t k = 0; k < bins; ++k) {
-      double all = 0.0;
-      double source_power = 0.0;
-      Complex followed = 0.0;
-      for (std::size_t n = 0; n < shots; ++n) {
-        const auto at = static_cast<Eigen::Index>(n * per_shot() + index(k, i));
-        const Complex w(white[at], white[at + 1]);
-        all += std::norm(w);
-        source_power += std::norm(sources[n][k]);
-        followed += w * std::conj(sources[n][k]);
-      }
-      // One shot shows nothing that follows its source or not.
-      const double freedom = 2.0 * static_cast<double>(repeated ? shots - 1 : 1);
-      const double follows = repeated ? std::norm(followed) / source_power : 0.0;
-      // Beside the noise measured before the pulses, whatever was corrected so far.
-      const double before = correction_.empty() ? 1.0 : correction_[k][i];
-      power[k] = before * (all - follows) / freedom;
+      power[k] = noise_scale_[j][k] * power_over_known(j, k, noise, sources);
     }
-    const std::vector<double> shape = smooth_power(power);
-    for (std::size_t k = 0; k < bins; ++k) {
-      correction[k][i] = repeated ? shape[k] : std::max(shape[k], 1.0);
+    noise_scale_[j] = smooth_power(power);
+    if (shots == 1) {
+      for (double& scale : noise_scale_[j]) {
+        scale = std::max(scale, 1.0);
+      }
     }
   }
-  correction_ = std::move(correction);
+}
+
+/// Of a gauge's noise at a bin, as the residuals show it: what they say of it, but for what follows
+/// the shots' sources, and what they leave open.
+double WhiteResiduals::power_over_known(std::size_t gauge, std::size_t bin,
+                                        const std::vector<std::vector<Spectrum>>& noise,
+                                        const std::vector<Spectrum>& sources) const {
+  const std::size_t shots = noise.size();
+  double all = 0.0;
+  double source_power = 0.0;
+  Complex followed = 0.0;
+  for (std::size_t n = 0; n < shots; ++n) {
+    const Complex e = noise[n][gauge][bin + 1];
+    all += std::norm(e);
+    source_power += std::norm(sources[n][bin]);
+    followed += e * std::conj(sources[n][bin]);
+  }
+  // One shot shows nothing that follows its source or not.
+  const double shown =
+      shots > 1 ? (all - std::norm(followed) / source_power) / static_cast<double>(shots - 1) : all;
+  const auto j = static_cast<Eigen::Index>(gauge);
+  const double known = noise_scale_[gauge][bin] * noise_[bin](j, j);
+  const double open = known - 2.0 * spread_[bin].row(j).squaredNorm();
+  return (shown + std::max(0.0, open)) / known;
 }
 
 Eigen::VectorXd WhiteResiduals::evaluate(const Composition& composition,

@@ -49,13 +49,12 @@ class WhiteResiduals : public ShotResiduals {
   /// of each gauge's noise.
   void freeze(const Composition& composition, const std::vector<double>& theta);
 
-  /// Corrects the whitener by what the residuals of a fit show of the noise: at each frequency the
-  /// part that does not follow the shots' sources cannot be an unchanging error of the model. Its
-  /// power over the assumed one is taken as s0 + s1/f + s2/f^2, for each component of the
-  /// residuals. One shot cannot tell its noise from what a model lacks: all of its residuals that
-  /// is smooth in frequency is taken for noise, above what was measured before the pulse.
-  /// @param white  residuals under the whitener as it is
-  void calibrate(const Eigen::VectorXd& white);
+  /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
+  /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
+  /// of the model. How it is shared out matters as much as how much it is: with a wrong share for
+  /// the reference, noise in the source would pull at the parameters. Its power over that measured
+  /// before the pulses is taken as s0 + s1/f + s2/f^2 for each gauge.
+  void calibrate(const Composition& composition, const std::vector<double>& theta);
 
   /// All shots' residuals, shot by shot, of unit variance under the true model.
   [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
@@ -117,6 +116,10 @@ class WhiteResiduals : public ShotResiduals {
   void shape_records(Workspace& work, const RecordScene& record, std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
   void estimate_noise(const Eigen::VectorXd& white);
+  void share_out_noise(const Eigen::VectorXd& white);
+  [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
+                                        const std::vector<std::vector<Spectrum>>& noise,
+                                        const std::vector<Spectrum>& sources) const;
   void plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const;
 
   const Campaign& campaign_;
@@ -129,8 +132,8 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<Eigen::MatrixXd> noise_;          ///< covariance of the gauges per judged bin (power)
   std::unique_ptr<CarriedNoise> carried_;       ///< of the reference gauge
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
-  std::vector<std::vector<double>> correction_;  ///< of the noise's power, by bin and component
-  std::vector<Eigen::MatrixXcd> spread_;         ///< whitened residual to deviations of all gauges
+  std::vector<std::vector<double>> noise_scale_;  ///< of that power, by gauge and bin
+  std::vector<Eigen::MatrixXcd> spread_;          ///< whitened residual to deviations of all gauges
   /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
   std::vector<std::vector<std::vector<double>>> own_noise_;
   double signal_energy_ = 0.0;

@@ -17,8 +17,7 @@ Studied Study::fit(const Model& model) {
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
-  residuals_.calibrate(fit.residual);
-  residuals_.freeze(composition, fit.theta);
+  residuals_.calibrate(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
   if (put_branches_in_order(composition, fit.theta)) {
     fit = fit_model(composition, residuals_, executor_, fit.theta);
