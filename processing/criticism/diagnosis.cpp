@@ -127,9 +127,9 @@ class Diagnostician {
       const std::string id = search.candidates()[refit.candidate].id();
       const auto [gain, better] = held_out[i];
       // Products of what each shot and each gauge has of its own are foretold by each other.
-      const bool foretells =
+      const bool foretold =
           refit.products || (gain > 0.0 && 2 * better > study_.campaign().shots.size());
-      if (!foretells || !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) {
+      if (!foretold || !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) {
         set_verdict(id, "rejected");
       } else if (best) {
         ties.push_back(id);

@@ -107,7 +107,7 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     return {};
   }
   const double found = (directions.transpose() * extended.residual).squaredNorm();
-  if (shots < 3) {
+  if (shots < 2) {
     const double noise = std::max(1.0, studied.misfit.noise_scale);
     return {log_chi2_tail(found / noise, freedom), std::max(0.0, found / noise - freedom)};
   }
