@@ -40,6 +40,27 @@ void set_identifiable(const Search& search, std::size_t i, double power, Candida
                result.sd * root(kToldApart / std::sqrt(std::max(1e-12, 1.0 - closest)), power));
 }
 
+/// Root mean square over shots and gauges of an amplitude in cosine and sine parts.
+void set_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
+  const ModelFit& fit = studied.fit;
+  Eigen::VectorXd parts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.theta.size()));
+  double scale = 1.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.parameter < 2 && studied.composition.uses()[number.use].id() == id) {
+      parts[static_cast<Eigen::Index>(i)] = fit.theta[i];
+      scale = number.scale;
+      count += number.parameter == 0 ? 1.0 : 0.0;
+    }
+  }
+  const double amplitude = count > 0.0 ? std::sqrt(parts.squaredNorm() / count) : 0.0;
+  result.strength = scale * amplitude;
+  if (amplitude > 0.0) {
+    result.sd = scale * std::sqrt(parts.dot(fit.covariance * parts)) / (count * amplitude);
+  }
+}
+
 }  // namespace
 
 std::vector<CandidateResult> first_order_table(const Search& search) {
@@ -113,7 +134,7 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
   result.sd = use->values[at].sd;
   if (use->effect->about().quadrature) {
     result.parameter = "A";
-    result.strength = std::hypot(use->values[0].value, use->values[1].value);
+    set_amplitude(studied, id, result);
   }
 }
 

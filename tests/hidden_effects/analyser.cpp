@@ -62,27 +62,15 @@ Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
     return made;
   }
   return run(analyser, files, "diagnose",
-             fmt::format("diagnose{} --model {} --json {}", captures_of(files), quoted(model),
-                         analyser.more));
+             fmt::format("diagnose{} --model {} -o {} --json {}", captures_of(files), quoted(model),
+                         quoted(files.folder / "found.toml"), analyser.more));
 }
 
-Answer refit(const Analyser& analyser, const CaseFiles& files,
-             const std::vector<std::string>& effects) {
-  std::filesystem::path model = files.folder / "model.toml";
-  int step = 0;
-  for (const std::string& effect : effects) {
-    const std::filesystem::path next = files.folder / fmt::format("model{}.toml", ++step);
-    Answer added = run(
-        analyser, files, "model-add",
-        fmt::format("model add {} {} -o {} --json", quoted(model), quoted(effect), quoted(next)));
-    if (added.code != 0) {
-      return added;
-    }
-    model = next;
-  }
-  return run(analyser, files, "fit",
-             fmt::format("fit{} --model {} -o {} --json", captures_of(files), quoted(model),
-                         quoted(files.folder / "fitted.toml")));
+Answer refit(const Analyser& analyser, const CaseFiles& files) {
+  return run(
+      analyser, files, "fit",
+      fmt::format("fit{} --model {} -o {} --json", captures_of(files),
+                  quoted(files.folder / "found.toml"), quoted(files.folder / "fitted.toml")));
 }
 
 }  // namespace kolsky::scoring

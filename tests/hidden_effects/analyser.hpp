@@ -22,8 +22,7 @@ struct Answer {
 /// Makes the paper's model for the case's bench and has the captures diagnosed.
 [[nodiscard]] Answer diagnose(const Analyser& analyser, const CaseFiles& files);
 
-/// Adds the certified effects to the model and fits it again. @return fit's answer
-[[nodiscard]] Answer refit(const Analyser& analyser, const CaseFiles& files,
-                           const std::vector<std::string>& effects);
+/// Fits the model that the diagnosis wrote, with what it found in it. @return fit's answer
+[[nodiscard]] Answer refit(const Analyser& analyser, const CaseFiles& files);
 
 }  // namespace kolsky::scoring

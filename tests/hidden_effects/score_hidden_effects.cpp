@@ -63,7 +63,7 @@ void score_case(const Settings& settings, const Case& drawn, Scores& scores) {
   const Answer answer = diagnose(settings.analyser, files);
   Verdict verdict = judge(drawn, answer);
   if (settings.refit && verdict.exact) {
-    judge_refit(verdict, drawn, refit(settings.analyser, files, verdict.named));
+    judge_refit(verdict, drawn, refit(settings.analyser, files));
   }
   if (settings.further && drawn.kind != CaseKind::two && verdict.found == 1 &&
       verdict.set_size > 1.0) {
@@ -162,7 +162,7 @@ int main(int argc, char** argv) {
                  "a record whose quiet beginning is used as noise: TABLE.csv:COLUMN:ROWS");
   app.add_option("--bench", settings.only_bench, "only this one, as a failed case's id has it");
   app.add_flag("--split", settings.plan.split, "split bars in place of bars");
-  app.add_flag("--refit", settings.refit, "add what is named, fit again, judge the moduli");
+  app.add_flag("--refit", settings.refit, "fit again with what is named, judge the moduli");
   app.add_flag("--further", settings.further, "make the experiments proposed to break ties");
   app.add_flag("--keep", settings.keep, "keep the folders of cases that went well");
   app.add_flag("--draw-only", settings.draw_only, "write the campaigns and stop");
