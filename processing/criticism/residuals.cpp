@@ -30,6 +30,9 @@ constexpr double kCarriedFrom = 1.4;
 constexpr double kEdge = 8.0;
 constexpr double kWrapDamping = 1e-8;
 constexpr std::size_t kFewestJudged = 64;
+/// What a single shot leaves may be noise of up to so many times the power that was measured before
+/// its pulse: that stretch is too short to show what is slow.
+constexpr double kMostUnrepeated = 4.0;
 
 std::size_t small_factors(std::size_t n) {
   for (;; ++n) {
@@ -483,7 +486,7 @@ void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
     }
     const std::vector<double> shape = smooth_power(power);
     for (std::size_t k = 0; k < bins; ++k) {
-      correction[k][i] = repeated ? shape[k] : std::max(shape[k], 1.0);
+      correction[k][i] = repeated ? shape[k] : std::clamp(shape[k], 1.0, kMostUnrepeated);
     }
   }
   correction_ = std::move(correction);

@@ -52,8 +52,8 @@ class WhiteResiduals : public ShotResiduals {
   /// Corrects the whitener by what the residuals of a fit show of the noise: at each frequency the
   /// part that does not follow the shots' sources cannot be an unchanging error of the model. Its
   /// power over the assumed one is taken as s0 + s1/f + s2/f^2, for each component of the
-  /// residuals. One shot cannot tell its noise from what a model lacks: all of its residuals that
-  /// is smooth in frequency is taken for noise, above what was measured before the pulse.
+  /// residuals. One shot cannot tell its noise from what a model lacks: its residuals are
+  /// taken for noise up to four times the power that was measured before the pulse.
   /// @param white  residuals under the whitener as it is
   void calibrate(const Eigen::VectorXd& white);
 
