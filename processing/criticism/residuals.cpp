@@ -34,6 +34,9 @@ constexpr std::size_t kFewestJudged = 64;
 /// an effect's test rests on how well the noise of each gauge is known, and says little of the
 /// effect.
 constexpr double kPowerOverNoise = 30.0;
+/// What a single shot leaves may be noise of up to so many times the power that was measured before
+/// its pulse: that stretch is too short to show what is slow.
+constexpr double kMostUnrepeated = 4.0;
 
 std::size_t small_factors(std::size_t n) {
   for (;; ++n) {
@@ -489,7 +492,7 @@ void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white) {
     noise_scale_[j] = smooth_power(power);
     if (shots == 1) {
       for (double& scale : noise_scale_[j]) {
-        scale = std::max(scale, 1.0);
+        scale = std::clamp(scale, 1.0, kMostUnrepeated);
       }
     }
   }

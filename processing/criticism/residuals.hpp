@@ -53,7 +53,8 @@ class WhiteResiduals : public ShotResiduals {
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
   /// of the model. How it is shared out matters as much as how much it is: with a wrong share for
   /// the reference, noise in the source would pull at the parameters. Its power over that measured
-  /// before the pulses is taken as s0 + s1/f + s2/f^2 for each gauge.
+  /// before the pulses is taken as s0 + s1/f + s2/f^2 for each gauge. One shot cannot tell its
+  /// noise from what a model lacks: its residuals are taken for noise up to four times that power.
   void calibrate(const Composition& composition, const std::vector<double>& theta);
 
   /// All shots' residuals, shot by shot, of unit variance under the true model.

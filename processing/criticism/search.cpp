@@ -231,7 +231,7 @@ double Search::chance_of(const Refit& refit) const {
     return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
   }
   const std::size_t shots = study_.campaign().shots.size();
-  if (use.per_shot || shots < 3 || refit.gain <= 0.0) {
+  if (use.per_shot || refit.gain <= 0.0) {
     return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
   }
   const double freedom = std::max(refit.freedom, 1.0);

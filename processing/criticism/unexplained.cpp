@@ -10,6 +10,9 @@ namespace kolsky {
 
 namespace {
 
+/// Degrees of freedom by which the quiet before a single pulse tells slow noise.
+constexpr double kOneStretch = 3.0;
+
 /// Residuals of the records, and below them those of the priors.
 struct Extended {
   Eigen::MatrixXd columns;
@@ -108,8 +111,8 @@ Unexplained unexplained(Study& study, const Studied& studied) {
   }
   const double found = (directions.transpose() * extended.residual).squaredNorm();
   if (shots < 2) {
-    const double noise = std::max(1.0, studied.misfit.noise_scale);
-    return {log_chi2_tail(found / noise, freedom), std::max(0.0, found / noise - freedom)};
+    // Nothing shows that it would come back: noise is known by one short stretch alone.
+    return {log_f_tail(found / freedom, freedom, kOneStretch), std::max(0.0, found - freedom)};
   }
   const double noise = between_shots(directions, extended.residual, per_shot, shots);
   const double between = freedom * static_cast<double>(shots - 1);
