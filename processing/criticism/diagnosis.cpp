@@ -18,6 +18,7 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
+constexpr double kLostByChance = 4.0;        ///< chi2 on held-out shots
 constexpr double kAllowedRest = 0.01;        ///< of a misfit that certified effects explain
 constexpr double kUnexplained = -6.9;        ///< ln of the chance that noise leaves as much
 constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
@@ -99,8 +100,12 @@ class Diagnostician {
       const auto [gain, better] = certification(current, refit.studied, per_shot);
       const std::size_t shots = study_.campaign().shots.size();
       const bool agrees = shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot);
-      if (gain <= 0.0 || 2 * better <= shots || !agrees ||
-          search.with_search(refit.log_p) > options_.log_alpha) {
+      // A filed number that was held by its deviation is found by the other shots whether it is
+      // set free or not: nothing is gained on a held-out shot, and nothing may be lost.
+      const bool foretells = search.candidates()[refit.candidate].frees_prior
+                                 ? gain > -kLostByChance
+                                 : gain > 0.0 && 2 * better > shots;
+      if (!foretells || !agrees || search.with_search(refit.log_p) > options_.log_alpha) {
         set_verdict(id, "rejected");
         continue;
       }
