@@ -7,6 +7,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/calibration/incident_tail.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -156,7 +157,8 @@ void leave_one_bar(Shot& shot, const std::string& name) {
 
 /// Makes a second gauge of one that sees the pulse come back from the free end: what it reads from
 /// then on, inverted, on a bar that has no end. What the first one reads from then on would reach
-/// the second only after the record's new end. The way between them is known as well as the bar's
+/// the second only after the record's new end. What of the first pass is still to come then is
+/// taken off. The way between them is known as well as the bar's
 /// length and the gauge's place.
 void split_passes(Shot& shot, const BarPrior& bars) {
   Gauge& gauge = shot.bench.gauges.front();
@@ -185,13 +187,20 @@ void split_passes(Shot& shot, const BarPrior& bars) {
   for (std::size_t n = 0; n < quiet; ++n) {
     baseline += static_cast<double>(codes[n]) / static_cast<double>(quiet);
   }
+  std::vector<double> readings(codes.begin(), codes.begin() + static_cast<std::ptrdiff_t>(end));
+  for (double& reading : readings) {
+    reading -= baseline;
+  }
+  const std::vector<double> tail =
+      incident_tail(readings, back, bar, *compliance_of(bar, bars.material), gauge.position_m,
+                    shot.rate.period_s());
   ChannelRecord returned = shot.channels.front();
   for (std::size_t n = 0; n < end; ++n) {
     // Noise of before the pulse, to and fro, stands where the first pass was.
     const std::size_t phase = n % (2 * quiet);
-    returned.codes[n] = n < back
-                            ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
-                            : static_cast<std::int32_t>(std::lround(2.0 * baseline)) - codes[n];
+    returned.codes[n] =
+        n < back ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
+                 : static_cast<std::int32_t>(std::lround(baseline - readings[n] + tail[n]));
   }
   Gauge second = gauge;
   second.name += " returned";
