@@ -143,6 +143,29 @@ TEST(BarsTogether, MomentumSeesWhatAllGaugesShare) {
   EXPECT_NE(calibration.reasons.front().find("momentum"), std::string::npos);
 }
 
+/// An output bar that has aged: what its face returns tells its modulus from the input bar's.
+TEST(BarsTogether, EachRodHasItsOwnModuli) {
+  testing::LinearShpb model = one_long_bar();
+  model.output.E1_Pa *= 0.95;
+  model.gauge_out_m = 0.4;
+  Material filed = paper_pmma();
+  filed.E1_Pa.sd = 0.1 * filed.E1_Pa;
+  filed.E2_Pa.sd = 0.1 * filed.E2_Pa;
+  filed.eta2_Pa_s.sd = 0.1 * filed.eta2_Pa_s;
+  CalibrationOptions options;
+  options.bars = BarPrior(filed);
+  const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 5), options);
+  const PartResult& part = calibration.parts.front();
+  EXPECT_NEAR(part.chi2_reduced, 1.0, 0.15);
+  const CalibratedNumber& in = number(part, "E1_Pa");
+  const CalibratedNumber& out = number(part, "output:E1_Pa");
+  std::printf("E1 %.4g +- %.2g, output %.4g +- %.2g\n", in.combined.value, in.combined.sd,
+              out.combined.value, out.combined.sd);
+  EXPECT_NEAR(in.combined.value, 5.66e9, 3.0 * in.combined.sd);
+  EXPECT_NEAR(out.combined.value, 0.95 * 5.66e9, 3.0 * out.combined.sd);
+  EXPECT_LT(out.combined.sd, 0.01 * 5.66e9);
+}
+
 /// Of a viscoelastic bar the first pass's tail lies under the return: with it left there the speed
 /// is 0.05 % low, six of its deviations.
 TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
