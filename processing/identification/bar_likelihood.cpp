@@ -245,9 +245,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
       }
     }
   }
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(covariance);
-  lowest_lower_inverse_ =
-      factor.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.rows()));
+  lowest_factor_.compute(covariance);
 }
 
 void BarLikelihood::weigh(std::span<const double> at, bool exact) {
@@ -357,8 +355,9 @@ Eigen::MatrixXd BarLikelihood::white(const std::vector<Eigen::MatrixXcd>& bins) 
   }
   if (lowest_bins_ > 0) {
     const Eigen::Index coupled = 2 * others * static_cast<Eigen::Index>(lowest_bins_);
-    rows.topRows(coupled) =
-        (lowest_lower_inverse_.triangularView<Eigen::Lower>() * rows.topRows(coupled)).eval();
+    Eigen::MatrixXd lowest = rows.topRows(coupled);
+    lowest_factor_.matrixL().solveInPlace(lowest);
+    rows.topRows(coupled) = lowest;
   }
   return rows;
 }
