@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "processing/criticism/held_out.hpp"
+#include "processing/criticism/shot_strengths.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
@@ -15,7 +15,7 @@ constexpr double kDetected = 6.0;   ///< sigma
 constexpr double kToldApart = 5.0;  ///< sigma beside a rival
 
 /// The strength that stands at 5 sigma beside whichever other effect resembles it most.
-void set_identifiable(const Search& search, std::size_t i, CandidateResult& result) {
+void set_identifiable(const Search& search, std::size_t i, double power, CandidateResult& result) {
   const Direction& own = search.directions()[i];
   result.identifiable = result.detectable;
   if (own.information.rows() != 1) {
@@ -35,8 +35,9 @@ void set_identifiable(const Search& search, std::size_t i, CandidateResult& resu
       result.nearest_rival = search.candidates()[k].id();
     }
   }
-  result.identifiable = std::max(
-      result.detectable, kToldApart * result.sd / std::sqrt(std::max(1e-12, 1.0 - closest)));
+  result.identifiable =
+      std::max(result.detectable,
+               result.sd * root(kToldApart / std::sqrt(std::max(1e-12, 1.0 - closest)), power));
 }
 
 }  // namespace
@@ -63,10 +64,11 @@ std::vector<CandidateResult> first_order_table(const Search& search) {
       const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
                                ? candidate.use.values[0].prior_sd
                                : parameter.typical;
-      result.strength = parameter.null_value + direction.step[0] * scale;
-      result.sd = scale / std::sqrt(direction.information(0, 0));
-      result.detectable = kDetected * result.sd;
-      set_identifiable(search, i, result);
+      const double sd = 1.0 / std::sqrt(direction.information(0, 0));
+      result.strength = parameter.null_value + scale * root(direction.step[0], parameter.power);
+      result.sd = scale * root(sd, parameter.power);
+      result.detectable = scale * root(kDetected * sd, parameter.power);
+      set_identifiable(search, i, parameter.power, result);
       result.verdict = "not needed";
     } else {
       result.detectable = result.identifiable = INFINITY;
@@ -82,15 +84,17 @@ std::vector<CandidateResult> first_order_table(const Search& search) {
   return table;
 }
 
-void note_refits(const Search& search, const std::vector<Refit>& refits, const Studied& current,
-                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table) {
-  for (const Refit& refit : refits) {
+void note_refits(const Search& search, const std::vector<Refit>& refits,
+                 const std::vector<Certification>& held_out, std::size_t residuals_per_shot,
+                 std::vector<CandidateResult>& table) {
+  for (std::size_t i = 0; i < refits.size(); ++i) {
+    const Refit& refit = refits[i];
     for (CandidateResult& result : table) {
       if (result.effect == search.candidates()[refit.candidate].id()) {
         result.gain = refit.gain;
         result.log_p = search.with_search(refit.log_p);
-        result.held_out_gain = certification(current, refit.studied, residuals_per_shot).gain;
-        set_strength(refit.studied, result.effect, result);
+        result.held_out_gain = held_out[i].gain;
+        set_strength(refit.studied, result.effect, residuals_per_shot, result);
       }
     }
   }
@@ -110,6 +114,15 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
   if (use->effect->about().quadrature) {
     result.parameter = "A";
     result.strength = std::hypot(use->values[0].value, use->values[1].value);
+  }
+}
+
+void set_strength(const Studied& studied, const std::string& id, std::size_t residuals_per_shot,
+                  CandidateResult& result) {
+  set_strength(studied, id, result);
+  if (studied.model.find(id) != nullptr) {
+    result.sd *= std::sqrt(scatter_over_noise(studied, id, residuals_per_shot) *
+                           std::max(1.0, studied.misfit.noise_scale));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/criticism/held_out.hpp"
 #include "processing/criticism/search.hpp"
 
 namespace kolsky {
@@ -27,11 +28,15 @@ struct CandidateResult {
 [[nodiscard]] std::vector<CandidateResult> first_order_table(const Search& search);
 
 /// Puts what the refits found in the place of first order.
-/// @param current  the model without any of them
-void note_refits(const Search& search, const std::vector<Refit>& refits, const Studied& current,
-                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table);
+/// @param held_out  one per refit
+void note_refits(const Search& search, const std::vector<Refit>& refits,
+                 const std::vector<Certification>& held_out, std::size_t residuals_per_shot,
+                 std::vector<CandidateResult>& table);
 
 /// Strength and deviation of an effect in a fitted model.
 void set_strength(const Studied& studied, const std::string& id, CandidateResult& result);
+/// The deviation grows with what the shots differ by beyond noise.
+void set_strength(const Studied& studied, const std::string& id, std::size_t residuals_per_shot,
+                  CandidateResult& result);
 
 }  // namespace kolsky

@@ -166,7 +166,7 @@ std::vector<double> carry(const Composition& from, const std::vector<double>& th
       const FreeNumber& held = from.numbers()[k];
       if (!taken[k] && held.parameter == wanted.parameter &&
           from.uses()[held.use].id() == to.uses()[wanted.use].id()) {
-        out[i] = theta[k] * held.scale / wanted.scale;
+        out[i] = wanted.theta_of(held.value_at(theta[k]));
         taken[k] = true;
         break;
       }

@@ -52,7 +52,7 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
       list.push_back(filed("gauge-position:" + gauge.name, {gauge.position_m.sd}));
     }
   }
-  if (bench.kind != BenchKind::shpb && bench.input.length_m.sd > 0.0) {
+  if (bench.input.length_m.sd > 0.0) {
     list.push_back(filed("bar-length", {bench.input.length_m.sd}));
   }
   if (bench.input.density_kg_m3.sd > 0.0) {
@@ -124,7 +124,7 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
         numbers_.push_back({uses_.size(), p, value.value, scale, parameter.lower, parameter.upper,
                             value.prior_mean, value.prior_sd,
                             by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1,
-                            parameter.difference});
+                            parameter.difference, parameter.power});
       }
     }
     slots[p] = std::move(own);
@@ -134,10 +134,30 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
   slots_.push_back(std::move(slots));
 }
 
+double FreeNumber::theta_of(double value) const {
+  const double ratio = value / scale;
+  return power == 1.0 ? ratio : std::copysign(std::pow(std::abs(ratio), power), ratio);
+}
+
+double FreeNumber::value_at(double theta) const {
+  return scale * root(theta, power);
+}
+
+double FreeNumber::sd_at(double theta, double theta_sd) const {
+  const double value = value_at(theta);
+  const double below = std::max(theta - theta_sd, theta_of(lower));
+  return power == 1.0 ? theta_sd * scale
+                      : std::max(value_at(theta + theta_sd) - value, value - value_at(below));
+}
+
+double FreeNumber::inside(double theta) const {
+  return std::clamp(theta, theta_of(lower), theta_of(upper));
+}
+
 std::vector<double> Composition::start() const {
   std::vector<double> theta;
   for (const FreeNumber& number : numbers_) {
-    theta.push_back(number.start / number.scale);
+    theta.push_back(number.theta_of(number.start));
   }
   return theta;
 }
@@ -193,8 +213,8 @@ std::vector<AppliedEffect> Composition::applied(const std::vector<double>& theta
         const Slot& slot = own.at(shot, copy);
         effect.values.push_back(slot.number < 0
                                     ? slot.fixed
-                                    : theta[static_cast<std::size_t>(slot.number)] *
-                                          numbers_[static_cast<std::size_t>(slot.number)].scale);
+                                    : numbers_[static_cast<std::size_t>(slot.number)].value_at(
+                                          theta[static_cast<std::size_t>(slot.number)]));
       }
       list.push_back(std::move(effect));
     }

@@ -11,7 +11,7 @@
 
 namespace kolsky {
 
-/// One number that a fit may move, in units of `scale`.
+/// One number that a fit may move. What moves is theta = (value / scale)^power.
 struct FreeNumber {
   std::size_t use = 0;
   std::size_t parameter = 0;
@@ -23,6 +23,13 @@ struct FreeNumber {
   double prior_sd = 0.0;     ///< 0: none
   std::ptrdiff_t shot = -1;  ///< the only one it acts on; -1: all
   double difference = 2e-3;  ///< step of numeric derivatives, in scales
+  double power = 1.0;
+
+  [[nodiscard]] double theta_of(double value) const;
+  [[nodiscard]] double value_at(double theta) const;
+  /// Deviation of the value where theta has this one: the larger side's.
+  [[nodiscard]] double sd_at(double theta, double theta_sd) const;
+  [[nodiscard]] double inside(double theta) const;  ///< the bounds
 };
 
 /// A model laid out for a campaign: every number that is free, once, per shot or per gauge, and the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "processing/criticism/held_out.hpp"
 #include "processing/criticism/next_experiment.hpp"
@@ -18,17 +19,16 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
-constexpr double kLostByChance = 4.0;        ///< chi2 on held-out shots
 constexpr double kAllowedRest = 0.01;        ///< of a misfit that certified effects explain
 constexpr double kUnexplained = -6.9;        ///< ln of the chance that noise leaves as much
 constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
-  const std::size_t per_shot = study.residuals().per_shot();
   const auto mean = [&](const Studied& studied) {
-    const std::vector<double> squares = held_out_squares(studied, per_shot);
-    return std::accumulate(squares.begin(), squares.end(), 0.0) /
-           static_cast<double>(squares.size() * per_shot);
+    const std::vector<double> squares =
+        held_out_squares(studied, study.residuals(), study.executor());
+    return (std::accumulate(squares.begin(), squares.end(), 0.0) + studied.fit.penalty) /
+           static_cast<double>(study.residuals().size());
   };
   return {mean(before), mean(after),
           study.campaign().shots.size() > 1 ? after.misfit.noise_scale : 1.0};
@@ -70,6 +70,7 @@ class Diagnostician {
     }
     if (diagnosis_.effects.size() > 1) {
       drop_unneeded(current);
+      reconsider(current);
     }
     conclude(first, current);
     return std::move(diagnosis_);
@@ -81,73 +82,158 @@ class Diagnostician {
                           ? "testing every effect of the library"
                           : "testing what remains after " + diagnosis_.effects.back());
     Search search(study_, current, start_);
+    const bool first = diagnosis_.effects.empty();
     if (diagnosis_.candidates.empty()) {
       diagnosis_.candidates = first_order_table(search);
     }
-    const std::vector<Refit> refits = search.refits();
-    if (diagnosis_.effects.empty()) {
-      note_refits(search, refits, current, study_.residuals().per_shot(), diagnosis_.candidates);
-    }
-    if (refits.empty() || search.with_search(refits.front().log_p) > options_.log_alpha) {
+    std::optional<Choice> choice = choose(search, current, first);
+    if (!choice) {
       return false;
     }
+    diagnosis_.effects.push_back(choice->id);
+    start_ = with(start_, search.candidates()[choice->candidate], true);
+    take(*choice, current);
+    return true;
+  }
+
+  /// What one search certifies: the best, and what cannot be told from it.
+  struct Choice {
+    std::string id;
+    std::size_t candidate = 0;
+    Studied studied;
+    std::vector<std::string> ties;
+  };
+
+  std::optional<Choice> choose(Search& search, const Studied& base, bool note) {
+    std::vector<Refit> refits = search.refits();
+    const std::vector<Certification> held_out = certify(search, refits, base);
     const std::size_t per_shot = study_.residuals().per_shot();
-    for (const Refit& refit : refits) {
-      if (refit.evidence < refits.front().evidence - kTie) {
+    if (note) {
+      note_refits(search, refits, held_out, per_shot, diagnosis_.candidates);
+    }
+    std::optional<std::size_t> best;
+    std::vector<std::string> ties;
+    double leading = 0.0;
+    for (std::size_t i = 0; i < refits.size(); ++i) {
+      const Refit& refit = refits[i];
+      // What slow noise does by itself is no rival.
+      if (!claimable(search, refit)) {
+        continue;
+      }
+      leading = std::max(leading, refit.evidence);
+      if (refit.evidence < (best ? refits[*best].evidence : leading) - kTie) {
         break;
       }
       const std::string id = search.candidates()[refit.candidate].id();
-      const auto [gain, better] = certification(current, refit.studied, per_shot);
-      const std::size_t shots = study_.campaign().shots.size();
-      const bool agrees = shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot);
-      // A filed number that was held by its deviation is found by the other shots whether it is
-      // set free or not: nothing is gained on a held-out shot, and nothing may be lost.
+      const auto [gain, better] = held_out[i];
       // Products of what each shot and each gauge has of its own are foretold by each other.
-      const bool foretells = search.candidates()[refit.candidate].frees_prior
-                                 ? gain > -kLostByChance
-                                 : refit.products || (gain > 0.0 && 2 * better > shots);
-      if (!foretells || !agrees || search.with_search(refit.log_p) > options_.log_alpha) {
+      const bool foretold =
+          refit.products || (gain > 0.0 && 2 * better > study_.campaign().shots.size());
+      if (!foretold || !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) {
         set_verdict(id, "rejected");
+      } else if (best) {
+        ties.push_back(id);
+      } else {
+        best = i;
+      }
+    }
+    if (!best) {
+      return std::nullopt;
+    }
+    Refit& refit = refits[*best];
+    return Choice{search.candidates()[refit.candidate].id(), refit.candidate,
+                  std::move(refit.studied), std::move(ties)};
+  }
+
+  [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
+    return search.with_search(refit.log_p) <= options_.log_alpha;
+  }
+
+  /// Exact for those that may be named; of the others first order tells enough.
+  std::vector<Certification> certify(const Search& search, const std::vector<Refit>& refits,
+                                     const Studied& base) {
+    const auto leading = std::find_if(refits.begin(), refits.end(),
+                                      [&](const Refit& refit) { return claimable(search, refit); });
+    std::vector<Certification> held_out;
+    const std::vector<double> before = held_out_of(base);
+    for (const Refit& refit : refits) {
+      const bool near = leading != refits.end() && claimable(search, refit) &&
+                        refit.evidence > leading->evidence - 2.0 * kTie;
+      const Studied& own = refit.studied;
+      held_out.push_back(certification(
+          before, near ? held_out_of(own) : held_out_squares(own, study_.residuals().per_shot()),
+          base.fit.penalty - own.fit.penalty));
+    }
+    return held_out;
+  }
+
+  /// The model goes on with it.
+  void take(Choice& choice, Studied& current) {
+    // The noise shows better now.
+    study_.residuals().freeze(choice.studied.composition, choice.studied.fit.theta);
+    Studied next = study_.refit(choice.studied);
+    study_.residuals().calibrate(next.fit.residual);
+    current = study_.refit(next);
+    diagnosis_.tied_with[choice.id] = std::move(choice.ties);
+  }
+
+  /// What was found first was chosen beside what was not known yet: each but the last is sought
+  /// again beside all others.
+  void reconsider(Studied& current) {
+    for (std::size_t i = 0; i + 1 < diagnosis_.effects.size(); ++i) {
+      const std::string id = diagnosis_.effects[i];
+      options_.progress("seeking " + id + " again beside the others");
+      const Studied base = without(current, id);
+      Model start = start_;
+      std::erase_if(start.effects, [&](const EffectUse& use) { return use.id() == id; });
+      Search search(study_, base, start);
+      std::optional<Choice> choice = choose(search, base, false);
+      if (!choice || std::count(diagnosis_.effects.begin(), diagnosis_.effects.end(), choice->id) >
+                         (choice->id == id ? 1 : 0)) {
         continue;
       }
-      std::vector<std::string> ties;
-      for (const Refit& rival : refits) {
-        const std::string other = search.candidates()[rival.candidate].id();
-        if (other != id && rival.evidence > refit.evidence - kTie) {
-          ties.push_back(other);
-        }
+      if (choice->studied.fit.objective() > current.fit.objective() + 1.0) {
+        // Not where it was found before: that was better.
+        diagnosis_.tied_with[id] = std::move(choice->ties);
+        continue;
       }
-      // The noise shows better now.
-      study_.residuals().freeze(refit.studied.composition, refit.studied.fit.theta);
-      Studied next = study_.refit(refit.studied);
-      study_.residuals().calibrate(next.fit.residual);
-      next = study_.refit(next);
-      diagnosis_.effects.push_back(id);
-      start_ = with(start_, search.candidates()[refit.candidate], true);
-      diagnosis_.tied_with[id] = ties;
-      current = std::move(next);
-      return true;
+      if (choice->id != id) {
+        set_verdict(id, "not needed");
+        diagnosis_.tied_with.erase(id);
+        diagnosis_.effects[i] = choice->id;
+      }
+      start_ = with(start, search.candidates()[choice->candidate], true);
+      take(*choice, current);
     }
-    return false;
+  }
+
+  Studied without(const Studied& current, const std::string& id) {
+    Model model = current.model;
+    std::erase_if(model.effects, [&](const EffectUse& use) { return use.id() == id; });
+    Composition composition(model, study_.campaign());
+    ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(),
+                             carry(current.composition, current.fit.theta, composition));
+    const Misfit misfit =
+        misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
+    Model after = fitted(model, composition, fit);
+    return {std::move(after), std::move(composition), std::move(fit), misfit};
+  }
+
+  std::vector<double> held_out_of(const Studied& studied) {
+    return held_out_squares(studied, study_.residuals(), study_.executor());
   }
 
   /// Backward: what later effects have made superfluous goes.
   void drop_unneeded(Studied& current) {
     for (std::size_t i = 0; i + 1 < diagnosis_.effects.size();) {
       const std::string id = diagnosis_.effects[i];
-      Model without = current.model;
-      std::erase_if(without.effects, [&](const EffectUse& use) { return use.id() == id; });
-      const Composition composition(without, study_.campaign());
-      ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(),
-                               carry(current.composition, current.fit.theta, composition));
+      Studied left = without(current, id);
       const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-      const double loss = (fit.objective() - current.fit.objective()) / noise;
+      const double loss = (left.fit.objective() - current.fit.objective()) / noise;
       if (equivalent_square(log_gain_tail(loss, 1.0, false)) < 16.0 ||
           !own_strengths_confirmed(current, id, study_.campaign())) {
-        const Misfit misfit =
-            misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
-        Model after = fitted(without, composition, fit);
-        current = {std::move(after), composition, std::move(fit), misfit};
+        current = std::move(left);
+        std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });
         diagnosis_.tied_with.erase(id);
         diagnosis_.effects.erase(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(i));
         set_verdict(id, "not needed");
@@ -194,7 +280,7 @@ class Diagnostician {
       set_verdict(id, diagnosis_.tied_with[id].empty() ? "named" : "tied");
       for (CandidateResult& result : diagnosis_.candidates) {
         if (result.effect == id) {
-          set_strength(current, id, result);
+          set_strength(current, id, study_.residuals().per_shot(), result);
         }
       }
     }

@@ -15,7 +15,7 @@ enum class DiagnosisVerdict { named, tied, unknown, adequate, untestable, bad_da
 [[nodiscard]] std::string name_of(DiagnosisVerdict verdict);
 
 struct HeldOut {
-  double before = 0.0;  ///< chi2 per residual on shots the fit did not see
+  double before = 0.0;  ///< chi2 per residual on shots the fit did not see, what is filed included
   double after = 0.0;
   double floor = 1.0;  ///< what noise alone leaves
 };

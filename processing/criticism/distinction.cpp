@@ -69,8 +69,8 @@ std::vector<Distinction> distinctions(Study& study, const Studied& studied,
     distinction.detectable = distinction.identifiable = std::numeric_limits<double>::infinity();
     if (there(own)) {
       distinction.absorbed_share = 1.0 - own.information(0, 0) / own.unprojected(0, 0);
-      const double sd = parameter.typical / std::sqrt(own.information(0, 0));
-      distinction.detectable = kDetected * sd;
+      const double sd = 1.0 / std::sqrt(own.information(0, 0));
+      distinction.detectable = parameter.typical * root(kDetected * sd, parameter.power);
       std::map<std::string, double> nearest;
       for (std::size_t k = 0; k < candidates.size(); ++k) {
         if (candidates[k].id() != id && there(directions[k])) {
@@ -86,7 +86,9 @@ std::vector<Distinction> distinctions(Study& study, const Studied& studied,
       const double closest = distinction.rivals.empty() ? 0.0 : distinction.rivals.front().cosine;
       distinction.identifiable =
           std::max(distinction.detectable,
-                   kToldApart * sd / std::sqrt(std::max(1e-12, 1.0 - closest * closest)));
+                   parameter.typical *
+                       root(kToldApart * sd / std::sqrt(std::max(1e-12, 1.0 - closest * closest)),
+                            parameter.power));
     }
     list.push_back(std::move(distinction));
   }

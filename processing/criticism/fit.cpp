@@ -18,7 +18,7 @@ Eigen::VectorXd from_priors(const Composition& composition, const std::vector<do
   Eigen::VectorXd off(static_cast<Eigen::Index>(theta.size()));
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
-    off[static_cast<Eigen::Index>(i)] = theta[i] - number.prior_mean / number.scale;
+    off[static_cast<Eigen::Index>(i)] = theta[i] - number.theta_of(number.prior_mean);
   }
   return off;
 }
@@ -32,12 +32,12 @@ double penalty_of(const Composition& composition, const Eigen::MatrixXd& precisi
 void keep_inside(const Composition& composition, std::vector<double>& theta) {
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
-    theta[i] = std::clamp(theta[i], number.lower / number.scale, number.upper / number.scale);
+    theta[i] = number.inside(theta[i]);
   }
 }
 
 bool at_bound(const FreeNumber& number, double theta, double downhill) {
-  const double value = theta * number.scale;
+  const double value = number.value_at(theta);
   const double reach = 1e-9 * (number.upper - number.lower);
   return (value <= number.lower + reach && downhill < 0.0) ||
          (value >= number.upper - reach && downhill > 0.0);
@@ -68,7 +68,7 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
     std::vector<double> moved = theta;
     const FreeNumber& number = composition.numbers()[numbers[i]];
     // Away from the bound that is next to the value.
-    const double room = number.upper / number.scale - moved[numbers[i]];
+    const double room = number.theta_of(number.upper) - moved[numbers[i]];
     const double step = room > number.difference ? number.difference : -number.difference;
     moved[numbers[i]] += step;
     const auto column = static_cast<Eigen::Index>(i);
@@ -298,11 +298,12 @@ Model fitted(const Model& model, const Composition& composition, const ModelFit&
       for (std::size_t i = 0; i < fit.theta.size(); ++i) {
         const FreeNumber& number = composition.numbers()[i];
         if (number.use == u && number.parameter == p) {
-          const double value = fit.theta[i] * number.scale;
+          const double value = number.value_at(fit.theta[i]);
           sum += value;
           square += value * value;
           const auto at = static_cast<Eigen::Index>(i);
-          variance += fit.covariance(at, at) * number.scale * number.scale;
+          const double sd = number.sd_at(fit.theta[i], std::sqrt(fit.covariance(at, at)));
+          variance += sd * sd;
           ++count;
         }
       }

@@ -12,13 +12,20 @@ namespace kolsky {
 [[nodiscard]] std::vector<double> held_out_squares(const Studied& studied,
                                                    std::size_t residuals_per_shot);
 
+/// The same at finite size: where the records at the foretold parameters are not what first order
+/// says they are, the other shots are fitted by themselves.
+[[nodiscard]] std::vector<double> held_out_squares(const Studied& studied, ShotResiduals& residuals,
+                                                   const Workers& executor);
+
 /// What an effect brought on shots that the fits did not see.
 struct Certification {
   double gain = 0.0;       ///< of chi2
   std::size_t better = 0;  ///< how many shots gained
 };
 
-[[nodiscard]] Certification certification(const Studied& before, const Studied& after,
-                                          std::size_t residuals_per_shot);
+/// @param before, after  held-out squares without and with it
+/// @param relief  how much less the fit strains what is filed of the bench, each shot's equal part
+[[nodiscard]] Certification certification(const std::vector<double>& before,
+                                          const std::vector<double>& after, double relief);
 
 }  // namespace kolsky

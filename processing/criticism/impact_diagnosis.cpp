@@ -77,7 +77,7 @@ std::pair<double, double> disagreement(const Studied& studied, const std::string
     }
     const auto column = static_cast<Eigen::Index>(i);
     own.push_back(column);
-    clear += (fit.theta[i] - parameter.null_value / number.scale) * fit.jacobian.col(column);
+    clear += (fit.theta[i] - number.theta_of(parameter.null_value)) * fit.jacobian.col(column);
     rest.row(column).setZero();
     rest.col(column).setZero();
     rest(column, column) = 1.0;
@@ -222,8 +222,7 @@ class Diagnostician {
         if (use.id() == candidate.id() &&
             !use.effect->about().parameters[number.parameter].auxiliary() &&
             k < tested.direction.step.size()) {
-          start[i] = std::clamp(start[i] + tested.direction.step[k++], number.lower / number.scale,
-                                number.upper / number.scale);
+          start[i] = number.inside(start[i] + tested.direction.step[k++]);
         }
       }
     }
@@ -516,9 +515,11 @@ class Diagnostician {
         result.gain = own.direction.gain;
         result.log_p = with_search(log_gain_tail(own.direction.gain / kSolverDoubt,
                                                  own.direction.freedom, own.candidate.one_sided));
-        result.strength = parameter.null_value + own.direction.step[0] * scale;
-        result.sd = scale / std::sqrt(own.direction.information(0, 0));
-        result.detectable = kDetected * std::sqrt(kSolverDoubt) * result.sd;
+        const double sd = 1.0 / std::sqrt(own.direction.information(0, 0));
+        result.strength =
+            parameter.null_value + scale * root(own.direction.step[0], parameter.power);
+        result.sd = scale * root(sd, parameter.power);
+        result.detectable = scale * root(kDetected * std::sqrt(kSolverDoubt) * sd, parameter.power);
         set_identifiable(all, i, current, result);
       }
       const auto known = std::find_if(diagnosis_.candidates.begin(), diagnosis_.candidates.end(),
@@ -534,6 +535,7 @@ class Diagnostician {
   static void set_identifiable(const std::vector<Tested>& all, std::size_t i,
                                const Studied& current, CandidateResult& result) {
     const Direction& own = all[i].direction;
+    const double power = all[i].candidate.use.effect->about().parameters.front().power;
     result.identifiable = result.detectable;
     if (own.information.rows() != 1) {
       return;
@@ -556,8 +558,9 @@ class Diagnostician {
       }
     }
     result.identifiable =
-        std::max(result.detectable, kToldApart * std::sqrt(kSolverDoubt) * result.sd /
-                                        std::sqrt(std::max(1e-12, 1.0 - closest)));
+        std::max(result.detectable, result.sd * root(kToldApart * std::sqrt(kSolverDoubt) /
+                                                         std::sqrt(std::max(1e-12, 1.0 - closest)),
+                                                     power));
   }
 
   void note_refits(const std::vector<Refit>& refits, const Studied& current) {
@@ -608,7 +611,7 @@ std::vector<std::string> what_records_hold(ImpactStudy& study, const Studied& st
       const FreeNumber& number = composition.numbers()[i];
       if (composition.uses()[number.use].id() == std::string("three-element-") + part) {
         own.push_back(i);
-        size.push_back(number.start / number.scale);
+        size.push_back(number.theta_of(number.start));
       }
     }
     if (own.size() != 3) {

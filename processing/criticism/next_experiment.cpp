@@ -25,7 +25,13 @@ NextExperiment next_experiment(const std::string& effect, const std::vector<std:
   const bool sensors = about(all, "gauge-factor") || about(all, "gauge-position") ||
                        about(all, "channel-delay") || about(all, "amplifier") ||
                        about(all, "gauge-length") || about(all, "crosstalk");
-  if (about(all, "amplitude") || about(all, "nonlinear")) {
+  const bool in_time = std::all_of(all.begin(), all.end(), [](const std::string& id) {
+    return id.starts_with("channel-delay") || id.starts_with("amplifier");
+  });
+  if (in_time) {
+    // Alike to first order in frequency, and only so.
+    next.change = "a shorter striker, for higher frequencies";
+  } else if (about(all, "amplitude") || about(all, "nonlinear")) {
     next.change = "a series of amplitudes, from a third to three times today's";
   } else if (about(all, "temperature")) {
     next.change = "log the temperature of each shot, over at least 5 K";

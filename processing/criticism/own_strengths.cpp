@@ -1,6 +1,9 @@
 #include "processing/criticism/own_strengths.hpp"
 
 #include <cmath>
+#include <random>
+
+#include "processing/criticism/search_trials.hpp"
 
 namespace kolsky {
 
@@ -25,14 +28,35 @@ double slope_before(const CampaignShot& shot, const std::vector<double>& record)
   return cross / square;
 }
 
-/// A hum is as strong in every shot; slow noise that was taken for one is not.
-bool amplitudes_agree(const Eigen::VectorXcd& amplitudes) {
-  const Eigen::VectorXd size = amplitudes.cwiseAbs();
-  const double mean = size.mean();
-  const auto count = static_cast<double>(size.size());
-  const double variance = (size.array() - mean).square().sum() / std::max(1.0, count - 1.0);
-  constexpr double kScatter = 0.3;  // of noise it is 0.5
-  return size.size() > 2 && std::sqrt(variance) < kScatter * mean;
+/// Standard deviation over mean.
+double spread_of(const Eigen::VectorXd& sizes) {
+  const double mean = sizes.mean();
+  const auto count = static_cast<double>(sizes.size());
+  const double variance = (sizes.array() - mean).square().sum() / std::max(1.0, count - 1.0);
+  return mean > 0.0 ? std::sqrt(variance) / mean : 1.0;
+}
+
+/// A hum is as strong in every shot; slow noise that was taken for one is not. Its amplitudes are
+/// normal in cosine and sine: so much alike they must be as fewer than one in a hundred such sets.
+bool amplitudes_agree(const Eigen::VectorXd& sizes) {
+  constexpr int kDraws = 20000;
+  constexpr double kChance = 0.01;
+  if (sizes.size() < 3) {
+    return false;
+  }
+  const double found = spread_of(sizes);
+  std::mt19937_64 random(kSearchSeed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd draw(sizes.size());
+  int alike = 0;
+  for (int n = 0; n < kDraws; ++n) {
+    for (double& size : draw) {
+      const double cosine = normal(random);
+      size = std::hypot(cosine, normal(random));
+    }
+    alike += spread_of(draw) <= found ? 1 : 0;
+  }
+  return alike < kChance * kDraws;
 }
 
 /// The slopes before the pulses must follow those found: regression through the origin.
@@ -106,7 +130,7 @@ Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
     const FreeNumber& number = studied.composition.numbers()[i];
     if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id &&
         number.parameter < found.size()) {
-      found[number.parameter].push_back(studied.fit.theta[i] * number.scale);
+      found[number.parameter].push_back(number.value_at(studied.fit.theta[i]));
     }
   }
   const auto shots = static_cast<Eigen::Index>(campaign.shots.size());
@@ -131,7 +155,7 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
   if (const auto test = product_test_of(studied, id, campaign)) {
     return are_products(*test);
   }
-  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0))) {
+  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0).cwiseAbs())) {
     return false;
   }
   const Slopes slopes = slopes_of(studied, id, campaign);

@@ -158,7 +158,7 @@ std::vector<Shot> Planter::planted(const EffectUse& use) const {
       theta[i] =
           filed ? theta[i] + (value - use.effect->about().parameters[number.parameter].null_value) /
                                  number.scale
-                : value / number.scale;
+                : number.theta_of(value);
     }
   }
   std::vector<Shot> shots = shots_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "processing/base/error.hpp"
+#include "processing/criticism/carried_noise.hpp"
 #include "processing/criticism/smooth_power.hpp"
 #include "processing/criticism/specimen_response.hpp"
 #include "processing/identification/noise_spectrum.hpp"
@@ -23,10 +24,16 @@ constexpr double kLead_s = 100e-6;
 constexpr double kFilterOverBand = 1.6;
 /// Beyond this multiple of the filter's limit it has left nothing.
 constexpr double kFilteredFrom = 2.2;
+/// Sums over squares of responses may be sampled as if they ended here: a fortieth is left.
+constexpr double kCarriedFrom = 1.4;
 /// What the filter smears over the cut ends of a record reaches this many of its widths into it.
 constexpr double kEdge = 8.0;
 constexpr double kWrapDamping = 1e-8;
 constexpr std::size_t kFewestJudged = 64;
+/// Power over noise at the highest frequency judged. Where the source is as much noise as signal,
+/// an effect's test rests on how well the noise of each gauge is known, and says little of the
+/// effect.
+constexpr double kPowerOverNoise = 30.0;
 
 std::size_t small_factors(std::size_t n) {
   for (;; ++n) {
@@ -81,8 +88,9 @@ struct WhiteResiduals::Workspace {
   Spectrum judged;
   Spectrum fine_spectrum;
   std::vector<double> fine_record;
-  std::vector<Spectrum> records;  ///< of one shot where effects change them
-  std::vector<Spectrum> rows;     ///< one shot's residuals, plain, by other gauge
+  std::vector<Spectrum> records;               ///< of one shot where effects change them
+  std::vector<Spectrum> rows;                  ///< one shot's residuals, plain, by other gauge
+  std::vector<std::vector<double>> responses;  ///< of other gauges to the reference's noise
   SpecimenResponse response;
   std::vector<Eigen::MatrixXcd> whitener;  ///< by bin, of the evaluation under way
   Eigen::MatrixXcd cross;
@@ -138,13 +146,17 @@ void WhiteResiduals::choose_band(double asked_Hz) {
   BandLimit limit(transform, transform.length());
   band_.limit_Hz = asked_Hz;
   if (asked_Hz <= 0.0) {
+    std::vector<double> limits_Hz;
     for (const CampaignShot& shot : campaign_.shots) {
       const auto& record = shot.strain[reference];
       const double step = campaign_.step[reference];
       const double noise =
           std::hypot(quiet_before(record, shot.quiet_samples).noise_rms, step / std::sqrt(12.0));
-      band_.limit_Hz = std::max(band_.limit_Hz, limit.from_noise(record, noise));
+      limits_Hz.push_back(limit.from_noise(record, noise, kPowerOverNoise));
     }
+    const auto middle = limits_Hz.begin() + static_cast<std::ptrdiff_t>(limits_Hz.size() / 2);
+    std::nth_element(limits_Hz.begin(), middle, limits_Hz.end());
+    band_.limit_Hz = *middle;
     // Surface gauges see little of waves as short as the bar is thick.
     constexpr double kBlind = 0.25;
     for (const Bar* bar :
@@ -248,17 +260,26 @@ void WhiteResiduals::prepare_noise() {
   const double d = static_cast<double>(band_.decimation);
   // Sums over the decimated window: its samples are the noise's, its power d times less of them.
   const double window = static_cast<double>(band_.judged) / d;
+  const auto samples_judged = static_cast<double>(band_.judged * band_.decimation);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     const double cycles = frequency_Hz(k) * campaign_.period_s;
     Eigen::VectorXd amplitude(gauges);
     for (Eigen::Index j = 0; j < gauges; ++j) {
       const double step = campaign_.step[static_cast<std::size_t>(j)];
       const double least = std::max(step * step / 12.0, 1e-24);
-      amplitude[j] =
-          std::sqrt(window * std::max(spectra[static_cast<std::size_t>(j)].power(cycles), least));
+      amplitude[j] = std::sqrt(window * std::max(spectra[static_cast<std::size_t>(j)].power_within(
+                                                     cycles, samples_judged),
+                                                 least));
     }
     noise_.emplace_back(amplitude.asDiagonal() * correlation * amplitude.asDiagonal());
   }
+  const double step = campaign_.step[campaign_.reference];
+  const WindowInRecord place{band_.judged, band_.edge / band_.decimation,
+                             campaign_.shots.front().quiet_samples / band_.decimation,
+                             band_.decimation,
+                             kCarriedFrom * band_.filter_Hz * campaign_.period_s * d};
+  carried_ = std::make_unique<CarriedNoise>(
+      spectra[campaign_.reference], std::max(step * step / 12.0, 1e-24), place, band_.bins_judged);
 }
 
 void WhiteResiduals::transform_record(Workspace& work, std::span<const double> record,
@@ -352,31 +373,33 @@ Transfers WhiteResiduals::ratios_of(const Scene& scene) const {
   return transfers;
 }
 
-/// The same at the judged bins, bin by bin, as far as a record's length lets them act: what would
-/// come back later carries no noise into it.
-std::vector<Complex> WhiteResiduals::ratios_within_record(Workspace& work,
-                                                          const Transfers& ratios) const {
-  // The filter reaches to both sides of the first sample: the window begins a little before it.
-  const double before_s = static_cast<double>(band_.edge) * campaign_.period_s;
-  const double start_s = static_cast<double>(band_.lead) * campaign_.period_s + 2.0 * before_s;
-  std::vector<Complex> within(band_.bins_judged * others_.size());
-  Spectrum impulse(band_.bins_carried);
-  Spectrum plain;
+/// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins.
+std::vector<CarriedBin> WhiteResiduals::carried_by(Workspace& work, const Transfers& ratios) const {
+  // The filter reaches to both sides of a response's first sample.
+  const std::size_t before = band_.edge / band_.decimation;
+  const std::size_t first = band_.lead / band_.decimation;
+  const double start_s = static_cast<double>(first + before) * judged_period_s();
+  work.responses.resize(others_.size());
+  std::fill(work.carried.begin(), work.carried.end(), 0.0);
   for (std::size_t i = 0; i < others_.size(); ++i) {
     for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-      impulse[k] =
+      work.carried[k] =
           ratios.reading[others_[i]][k] * damped_filter_[k] * std::exp(-damped_path_[k] * start_s);
     }
-    plain_spectrum(work, impulse, plain);
-    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-      within[k * others_.size() + i] = plain[k] * std::exp(plain_path_[k] * before_s);
-    }
+    work.decimated.inverse(work.carried, work.residual);
+    const auto begin = work.residual.begin() + static_cast<std::ptrdiff_t>(first);
+    work.responses[i].assign(begin, begin + static_cast<std::ptrdiff_t>(band_.judged + 2 * before));
   }
-  return within;
+  std::vector<CarriedBin> bins = carried_->through(work.responses);
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    bins[k].power /= filter_[k] * filter_[k];
+    bins[k].ratio /= filter_[k];
+  }
+  return bins;
 }
 
-/// Inverse Cholesky factor of G P G^H at one bin; `cross` becomes P G^H.
-Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::size_t bin,
+/// Inverse Cholesky factor of the residuals' covariance at one bin; `cross` becomes P G^H.
+Eigen::MatrixXcd WhiteResiduals::whitener(const CarriedBin& carried, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const {
   const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
   const auto rows = static_cast<Eigen::Index>(others_.size());
@@ -384,10 +407,18 @@ Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::
   for (Eigen::Index i = 0; i < rows; ++i) {
     const auto other = static_cast<std::size_t>(i);
     G(i, static_cast<Eigen::Index>(others_[other])) = 1.0;
-    G(i, static_cast<Eigen::Index>(campaign_.reference)) = -ratios[bin * others_.size() + other];
+    G(i, static_cast<Eigen::Index>(campaign_.reference)) = -carried.ratio[i];
   }
   cross.noalias() = noise_[bin] * G.adjoint();
-  const Eigen::LLT<Eigen::MatrixXcd> factor(G * cross);
+  const auto reference = static_cast<Eigen::Index>(campaign_.reference);
+  const double of_reference = noise_[bin](reference, reference);
+  const Eigen::MatrixXcd own =
+      G * cross - of_reference * carried.ratio * carried.ratio.adjoint() + carried.power;
+  Eigen::LLT<Eigen::MatrixXcd> factor(own);
+  if (factor.info() != Eigen::Success) {
+    // What gauges share is known as if it were stationary: among long echoes it can contradict.
+    factor.compute(Eigen::MatrixXcd(own.diagonal().real().cast<Complex>().asDiagonal()));
+  }
   Eigen::MatrixXcd inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
   if (!correction_.empty()) {
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -400,11 +431,11 @@ Eigen::MatrixXcd WhiteResiduals::whitener(std::span<const Complex> ratios, std::
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
   Scene scene(campaign_.bench, campaign_.shots.front().facts, damped_path_);
   shape(composition.applied(theta, 0), scene);
-  const std::vector<Complex> ratios = ratios_within_record(*work_.front(), ratios_of(scene));
+  const std::vector<CarriedBin> carried = carried_by(*work_.front(), ratios_of(scene));
   spread_.clear();
   Eigen::MatrixXcd cross;
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    const Eigen::MatrixXcd inverse = whitener(ratios, k, cross);
+    const Eigen::MatrixXcd inverse = whitener(carried[k], k, cross);
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
     spread_.push_back(cross * inverse.adjoint() / std::numbers::sqrt2);
   }
@@ -431,10 +462,8 @@ void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
 
 void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
   const std::size_t shots = campaign_.shots.size();
-  if (shots < 3) {
-    return;
-  }
   const std::size_t bins = band_.bins_judged;
+  const bool repeated = shots > 1;
   std::vector<Spectrum> sources;
   for (std::size_t n = 0; n < shots; ++n) {
     sources.push_back(source_spectrum(n, white));
@@ -453,14 +482,16 @@ void WhiteResiduals::calibrate(const Eigen::VectorXd& white) {
         source_power += std::norm(sources[n][k]);
         followed += w * std::conj(sources[n][k]);
       }
-      const double freedom = 2.0 * static_cast<double>(shots - 1);
+      // One shot shows nothing that follows its source or not.
+      const double freedom = 2.0 * static_cast<double>(repeated ? shots - 1 : 1);
+      const double follows = repeated ? std::norm(followed) / source_power : 0.0;
       // Beside the noise measured before the pulses, whatever was corrected so far.
       const double before = correction_.empty() ? 1.0 : correction_[k][i];
-      power[k] = before * (all - std::norm(followed) / source_power) / freedom;
+      power[k] = before * (all - follows) / freedom;
     }
     const std::vector<double> shape = smooth_power(power);
     for (std::size_t k = 0; k < bins; ++k) {
-      correction[k][i] = shape[k];
+      correction[k][i] = repeated ? shape[k] : std::max(shape[k], 1.0);
     }
   }
   correction_ = std::move(correction);
@@ -498,10 +529,10 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
       scene.emplace(campaign_.bench, shot.facts, damped_path_);
       shape(composition.applied(theta, n), *scene);
       transfers = ratios_of(*scene);
-      const std::vector<Complex> ratios = ratios_within_record(work, transfers);
+      const std::vector<CarriedBin> carried = carried_by(work, transfers);
       work.whitener.resize(band_.bins_judged);
       for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-        work.whitener[k] = std::numbers::sqrt2 * whitener(ratios, k, work.cross);
+        work.whitener[k] = std::numbers::sqrt2 * whitener(carried[k], k, work.cross);
       }
     } else if (composition.changes_records()) {
       scene->facts = &shot.facts;

@@ -12,6 +12,9 @@
 
 namespace kolsky {
 
+class CarriedNoise;
+struct CarriedBin;
+
 /// The part of the records that is judged and how.
 struct JudgedBand {
   double limit_Hz = 0.0;       ///< highest frequency judged
@@ -49,7 +52,8 @@ class WhiteResiduals : public ShotResiduals {
   /// Corrects the whitener by what the residuals of a fit show of the noise: at each frequency the
   /// part that does not follow the shots' sources cannot be an unchanging error of the model. Its
   /// power over the assumed one is taken as s0 + s1/f + s2/f^2, for each component of the
-  /// residuals. With fewer than three shots nothing is corrected.
+  /// residuals. One shot cannot tell its noise from what a model lacks: all of its residuals that
+  /// is smooth in frequency is taken for noise, above what was measured before the pulse.
   /// @param white  residuals under the whitener as it is
   void calibrate(const Eigen::VectorXd& white);
 
@@ -100,9 +104,8 @@ class WhiteResiduals : public ShotResiduals {
   using Spectrum = std::vector<Complex>;
 
   [[nodiscard]] Transfers ratios_of(const Scene& scene) const;
-  [[nodiscard]] std::vector<Complex> ratios_within_record(Workspace& work,
-                                                          const Transfers& ratios) const;
-  [[nodiscard]] Eigen::MatrixXcd whitener(std::span<const Complex> ratios, std::size_t bin,
+  [[nodiscard]] std::vector<CarriedBin> carried_by(Workspace& work, const Transfers& ratios) const;
+  [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
                       std::size_t first, std::size_t end, std::size_t worker, double* out);
@@ -124,6 +127,7 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<double> filter_;                  ///< at the judged bins
   std::vector<Complex> damped_filter_;          ///< at the carried bins
   std::vector<Eigen::MatrixXd> noise_;          ///< covariance of the gauges per judged bin (power)
+  std::unique_ptr<CarriedNoise> carried_;       ///< of the reference gauge
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
   std::vector<std::vector<double>> correction_;  ///< of the noise's power, by bin and component
   std::vector<Eigen::MatrixXcd> spread_;         ///< whitened residual to deviations of all gauges

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "processing/criticism/branch_order.hpp"
 #include "processing/criticism/own_strengths.hpp"
 #include "processing/criticism/search_trials.hpp"
 #include "processing/criticism/shot_strengths.hpp"
@@ -19,12 +20,6 @@ constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
 constexpr std::size_t kMostRefits = 14;
 constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
 constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
-
-/// What is known of the noise beforehand counts as much as this many shots; of slow noise, among
-/// which additions to a record are sought, little is known.
-double belief_in(const Effect& effect) {
-  return effect.about().stage == Stage::record ? 3.0 : 20.0;
-}
 
 }  // namespace
 
@@ -153,15 +148,13 @@ std::vector<double> Search::begin_near(const Candidate& candidate, const Directi
     std::vector<double> moved = base_.fit.theta;
     for (std::size_t i = 0; i < moved.size(); ++i) {
       const FreeNumber& number = base_.composition.numbers()[i];
-      moved[i] = std::clamp(moved[i] + share * along[static_cast<Eigen::Index>(i)],
-                            number.lower / number.scale, number.upper / number.scale);
+      moved[i] = number.inside(moved[i] + share * along[static_cast<Eigen::Index>(i)]);
     }
     std::vector<double> start = carry(base_.composition, moved, composition);
     for (std::size_t i = 0; i < strengths.size(); ++i) {
       const FreeNumber& number = composition.numbers()[strengths[i]];
       start[strengths[i]] =
-          std::clamp(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)],
-                     number.lower / number.scale, number.upper / number.scale);
+          number.inside(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)]);
     }
     const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
     if (chi2 < least) {
@@ -191,6 +184,9 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
       fit = std::move(other);
     }
   }
+  if (put_branches_in_order(composition, fit.theta)) {
+    fit = fit_model(composition, study_.residuals(), serial_on(worker), fit.theta);
+  }
   const Misfit misfit =
       misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
   Refit out{index,
@@ -199,7 +195,7 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
                          out.studied.fit.degrees_of_freedom(out.studied.composition);
   out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
   out.one_sided = candidate.one_sided && freedom < 1.5;
-  out.scatter = scatter_of(out.studied, candidate.id());
+  out.scatter = scatter_over_noise(out.studied, candidate.id(), study_.residuals().per_shot());
   out.products = product_test_of(out.studied, candidate.id(), study_.campaign());
   return out;
 }
@@ -221,21 +217,6 @@ void Search::rate(std::vector<Refit>& list) const {
     refit.evidence = equivalent_square(
         refit.products ? refit.log_p : log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
   }
-}
-
-/// How much more than noise the shots differ in the direction of an effect's strength: noise
-/// whose frequencies hang together scatters more there than its spectrum says.
-double Search::scatter_of(const Studied& studied, const std::string& id) const {
-  const Effect* effect = studied.model.find(id)->effect;
-  const bool slow = effect->about().stage == Stage::record;
-  const double belief = belief_in(*effect);
-  const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
-  const double q = shots.disagreement();
-  constexpr double kOrdinary = -4.6;
-  if (!slow && log_chi2_tail(q, shots.freedom()) > kOrdinary) {
-    return 1.0;  // chance alone must not rank rivals
-  }
-  return std::max(1.0, (belief + q) / (belief + shots.freedom()));
 }
 
 /// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no

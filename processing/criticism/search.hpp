@@ -54,7 +54,6 @@ class Search {
                                                std::size_t worker) const;
   [[nodiscard]] std::optional<Refit> refit(std::size_t index, std::size_t worker);
   void rate(std::vector<Refit>& list) const;
-  [[nodiscard]] double scatter_of(const Studied& studied, const std::string& id) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;
 
   Study& study_;

@@ -27,6 +27,31 @@ double ShotStrengths::freedom() const {
   return weight.empty() ? 1.0 : static_cast<double>(weight.size()) - 1.0;
 }
 
+namespace {
+
+/// A drift or a hum, as against what is done to the waves' own readings.
+bool is_addition(const Effect& effect) {
+  return effect.about().stage == Stage::record && effect.about().per_shot;
+}
+
+}  // namespace
+
+double belief_in(const Effect& effect) {
+  return is_addition(effect) ? 3.0 : 20.0;
+}
+
+double scatter_over_noise(const Studied& studied, const std::string& id, std::size_t per_shot) {
+  const Effect& effect = *studied.model.find(id)->effect;
+  const double belief = belief_in(effect);
+  const ShotStrengths shots = shot_strengths(studied, id, per_shot);
+  const double q = shots.disagreement();
+  constexpr double kOrdinary = -4.6;
+  if (!is_addition(effect) && log_chi2_tail(q, shots.freedom()) > kOrdinary) {
+    return 1.0;  // chance alone must not rank rivals
+  }
+  return std::max(1.0, (belief + q) / (belief + shots.freedom()));
+}
+
 ShotStrengths shot_strengths(const Studied& studied, const std::string& id, std::size_t per_shot) {
   const ModelFit& fit = studied.fit;
   std::vector<Eigen::Index> own;
@@ -50,7 +75,8 @@ ShotStrengths shot_strengths(const Studied& studied, const std::string& id, std:
     const FreeNumber& number = studied.composition.numbers()[static_cast<std::size_t>(column)];
     const EffectUse& use = studied.composition.uses()[number.use];
     const double null_value = use.effect->about().parameters[number.parameter].null_value;
-    const double strength = fit.theta[static_cast<std::size_t>(column)] - null_value / number.scale;
+    const double strength =
+        fit.theta[static_cast<std::size_t>(column)] - number.theta_of(null_value);
     clear += strength * fit.jacobian.col(column);
     rest.row(column).setZero();
     rest.col(column).setZero();

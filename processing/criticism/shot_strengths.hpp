@@ -22,6 +22,15 @@ struct ShotStrengths {
 [[nodiscard]] ShotStrengths shot_strengths(const Studied& studied, const std::string& id,
                                            std::size_t residuals_per_shot);
 
+/// What is known of the noise beforehand counts as much as this many shots; of slow noise, among
+/// which additions to a record are sought, little is known.
+[[nodiscard]] double belief_in(const Effect& effect);
+
+/// How much more than noise the shots differ in the direction of an effect's strength: noise
+/// whose frequencies hang together scatters more there than its spectrum says. At least 1.
+[[nodiscard]] double scatter_over_noise(const Studied& studied, const std::string& id,
+                                        std::size_t residuals_per_shot);
+
 /// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
 /// more than noise, and by more than a small part of what it explains. Of what is added to the
 /// records, slow noise makes strengths differ anyway: there it tells that they follow the shots'

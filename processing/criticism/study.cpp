@@ -1,5 +1,7 @@
 #include "processing/criticism/study.hpp"
 
+#include "processing/criticism/branch_order.hpp"
+
 namespace kolsky {
 
 Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
@@ -18,6 +20,9 @@ Studied Study::fit(const Model& model) {
   residuals_.calibrate(fit.residual);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
+  if (put_branches_in_order(composition, fit.theta)) {
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
   const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
   Model after = fitted(started, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};

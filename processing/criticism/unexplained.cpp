@@ -55,7 +55,8 @@ Extended clear_columns(Study& study, const Studied& studied) {
     const FreeNumber& number = studied.composition.numbers()[at];
     if (number.prior_sd > 0.0) {
       out.columns.row(rows + i) = -number.scale / number.prior_sd * taken.row(i);
-      out.residual[rows + i] = (fit.theta[at] * number.scale - number.prior_mean) / number.prior_sd;
+      out.residual[rows + i] =
+          (number.value_at(fit.theta[at]) - number.prior_mean) / number.prior_sd;
     }
   }
   return out;
@@ -106,7 +107,7 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     return {};
   }
   const double found = (directions.transpose() * extended.residual).squaredNorm();
-  if (shots < 3) {
+  if (shots < 2) {
     const double noise = std::max(1.0, studied.misfit.noise_scale);
     return {log_chi2_tail(found / noise, freedom), std::max(0.0, found / noise - freedom)};
   }

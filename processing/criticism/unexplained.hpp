@@ -11,7 +11,7 @@ struct Unexplained {
 };
 
 /// Distortions by frequency, amplitude and shot (distortion.hpp), clear of the model's own numbers.
-/// With three shots or more the noise in their directions is taken from what differs between the
+/// With two shots or more the noise in their directions is taken from what differs between the
 /// shots there, which slow noise raises above its spectrum; else from the fit as a whole.
 [[nodiscard]] Unexplained unexplained(Study& study, const Studied& studied);
 

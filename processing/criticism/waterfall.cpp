@@ -138,7 +138,6 @@ std::vector<LineageStep> lineage(const Model& first, const Model& last,
 
 Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
   const Studied last = study.fit(lineage.back().model);
-  const std::size_t per_shot = study.residuals().per_shot();
   Waterfall fall;
   fall.shots = study.campaign().shots.size();
   fall.strain_rate_per_s = usual_rate(last, study.campaign());
@@ -146,7 +145,8 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
   double penalty = 0.0;
   for (const LineageStep& own : lineage) {
     const Studied studied = best_of_two(study, own.model, last);
-    const std::vector<double> squares = held_out_squares(studied, per_shot);
+    const std::vector<double> squares =
+        held_out_squares(studied, study.residuals(), study.executor());
     fall.steps.push_back(step_of(study, own, studied, squares, before.empty() ? nullptr : &before));
     fall.steps.back().curve = specimen_curve(studied, study.campaign(), fall.strain_rate_per_s);
     fall.steps.back().relief = before.empty() ? 0.0 : penalty - studied.fit.penalty;

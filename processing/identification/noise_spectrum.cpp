@@ -266,18 +266,22 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
 }
 
 double NoiseSpectrum::power(double cycles_per_sample) const {
+  return power_within(cycles_per_sample, 0.0);
+}
+
+double NoiseSpectrum::power_within(double cycles_per_sample, double samples) const {
   if (shaped_.innovation > 0.0) {
     return shaped_.power(cycles_per_sample);
   }
   double total = white_;
   for (const SlowPart& part : slow_) {
-    total += part.power(cycles_per_sample);
+    total += part.power(cycles_per_sample, samples);
   }
   return total;
 }
 
-double NoiseSpectrum::SlowPart::power(double cycles_per_sample) const {
-  return variance * slow_power(keep, cycles_per_sample, 0.0);
+double NoiseSpectrum::SlowPart::power(double cycles_per_sample, double samples) const {
+  return variance * slow_power(keep, cycles_per_sample, samples);
 }
 
 double NoiseSpectrum::SlowPart::variance_of_mean(double samples) const {

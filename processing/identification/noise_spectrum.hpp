@@ -22,11 +22,16 @@ class NoiseSpectrum {
   /// Power per sample at a frequency in cycles per sample: for white noise its variance.
   [[nodiscard]] double power(double cycles_per_sample) const;
 
+  /// The same as a stretch of so many samples shows it, its ends leaking: what is slow spreads over
+  /// the frequencies above.
+  [[nodiscard]] double power_within(double cycles_per_sample, double samples) const;
+
   /// First-order noise: neighbouring samples are correlated by `keep`.
   struct SlowPart {
     double variance = 0.0;
     double keep = 0.0;
-    [[nodiscard]] double power(double cycles_per_sample) const;
+    /// @param samples  of the stretch that shows it; 0: without end
+    [[nodiscard]] double power(double cycles_per_sample, double samples = 0.0) const;
     [[nodiscard]] double variance_of_mean(double samples) const;
   };
   /// The parts that are not white. None of a model that is shaped otherwise.

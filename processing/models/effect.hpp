@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,9 +32,16 @@ struct EffectParameter {
   bool is_switch = false;
   double difference = 2e-3;  ///< step of numeric derivatives, in typical sizes
   bool chosen = false;       ///< one of its starts and nothing between (a neighbour, a harmonic)
+  /// The records change with this power of it near null: fits move value^power.
+  double power = 1.0;
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };
+
+/// What a number is of which x is the power, with its sign.
+[[nodiscard]] inline double root(double x, double power) {
+  return power == 1.0 ? x : std::copysign(std::pow(std::abs(x), 1.0 / power), x);
+}
 
 /// What people are told of an effect.
 struct EffectAbout {

@@ -1,5 +1,6 @@
 #include "processing/models/transfers.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "processing/models/bending.hpp"
@@ -136,6 +137,16 @@ void set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& tra
   }
 }
 
+/// A reference that is blind at a frequency (a wave as long as the gauge) tells nothing of the wave
+/// there: divided by what it reads, noise would stand for the wave. The inverse of what this
+/// returns is that of the factor, and goes smoothly to nothing where the factor does.
+Complex invertible(Complex factor) {
+  constexpr double kSeesWell = 0.7;
+  constexpr double kBlind = 0.15;
+  const double size = std::abs(factor);
+  return size > kSeesWell ? factor : factor * (1.0 + std::pow(kBlind / std::max(size, 1e-6), 8));
+}
+
 /// Bending, the sensors' own factors, then what neighbours pick up.
 void pass_sensors(const Scene& scene, std::size_t reference, Transfers& transfers) {
   add_bending(scene, reference, transfers.reading);
@@ -145,7 +156,8 @@ void pass_sensors(const Scene& scene, std::size_t reference, Transfers& transfer
     }
     for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
       for (std::size_t k = 0; k < scene.s.size(); ++k) {
-        (*readings)[j][k] *= scene.gauges[j].factor[k];
+        const Complex factor = scene.gauges[j].factor[k];
+        (*readings)[j][k] *= j == reference ? invertible(factor) : factor;
       }
     }
     const auto clean = *readings;

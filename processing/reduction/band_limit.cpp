@@ -8,8 +8,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::size_t kBins = 24;  // averaged to judge the power at a frequency: noise alone then
-constexpr double kPowerOverNoise = 2.0;  // passes twice its mean once in some 10^5 places
+constexpr std::size_t kBins = 24;  // averaged to judge the power at a frequency
 // Of the sampling rate. At half the rate a delay by a part of a sample jumps; the filter is down to
 // 1e-12 there, so that undamping the end of a record does not raise the jump above the signal.
 constexpr double kHighestShare = 0.2;
@@ -33,7 +32,8 @@ BandLimit::BandLimit(const DampedTransform& transform, std::size_t pulse_samples
   }
 }
 
-double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
+double BandLimit::from_noise(std::span<const double> pulse, double noise_rms,
+                             double power_over_noise) {
   const double highest_Hz = sampling_frequency_Hz_ * kHighestShare;
   if (noise_rms <= 0.0) {
     return highest_Hz;
@@ -47,7 +47,7 @@ double BandLimit::from_noise(std::span<const double> pulse, double noise_rms) {
   }
   const double quiet = noise_rms * noise_rms * static_cast<double>(pulse.size());
   const double threshold =
-      kPowerOverNoise * std::max(quiet, floor_below(top)) * static_cast<double>(kBins);
+      power_over_noise * std::max(quiet, floor_below(top)) * static_cast<double>(kBins);
   // Upwards from the pulse: what hums far above it is no part of it.
   std::size_t low = 0;
   double power = 0.0;

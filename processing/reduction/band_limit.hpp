@@ -16,6 +16,10 @@ namespace kolsky {
 /// axis too. It passes half at the limit.
 class BandLimit {
  public:
+  /// Power over noise, averaged over neighbouring bins, that noise alone passes once in some 10^5
+  /// places.
+  static constexpr double kAlike = 2.0;
+
   /// @param transform      whose spectra are filtered
   /// @param pulse_samples  longest pulse that is judged
   BandLimit(const DampedTransform& transform, std::size_t pulse_samples);
@@ -27,7 +31,10 @@ class BandLimit {
   /// nothing moves.
   /// @param pulse      the samples that hold it, and little else; no more than `pulse_samples`
   /// @param noise_rms  of its samples
-  [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms);
+  /// @param power_over_noise  at the limit, where more is wanted than that pulse and noise are
+  /// alike
+  [[nodiscard]] double from_noise(std::span<const double> pulse, double noise_rms,
+                                  double power_over_noise = kAlike);
 
   /// Share of a pulse's energy, less that of its noise, that the filter with this limit takes off.
   [[nodiscard]] double loss(std::span<const double> pulse, double noise_rms, double limit_Hz);

@@ -9,6 +9,7 @@
 #include "processing/base/error.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/campaign_files.hpp"
+#include "tests/generators/measured_noise.hpp"
 #include "tests/generators/truth_file.hpp"
 
 namespace {
@@ -21,6 +22,7 @@ struct Arguments {
   std::vector<std::string> effects;
   CampaignWishes wishes;
   std::string noise = "white";
+  std::string noise_record;
   std::string out = "campaign";
   std::string truth;
   std::string form = "both";
@@ -44,6 +46,10 @@ void settle(Arguments& arguments) {
   CampaignWishes& wishes = arguments.wishes;
   wishes.split = arguments.kind == "shpb";
   wishes.colour = colour_named(arguments.noise);
+  if (!arguments.noise_record.empty()) {
+    wishes.colour = NoiseColour::measured;
+    wishes.measured_noise = measured_noise(arguments.noise_record);
+  }
   wishes.tolerances = arguments.tolerances ? Tolerances::filed : Tolerances::none;
   if (arguments.bits >= 0) {
     wishes.bits = arguments.bits;
@@ -96,6 +102,8 @@ int main(int argc, char** argv) {
   app.add_option("--noise", microstrain, "rms in microstrain");
   app.add_option("--noise-colour", arguments.noise)
       ->check(CLI::IsMember({"white", "coloured", "pink"}));
+  app.add_option("--noise-record", arguments.noise_record,
+                 "TABLE.csv:COLUMN:ROWS, the quiet beginning of a measured record");
   app.add_option("--seed", arguments.wishes.seed);
   app.add_option("--bits", arguments.bits, "8 to 16, 0 for none; drawn if not given");
   app.add_option("--samples", arguments.samples, "per record; drawn if not given");

@@ -386,8 +386,9 @@ void Identifiability::judge() {
 }
 
 double Identifiable::most() const {
-  return candidate.kind.id == "fractional-damping" ? kMostFractional
-                                                   : std::numeric_limits<double>::infinity();
+  return candidate.kind.id == "fractional-damping"
+             ? kMostFractional
+             : kBeyondReason * std::abs(candidate.kind.typical - candidate.null);
 }
 
 double Identifiability::withheld_size(const Identifiable& effect, double sigmas) const {

@@ -11,6 +11,7 @@
 #include "processing/base/error.hpp"
 #include "tests/generators/measured_noise.hpp"
 #include "tests/hidden_effects/case_draw.hpp"
+#include "tests/hidden_effects/further_experiment.hpp"
 #include "tests/hidden_effects/score_table.hpp"
 
 namespace {
@@ -29,6 +30,7 @@ struct Settings {
   bool draw_only = false;
   bool keep = false;
   bool refit = false;
+  bool further = false;
 };
 
 struct Scores {
@@ -58,9 +60,22 @@ void score_case(const Settings& settings, const Case& drawn, Scores& scores) {
   if (settings.draw_only) {
     return;
   }
-  Verdict verdict = judge(drawn, diagnose(settings.analyser, files));
+  const Answer answer = diagnose(settings.analyser, files);
+  Verdict verdict = judge(drawn, answer);
   if (settings.refit && verdict.exact) {
     judge_refit(verdict, drawn, refit(settings.analyser, files, verdict.named));
+  }
+  if (settings.further && drawn.kind != CaseKind::two && verdict.found == 1 &&
+      verdict.set_size > 1.0) {
+    verdict.proposal = proposal_of(answer);
+    if (const auto changed = changed_as_proposed(drawn.campaign, verdict.proposal)) {
+      const Case further{drawn.id + "-next", drawn.kind, *changed, drawn.multiples};
+      const CaseFiles further_files = write_case(further, settings.out);
+      verdict.tie_broken = judge(further, diagnose(settings.analyser, further_files)).exact;
+      if (*verdict.tie_broken && !settings.keep) {
+        std::filesystem::remove_all(further_files.folder);
+      }
+    }
   }
   const bool well = went_well(verdict);
   if (well && !settings.keep) {
@@ -148,6 +163,7 @@ int main(int argc, char** argv) {
   app.add_option("--bench", settings.only_bench, "only this one, as a failed case's id has it");
   app.add_flag("--split", settings.plan.split, "split bars in place of bars");
   app.add_flag("--refit", settings.refit, "add what is named, fit again, judge the moduli");
+  app.add_flag("--further", settings.further, "make the experiments proposed to break ties");
   app.add_flag("--keep", settings.keep, "keep the folders of cases that went well");
   app.add_flag("--draw-only", settings.draw_only, "write the campaigns and stop");
   app.add_flag("--short", fast, "a few small campaigns");

@@ -178,6 +178,11 @@ std::vector<Measure> measures(const std::vector<Verdict>& verdicts) {
                   verdicts, [](const Verdict& v) { return v.strength_in_sd.has_value(); },
                   [](const Verdict& v) { return std::abs(*v.strength_in_sd) < 1.96 ? 1.0 : 0.0; }),
               0.93, Sense::at_least),
+      measure("tie broken by the experiment proposed",
+              values(
+                  verdicts, [](const Verdict& v) { return v.tie_broken.has_value(); },
+                  [](const Verdict& v) { return *v.tie_broken ? 1.0 : 0.0; }),
+              0.90, Sense::at_least),
       uniformity_measure(verdicts),
       measure("ended without failure or timeout",
               values(

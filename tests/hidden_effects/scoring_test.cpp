@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -10,6 +11,7 @@
 #include "tests/generators/campaign_files.hpp"
 #include "tests/generators/noise.hpp"
 #include "tests/hidden_effects/case_draw.hpp"
+#include "tests/hidden_effects/further_experiment.hpp"
 #include "tests/hidden_effects/identifiability.hpp"
 #include "tests/hidden_effects/score_table.hpp"
 #include "tests/hidden_effects/source_freedom.hpp"
@@ -196,6 +198,41 @@ TEST(Verdict, CountsSetsExactNamesAndStrengths) {
 
   answer.code = 124;
   EXPECT_EQ(judge(single("channel-delay:g2=2e-6"), answer).answered, "timeout");
+}
+
+// What was drawn within a filed deviation is part of what an analyser finds.
+TEST(Verdict, CountsAFiledNumbersWholeError) {
+  testing::CampaignWishes wishes;
+  wishes.tolerances = testing::Tolerances::filed;
+  Case made{"b0", CaseKind::single, testing::draw_campaign(wishes), {2.0}};
+  const double drawn = made.campaign.world.gauges[1].position_m;
+  testing::hide(made.campaign, testing::parse_effect("gauge-position:g2=0.004"));
+  const double found = drawn + 0.004 - made.campaign.bench.gauges[1].position_m;
+  Answer answer;
+  answer.json = {{"verdict", "named"},
+                 {"effects", {"gauge-position:g2"}},
+                 {"candidates",
+                  {{{"effect", "gauge-position:g2"}, {"strength", found + 1e-4}, {"sd", 5e-5}}}}};
+  EXPECT_NEAR(*judge(made, answer).strength_in_sd, 2.0, 1e-6);
+  EXPECT_GT(std::abs(found - 0.004), 1e-6);
+}
+
+TEST(FurtherExperiment, ChangesWhatIsProposedAndNothingElse) {
+  const testing::Campaign campaign = testing::draw_campaign({});
+  EXPECT_FALSE(changed_as_proposed(campaign, "the channels swapped").has_value());
+  const auto gauge = changed_as_proposed(campaign, "a further gauge between those there are");
+  ASSERT_TRUE(gauge.has_value());
+  EXPECT_EQ(gauge->world.gauges.size(), campaign.world.gauges.size() + 1);
+  EXPECT_EQ(gauge->bench.gauges.size(), campaign.bench.gauges.size() + 1);
+  EXPECT_EQ(gauge->world.shots[0].source, campaign.world.shots[0].source);
+  const auto shorter = changed_as_proposed(campaign, "a shorter striker");
+  ASSERT_TRUE(shorter.has_value());
+  const auto lasting = [](const std::vector<double>& bells) {
+    const double top = *std::ranges::max_element(bells);
+    return std::ranges::count_if(bells, [&](double bell) { return bell > 0.5 * top; });
+  };
+  const auto before = static_cast<double>(lasting(campaign.world.shots[0].source));
+  EXPECT_NEAR(static_cast<double>(lasting(shorter->world.shots[0].source)), 0.5 * before, 2.0);
 }
 
 TEST(Verdict, TwoEffectsNeedASetEach) {

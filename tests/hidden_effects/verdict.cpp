@@ -64,12 +64,32 @@ std::optional<double> closure_of(const Json& json) {
   return (*before - *after) / (*before - *floor);
 }
 
-std::optional<double> strength_error(const Json& json, const testing::HiddenEffect& effect) {
+// What is filed is off by what was drawn within its deviation and by what was hidden: an analyser
+// can only find both together.
+double true_strength(const testing::Campaign& campaign, const testing::HiddenEffect& effect) {
+  const auto& gauges = campaign.world.gauges;
+  for (std::size_t g = 0; g < gauges.size() && g < campaign.bench.gauges.size(); ++g) {
+    if (gauges[g].name == effect.gauge && effect.id == "gauge-position") {
+      return gauges[g].position_m - campaign.bench.gauges[g].position_m;
+    }
+    if (gauges[g].name == effect.gauge && effect.id == "gauge-factor") {
+      return gauges[g].gain - 1.0;
+    }
+  }
+  if (campaign.split && effect.id == "specimen-dimensions" &&
+      effect.detail("diameter", 0.0) == 0.0) {
+    return campaign.split->specimen.length_m - campaign.bench.specimen->length_m;
+  }
+  return effect.strength;
+}
+
+std::optional<double> strength_error(const Json& json, const testing::Campaign& campaign,
+                                     const testing::HiddenEffect& effect) {
   for (const Json& candidate : json.value("candidates", Json::array())) {
     const auto strength = number_at(candidate, "strength");
     const auto sd = number_at(candidate, "sd");
     if (text_at(candidate, "effect") == effect.name() && strength && sd && *sd > 0.0) {
-      return (*strength - effect.strength) / *sd;
+      return (*strength - true_strength(campaign, effect)) / *sd;
     }
   }
   return std::nullopt;
@@ -101,7 +121,8 @@ Verdict judge(const Case& drawn, const Answer& answer) {
   verdict.exact = !truth.empty() && names == truth && verdict.set_size == 1.0;
   verdict.closure = closure_of(answer.json);
   if (drawn.kind == CaseKind::single && verdict.found == 1) {
-    verdict.strength_in_sd = strength_error(answer.json, drawn.campaign.effects.front());
+    verdict.strength_in_sd =
+        strength_error(answer.json, drawn.campaign, drawn.campaign.effects.front());
   }
   const Json candidates = answer.json.value("candidates", Json::array());
   if (drawn.kind == CaseKind::null && !candidates.empty()) {
@@ -109,6 +130,15 @@ Verdict judge(const Case& drawn, const Answer& answer) {
     verdict.null_p = number_at(candidates.at(pick), "p_value");
   }
   return verdict;
+}
+
+std::string proposal_of(const Answer& answer) {
+  for (const Json& proposed : answer.json.value("next_experiment", Json::array())) {
+    if (const std::string change = text_at(proposed, "change"); !change.empty()) {
+      return change;
+    }
+  }
+  return "";
 }
 
 void judge_refit(Verdict& verdict, const Case& drawn, const Answer& fit) {
@@ -152,6 +182,7 @@ Json json_of(const Verdict& verdict) {
             {"exact", verdict.exact},
             {"set_size", verdict.set_size},
             {"moduli_in_sd", verdict.moduli_in_sd},
+            {"proposal", verdict.proposal},
             {"seconds", verdict.seconds},
             {"error", verdict.error}};
   if (verdict.closure) {
@@ -159,6 +190,9 @@ Json json_of(const Verdict& verdict) {
   }
   if (verdict.strength_in_sd) {
     json["strength_in_sd"] = *verdict.strength_in_sd;
+  }
+  if (verdict.tie_broken) {
+    json["tie_broken"] = *verdict.tie_broken;
   }
   if (verdict.null_p) {
     json["null_p"] = *verdict.null_p;

@@ -22,12 +22,16 @@ struct Verdict {
   std::optional<double> closure;            ///< (before - after)/(before - floor), held out
   std::optional<double> strength_in_sd;     ///< (claimed - true)/sd
   std::vector<double> moduli_in_sd;         ///< after adding: (fitted - true)/sd
+  std::string proposal;                     ///< what would break the tie, as it says
+  std::optional<bool> tie_broken;           ///< by doing that; none where it cannot be made
   std::optional<double> null_p;             ///< p-value of one candidate drawn by the case's number
   double seconds = 0.0;
   std::string error;
 };
 
 [[nodiscard]] Verdict judge(const Case& drawn, const Answer& answer);
+/// The experiment proposed to break the first tie; empty for none.
+[[nodiscard]] std::string proposal_of(const Answer& answer);
 /// Adds what a refit with the certified effects says about the moduli.
 void judge_refit(Verdict& verdict, const Case& drawn, const Answer& fit);
 

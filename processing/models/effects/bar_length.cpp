@@ -12,7 +12,7 @@ class BarLength final : public Effect {
             .stage = Stage::bench,
             .definition = "true length = filed + delta",
             .reference = "effects.md",
-            .kinds = {BenchKind::bar, BenchKind::impact},
+            .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "m", 0.0, -0.2, 0.2, 1e-3, {}}},
         }) {}
 

@@ -13,7 +13,7 @@ class Punching final : public Effect {
             .definition = "shortening += s sum over faces of k F (1 - nu^2) J_bar / d_s",
             .reference = "physics.md; effects.md",
             .kinds = {BenchKind::shpb},
-            .parameters = {{"s", "-", 0.0, 0.0, 5.0, 0.2, {}}},
+            .parameters = {{"s", "-", 0.0, 0.0, 100.0, 0.2, {}}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

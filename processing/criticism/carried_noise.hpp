@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "processing/identification/noise_spectrum.hpp"
+#include "processing/waves/compliance.hpp"
+
+namespace kolsky {
+
+/// The judged window within a record, in samples of one rate.
+struct WindowInRecord {
+  std::size_t judged = 0;  ///< samples of the window
+  std::size_t before = 0;  ///< samples of the record before it, and after it
+  std::size_t quiet = 0;   ///< at the record's start, whose mean is the baseline
+  std::size_t decimation = 1;
+  double filter_cycles = 0.5;  ///< per sample: where responses have ended
+};
+
+/// One bin's noise of several filters that share their input.
+struct CarriedBin {
+  Eigen::MatrixXcd power;  ///< filters x filters
+  Eigen::VectorXcd ratio;  ///< what a wave of this frequency keeps, mean over the window
+};
+
+/// Noise of one gauge as a causal filter k carries it into a window, bin by bin: of
+///     x(t) = sum_u k(t - u) n(u),    u within the record,
+/// the mean square of X_k = sum_t x(t) exp(-i w_k t). What waves sent before the record began is
+/// not in n, so x is not stationary however stationary n is: among bars that ring it grows echo by
+/// echo. With A_k(u) = sum_t k(t - u) exp(-i w_k t), the partial sums of k's transform,
+///     E X_k X_k^* = sum_uv A_k(u) C(u - v) A_k(v)^*,
+/// C the noise's autocovariance: white at the bin's own power and parts of first-order
+/// correlation, whose sums take one recursion each. The baseline, a mean over the quiet samples,
+/// is noise of its own and taken off n before it is carried.
+class CarriedNoise {
+ public:
+  /// @param least_power  of white noise beside what the spectrum says (steps of a converter)
+  CarriedNoise(const NoiseSpectrum& spectrum, double least_power, const WindowInRecord& window,
+               std::size_t bins);
+
+  /// @param responses  k by filter, from lag -before on, judged + 2 before samples
+  [[nodiscard]] std::vector<CarriedBin> through(
+      std::span<const std::vector<double>> responses) const;
+
+ private:
+  /// Noise that forgets slowly, over blocks of samples: covariance of two blocks' means.
+  struct Part {
+    double variance = 0.0;
+    double within = 0.0;   ///< a block with itself
+    double between = 0.0;  ///< with the next, over keep
+    double keep = 0.0;     ///< from one block to the next
+  };
+  /// By bin.
+  struct Turn {
+    double white = 0.0;            ///< power per sample of the sums
+    Eigen::VectorXd cosine, sine;  ///< of exp(-i w t), t from the record's start on
+    Eigen::VectorXcd blocks;       ///< its sums over blocks
+  };
+  struct Sums;
+
+  void add_to(CarriedBin& bin, const Turn& turn, const Sums& sums) const;
+
+  WindowInRecord window_;
+  std::size_t stride_ = 1;  ///< the sums are formed at every so many samples
+  std::size_t judged_ = 0;  ///< in strides, as the following
+  std::size_t before_ = 0;
+  std::size_t whole_ = 0;
+  std::size_t block_ = 1;  ///< slow noise is looked at in blocks of so many
+  std::size_t quiet_blocks_ = 1;
+  std::vector<Part> slow_;
+  std::vector<Turn> turns_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,176 @@
+#include "processing/criticism/held_out.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "processing/criticism/branch_order.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+std::vector<Shot> small_campaign(const std::vector<std::string>& effects) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 911;
+  wishes.shots = 4;
+  wishes.gauges = 3;
+  wishes.samples = 1500;
+  wishes.rate_Hz = 1e6;
+  testing::Campaign campaign = testing::draw_campaign(wishes);
+  for (const std::string& effect : effects) {
+    testing::hide(campaign, testing::parse_effect(effect));
+  }
+  return testing::shots_of(campaign);
+}
+
+/// Shots whose residuals bend with the only free number: the last one by far the most.
+class Bent : public ShotResiduals {
+ public:
+  explicit Bent(double start) : start_(start) {}
+
+  static double one(double off, std::size_t shot, std::size_t i) {
+    constexpr std::array kBend{0.4, 0.5, 0.6, 5.0};
+    constexpr std::array kAmplitude{1.0, 1.3, -0.7};
+    constexpr std::array<std::array<double, 3>, 4> kRecord{
+        {{1.9, 2.2, -1.2}, {2.0, 2.9, -1.1}, {2.3, 2.6, -1.6}, {90.0, 110.0, -70.0}}};
+    return kAmplitude[i] * std::exp(kBend[shot] * off) - kRecord[shot][i];
+  }
+
+  static double square(double off, std::size_t shot) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum += one(off, shot, i) * one(off, shot, i);
+    }
+    return sum;
+  }
+
+  Eigen::VectorXd evaluate(const Composition& composition, const std::vector<double>& theta,
+                           std::size_t worker) override {
+    Eigen::VectorXd all(12);
+    for (std::size_t shot = 0; shot < 4; ++shot) {
+      all.segment(static_cast<Eigen::Index>(3 * shot), 3) =
+          evaluate_shot(composition, theta, shot, worker);
+    }
+    return all;
+  }
+  Eigen::VectorXd evaluate_shot(const Composition& /*composition*/,
+                                const std::vector<double>& theta, std::size_t shot,
+                                std::size_t /*worker*/) override {
+    Eigen::VectorXd own(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      own[static_cast<Eigen::Index>(i)] = one(theta[0] - start_, shot, i);
+    }
+    return own;
+  }
+  [[nodiscard]] std::size_t per_shot() const override { return 3; }
+
+ private:
+  double start_;
+};
+
+// Against a search over the number by brute force.
+TEST(HeldOut, IsExactWhereFirstOrderIsNot) {
+  const Campaign campaign = read_campaign(small_campaign({}));
+  Model model = paper_model(BenchKind::bar, false);
+  for (EffectUse& use : model.effects) {
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      use.values[p].free = use.id() == "three-element-bar" && p == 0;
+    }
+  }
+  const Composition composition(model, campaign);
+  ASSERT_EQ(composition.numbers().size(), 1u);
+  Bent residuals(composition.start()[0]);
+  ModelFit fit = fit_model(composition, residuals, Workers{});
+  const Studied studied{model, composition, fit, {}};
+  const std::vector<double> exact = held_out_squares(studied, residuals, Workers{});
+  const std::vector<double> first_order = held_out_squares(studied, 3);
+  double most_wrong = 0.0;
+  for (std::size_t left_out = 0; left_out < 4; ++left_out) {
+    double best = 0.0;
+    double least = 1e300;
+    for (double off = -1.0; off < 3.0; off += 1e-4) {
+      double sum = 0.0;
+      for (std::size_t shot = 0; shot < 4; ++shot) {
+        sum += shot == left_out ? 0.0 : Bent::square(off, shot);
+      }
+      if (sum < least) {
+        least = sum;
+        best = off;
+      }
+    }
+    const double truth = Bent::square(best, left_out);
+    EXPECT_NEAR(exact[left_out], truth, 1.0 + 0.2 * truth) << left_out;
+    most_wrong = std::max(most_wrong, std::abs(first_order[left_out] - truth) / truth);
+  }
+  EXPECT_GT(most_wrong, 0.5);
+}
+
+TEST(Certification, CountsWhatFiledNumbersAreRelievedOf) {
+  const Certification without = certification({10.0, 12.0}, {10.1, 12.1}, 0.0);
+  EXPECT_NEAR(without.gain, -0.2, 1e-12);
+  EXPECT_EQ(without.better, 0u);
+  const Certification relieved = certification({10.0, 12.0}, {10.1, 12.1}, 40.0);
+  EXPECT_NEAR(relieved.gain, 39.8, 1e-12);
+  EXPECT_EQ(relieved.better, 2u);
+}
+
+// The records must not change, only which branch is called further.
+TEST(BranchOrder, KeepsTheComplianceAndCallsTheLesserBranchFurther) {
+  const Campaign campaign = read_campaign(small_campaign({}));
+  Model model = paper_model(BenchKind::bar, false);
+  model.effects.push_back(use_named("second-relaxation"));
+  for (ModelValue& value : model.effects.back().values) {
+    value.free = true;
+  }
+  const Composition composition(model, campaign);
+  const auto value = [&](const std::vector<double>& theta, const std::string& id, std::size_t p) {
+    for (std::size_t i = 0; i < theta.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[i];
+      if (composition.uses()[number.use].id() == id && number.parameter == p) {
+        return number.value_at(theta[i]);
+      }
+    }
+    return 0.0;
+  };
+  const auto compliance = [&](const std::vector<double>& theta, double omega) {
+    const std::complex<double> s(0.0, omega);
+    return 1.0 / (value(theta, "three-element-bar", 1) + s * value(theta, "three-element-bar", 2)) +
+           value(theta, "second-relaxation", 0) / (1.0 + s * value(theta, "second-relaxation", 1));
+  };
+  std::vector<double> theta = composition.start();
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    if (composition.uses()[number.use].id() == "second-relaxation") {
+      theta[i] = number.theta_of(number.parameter == 0 ? 9e-11 : 4e-4);
+    }
+  }
+  const std::vector<double> before = theta;
+  EXPECT_TRUE(put_branches_in_order(composition, theta));
+  EXPECT_LT(value(theta, "second-relaxation", 0), 9e-11);
+  for (const double omega : {1e2, 1e4, 3e5}) {
+    EXPECT_LT(std::abs(compliance(theta, omega) - compliance(before, omega)),
+              1e-12 * std::abs(compliance(before, omega)));
+  }
+  EXPECT_FALSE(put_branches_in_order(composition, theta));
+}
+
+// Its length acts by its square: from nothing a fit must still find it.
+TEST(Fit, FindsAGaugesLengthFromNull) {
+  const std::vector<Shot> shots = small_campaign({"gauge-length:g2=0.03"});
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, 0.0, Workers{});
+  Model model = paper_model(BenchKind::bar, false);
+  model.effects.push_back(use_named("gauge-length:g2"));
+  model.effects.back().values.front().free = true;
+  const Studied studied = study.fit(model);
+  const ModelValue& found = studied.model.find("gauge-length:g2")->values.front();
+  EXPECT_LT(std::abs(found.value - 0.03), 4.0 * found.sd);
+  EXPECT_LT(found.sd, 3e-3);
+  EXPECT_NEAR(studied.misfit.chi2_reduced, 1.0, 0.1);
+}
+
+}  // namespace
+}  // namespace kolsky
