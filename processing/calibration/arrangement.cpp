@@ -7,8 +7,9 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/calibration/incident_tail.hpp"
 #include "processing/identification/bar_records.hpp"
-#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/waves/bar_modes.hpp"
 
@@ -16,40 +17,14 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kShortestPulse_s = 5e-6;
-constexpr double kReach_s = 500e-6;
 constexpr double kAlike = 0.01;
 /// A bar that shows less than this of the other one's pulse was not touched.
 constexpr double kSilent = 0.03;
 /// What is kept of the time until faces can part.
 constexpr double kSafely = 0.97;
 
-struct Arrival {
-  double sample = 0.0;
-  double peak = 0.0;
-};
-
-/// The first pulse of a channel where it rises through half its peak.
-std::optional<Arrival> arrival_of(const ChannelRecord& channel, double rate_Hz) {
-  const std::vector<double> readings = readings_of(channel);
-  const auto width = std::max<std::size_t>(3, static_cast<std::size_t>(kShortestPulse_s * rate_Hz));
-  const auto reach = static_cast<std::size_t>(kReach_s * rate_Hz);
-  const auto rise = find_first_pulse(readings, width, reach);
-  if (!rise) {
-    return std::nullopt;
-  }
-  const double baseline =
-      quiet_before(readings, std::max<std::size_t>(1, rise->index / 2)).baseline;
-  Arrival arrival;
-  const std::size_t end = std::min(readings.size(), rise->index + reach);
-  for (std::size_t n = rise->index; n < end; ++n) {
-    arrival.peak = std::max(arrival.peak, rise->sense * (readings[n] - baseline));
-  }
-  const double below = rise->sense * (readings[rise->index] - baseline);
-  const double above = rise->sense * (readings[rise->index + 1] - baseline);
-  const double share = above > below ? (0.5 * arrival.peak - below) / (above - below) : 0.0;
-  arrival.sample = static_cast<double>(rise->index) + std::clamp(share, 0.0, 1.0);
-  return arrival;
+std::optional<FirstPulse> pulse_of(const Shot& shot, std::size_t channel) {
+  return first_pulse(readings_of(shot.channels[channel]), shot.rate.Hz());
 }
 
 double strain_per_reading(const Bench& bench, const Gauge& gauge) {
@@ -62,8 +37,8 @@ double loudest(const Shot& shot, const std::string& bar) {
   for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
     const Gauge& gauge = shot.bench.gauges[j];
     if (gauge.bar == bar) {
-      if (const auto arrival = arrival_of(shot.channels[j], shot.rate.Hz())) {
-        peak = std::max(peak, arrival->peak * strain_per_reading(shot.bench, gauge));
+      if (const auto pulse = pulse_of(shot, j)) {
+        peak = std::max(peak, pulse->height * strain_per_reading(shot.bench, gauge));
       }
     }
   }
@@ -93,12 +68,12 @@ std::vector<std::pair<std::string, std::string>> set_in_order(Bench& bench, cons
   std::vector<std::size_t> by_way(bench.gauges.size());
   std::iota(by_way.begin(), by_way.end(), std::size_t{0});
   std::vector<double> seen;
-  for (const ChannelRecord& channel : shot.channels) {
-    const auto arrival = arrival_of(channel, shot.rate.Hz());
-    if (!arrival) {
+  for (std::size_t j = 0; j < shot.channels.size(); ++j) {
+    const auto pulse = pulse_of(shot, j);
+    if (!pulse) {
       return {};
     }
-    seen.push_back(arrival->sample);
+    seen.push_back(pulse->half);
   }
   std::stable_sort(by_way.begin(), by_way.end(), [&](std::size_t a, std::size_t b) {
     return way_to_m(bench, bench.gauges[a]) < way_to_m(bench, bench.gauges[b]);
@@ -144,8 +119,8 @@ void cut_before_faces_part(Shot& shot, const BarPrior& bars) {
     }
     nearest_m = std::min(nearest_m, bench.distance_to_specimen_m(bench.gauges[j]));
   }
-  const auto arrival = arrival_of(shot.channels[first], shot.rate.Hz());
-  if (!arrival) {
+  const auto pulse = pulse_of(shot, first);
+  if (!pulse) {
     return;
   }
   const double speed_in =
@@ -155,7 +130,7 @@ void cut_before_faces_part(Shot& shot, const BarPrior& bars) {
   const double time_s = bench.distance_to_specimen_m(bench.gauges[first]) / speed_in +
                         2.0 * bench.output->length_m / speed_out +
                         nearest_m / std::max(speed_in, speed_out);
-  cut(shot, static_cast<std::size_t>(arrival->sample + kSafely * time_s * shot.rate.Hz()));
+  cut(shot, static_cast<std::size_t>(pulse->half + kSafely * time_s * shot.rate.Hz()));
 }
 
 /// One bar of a split bench by itself.
@@ -182,18 +157,19 @@ void leave_one_bar(Shot& shot, const std::string& name) {
 
 /// Makes a second gauge of one that sees the pulse come back from the free end: what it reads from
 /// then on, inverted, on a bar that has no end. What the first one reads from then on would reach
-/// the second only after the record's new end. The way between them is known as well as the bar's
+/// the second only after the record's new end. What of the first pass is still to come then is
+/// taken off. The way between them is known as well as the bar's
 /// length and the gauge's place.
 void split_passes(Shot& shot, const BarPrior& bars) {
   Gauge& gauge = shot.bench.gauges.front();
   const Bar bar = shot.bench.input;
   const double rate_Hz = shot.rate.Hz();
-  const auto arrival = arrival_of(shot.channels.front(), rate_Hz);
+  const auto pulse = pulse_of(shot, 0);
   const double speed = front_speed_m_per_s(bar, *compliance_of(bar, bars.material));
   constexpr double kClear_s = 40e-6;  // of the front's foot before its half rise
   const auto sample = [&](double after_s) {
     return static_cast<std::size_t>(
-        std::max(0.0, (arrival ? arrival->sample : 0.0) + (after_s - kClear_s) * rate_Hz));
+        std::max(0.0, (pulse ? pulse->half : 0.0) + (after_s - kClear_s) * rate_Hz));
   };
   const double to_end_s = (bar.length_m - gauge.position_m) / speed;
   const double to_start_s = gauge.position_m / speed;
@@ -202,7 +178,7 @@ void split_passes(Shot& shot, const BarPrior& bars) {
   const std::size_t end = std::min(
       shot.samples(), std::min(sample(2.0 * (to_end_s + to_start_s)), sample(4.0 * to_end_s)));
   constexpr std::size_t kFewest = 64;
-  if (!arrival || quiet < kFewest || back + kFewest >= end) {
+  if (!pulse || quiet < kFewest || back + kFewest >= end) {
     throw InputError("gauge " + gauge.name, "sees too little of what the free end returns",
                      "place it farther from the end, record longer, or use two gauges");
   }
@@ -211,13 +187,20 @@ void split_passes(Shot& shot, const BarPrior& bars) {
   for (std::size_t n = 0; n < quiet; ++n) {
     baseline += static_cast<double>(codes[n]) / static_cast<double>(quiet);
   }
+  std::vector<double> readings(codes.begin(), codes.begin() + static_cast<std::ptrdiff_t>(end));
+  for (double& reading : readings) {
+    reading -= baseline;
+  }
+  const std::vector<double> tail =
+      incident_tail(readings, back, bar, *compliance_of(bar, bars.material), gauge.position_m,
+                    shot.rate.period_s());
   ChannelRecord returned = shot.channels.front();
   for (std::size_t n = 0; n < end; ++n) {
     // Noise of before the pulse, to and fro, stands where the first pass was.
     const std::size_t phase = n % (2 * quiet);
-    returned.codes[n] = n < back
-                            ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
-                            : static_cast<std::int32_t>(std::lround(2.0 * baseline)) - codes[n];
+    returned.codes[n] =
+        n < back ? codes[phase < quiet ? quiet - 1 - phase : phase - quiet]
+                 : static_cast<std::int32_t>(std::lround(baseline - readings[n] + tail[n]));
   }
   Gauge second = gauge;
   second.name += " returned";

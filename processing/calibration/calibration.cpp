@@ -46,6 +46,38 @@ void compare_areas(const PartResult& part, std::vector<std::string>& warnings) {
   }
 }
 
+/// The bars' moduli as a part of the shots gives them.
+BarPrior as_found(const PartResult& part, BarPrior bars) {
+  for (const CalibratedNumber& number : part.numbers) {
+    switch (number.of) {
+      case CalibratedNumber::Of::E1:
+        bars.material.E1_Pa = number.combined;
+        break;
+      case CalibratedNumber::Of::E2:
+        bars.material.E2_Pa = number.combined;
+        break;
+      case CalibratedNumber::Of::eta2:
+        bars.material.eta2_Pa_s = number.combined;
+        break;
+      default:
+        break;
+    }
+  }
+  return bars;
+}
+
+/// Where one gauge stands for two, what its record is parted by depends on the moduli: it is parted
+/// again by those it gave.
+PartResult fitted_part(const std::vector<Shot>& shots, const std::vector<CalibrationPart>& parts,
+                       std::size_t index, const BarPrior& bars, const CalibrationOptions& options) {
+  PartResult fitted = fit_part(parts[index], options);
+  const bool elastic = parts[index].shots.front().bench.input.youngs_modulus_Pa.has_value();
+  if (!parts[index].two_passes || elastic) {
+    return fitted;
+  }
+  return fit_part(arrange(shots, as_found(fitted, bars))[index], options);
+}
+
 }  // namespace
 
 std::string name_of(Standing standing) {
@@ -85,8 +117,9 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
   Calibration result;
   bool differs = false;
   bool undecided = false;
-  for (const CalibrationPart& part : parts) {
-    PartResult fitted = fit_part(part, options);
+  for (std::size_t index = 0; index < parts.size(); ++index) {
+    const CalibrationPart& part = parts[index];
+    PartResult fitted = fitted_part(shots, parts, index, bars, options);
     for (const CalibratedNumber& number : fitted.numbers) {
       differs = differs || number.standing == Standing::differs;
       undecided = undecided || number.standing == Standing::tied;

@@ -28,7 +28,9 @@ enum class Standing {
 struct CalibratedNumber {
   enum class Of { gain, position, delay, bar_length, elastic_modulus, E1, E2, eta2 };
   Of of = Of::gain;
-  std::string id;     ///< as the effect that would name it: "gauge-position:g3"
+  /// As the effect that would name it: "gauge-position:g3". "E1_Pa" is the bar's or the input
+  /// bar's, "output:E1_Pa" that of a viscoelastic output bar lying behind another.
+  std::string id;
   std::string gauge;  ///< of gain, position and delay
   Measured filed;     ///< gain: 1, delay: 0, else the number itself; sd 0 where filed as exact
   Measured measured;  ///< by the shots and all other filed numbers, without its own

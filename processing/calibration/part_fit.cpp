@@ -325,6 +325,9 @@ class PartFit {
     bar.density_kg_m3.value *= values.back();
     Material material = bars_.material;
     for (std::size_t i = 0, m = 0; i < numbers_.size(); ++i) {
+      if (numbers_[i].of_output_bar) {
+        continue;
+      }
       switch (numbers_[i].of) {
         case CalibratedNumber::Of::elastic_modulus:
           bar.youngs_modulus_Pa->value = values[m++];
@@ -359,7 +362,7 @@ class PartFit {
     const auto& composition = fitted_->studied.composition;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const ModelNumber& number = numbers_[i];
-      if (number.of < CalibratedNumber::Of::elastic_modulus) {
+      if (number.of < CalibratedNumber::Of::elastic_modulus || number.of_output_bar) {
         continue;
       }
       const std::size_t place = place_of(composition, number);

@@ -33,12 +33,17 @@ ModelNumber of_gauge(CalibratedNumber::Of of, const std::string& effect, const G
   return number;
 }
 
-ModelNumber of_material(CalibratedNumber::Of of, std::size_t parameter, const std::string& id,
-                        const Measured& filed, bool believed) {
+/// Where both bars are viscoelastic they are of one material as filed, but each ages by itself.
+constexpr const char* kBars = "three-element-bar";
+constexpr const char* kOutputBar = "output-three-element-bar";
+
+ModelNumber of_material(CalibratedNumber::Of of, std::size_t parameter, const std::string& effect,
+                        const std::string& id, const Measured& filed, bool believed) {
   ModelNumber number;
   number.of = of;
   number.id = id;
-  number.effect = "three-element-bar";
+  number.effect = effect;
+  number.of_output_bar = effect == kOutputBar;
   number.parameter = parameter;
   number.filed = filed;
   number.origin = filed.value;
@@ -50,6 +55,19 @@ ModelNumber of_material(CalibratedNumber::Of of, std::size_t parameter, const st
 
 bool elastic(const Bench& bench) {
   return bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa);
+}
+
+bool each_bar_has_moduli(const Bench& bench) {
+  return bench.output && !bench.input.youngs_modulus_Pa && !bench.output->youngs_modulus_Pa;
+}
+
+void add_moduli(const std::string& effect, const std::string& prefix, const Material& material,
+                bool believed, std::vector<ModelNumber>& list) {
+  using Of = CalibratedNumber::Of;
+  list.push_back(of_material(Of::E1, 0, effect, prefix + "E1_Pa", material.E1_Pa, believed));
+  list.push_back(of_material(Of::E2, 1, effect, prefix + "E2_Pa", material.E2_Pa, believed));
+  list.push_back(
+      of_material(Of::eta2, 2, effect, prefix + "eta2_Pa_s", material.eta2_Pa_s, believed));
 }
 
 void hold(EffectUse& use) {
@@ -105,9 +123,10 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
   } else {
     const bool believed = options.bars.has_value() || bench.kind == BenchKind::shpb;
     const Material material = options.bars ? options.bars->material : paper_pmma();
-    list.push_back(of_material(Of::E1, 0, "E1_Pa", material.E1_Pa, believed));
-    list.push_back(of_material(Of::E2, 1, "E2_Pa", material.E2_Pa, believed));
-    list.push_back(of_material(Of::eta2, 2, "eta2_Pa_s", material.eta2_Pa_s, believed));
+    add_moduli(kBars, "", material, believed, list);
+    if (each_bar_has_moduli(bench)) {
+      add_moduli(kOutputBar, "output:", material, believed, list);
+    }
   }
   return list;
 }
@@ -119,7 +138,11 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
   Model model;
   model.kind = bench.kind;
   if (!elastic(bench)) {
-    model.effects.push_back(use_named("three-element-bar"));
+    model.effects.push_back(use_named(kBars));
+    hold(model.effects.back());
+  }
+  if (each_bar_has_moduli(bench)) {
+    model.effects.push_back(use_named(kOutputBar));
     hold(model.effects.back());
   }
   model.effects.push_back(use_named("elementary-waves"));

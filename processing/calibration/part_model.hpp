@@ -15,7 +15,8 @@ struct ModelNumber {
   CalibratedNumber::Of of = CalibratedNumber::Of::gain;
   std::string id;
   std::string gauge;
-  std::string effect;  ///< id of the effect's use
+  bool of_output_bar = false;  ///< a modulus of the output bar alone
+  std::string effect;          ///< id of the effect's use
   std::size_t parameter = 0;
   Measured filed;       ///< as CalibratedNumber
   double origin = 0.0;  ///< `filed` + the effect's value - `origin` is the number

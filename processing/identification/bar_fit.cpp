@@ -21,6 +21,8 @@ constexpr double kPriorOfReflection = 2.0;
 constexpr int kMostSteps = 60;
 /// A step is not worth taking when it gains less in chi2: a hundredth of a standard deviation.
 constexpr double kNegligibleGain = 1e-4;
+/// Of a search whose end is only where another one begins: a third of a deviation of one shot.
+constexpr double kNearEnough = 0.1;
 /// Nor does it matter that a step foretold to gain less than this does not: the gradient leaves out
 /// what the parameters do to the weights in second order.
 constexpr double kDoubtfulGain = 1e-2;
@@ -96,7 +98,7 @@ InputError not_converged() {
 /// Levenberg's and Marquardt's search over the first so many shots, undamped as long as it goes
 /// downhill.
 Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& start,
-               std::size_t shots) {
+               std::size_t shots, double negligible_gain) {
   const std::size_t logs = likelihood.model().solid_parameters();
   const double judged = static_cast<double>(likelihood.residuals()) * static_cast<double>(shots) /
                         static_cast<double>(likelihood.data().shots());
@@ -110,7 +112,7 @@ Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::Vecto
     const double gain = -place.gradient.dot(step);
     // Where the model leaves more than noise, deviations are that much wider.
     const double widened = std::max(1.0, place.objective / judged);
-    if (gain < kNegligibleGain * widened) {
+    if (gain < negligible_gain * widened) {
       return place;
     }
     Place next = look(likelihood, prior, place.at + step, shots);
@@ -260,10 +262,11 @@ BarFit fit_bar(BarData& data, const BarTheory& theory, const std::vector<double>
   // where it began do not do for where it ends.
   for (int round = 0; round < 2; ++round) {
     weigh(false);
-    at = minimise(likelihood, prior, at, 1).at;
+    at = minimise(likelihood, prior, at, 1, kNearEnough).at;
   }
   weigh(true);
-  return describe(likelihood, prior, minimise(likelihood, prior, at, data.shots()));
+  return describe(likelihood, prior,
+                  minimise(likelihood, prior, at, data.shots(), kNegligibleGain));
 }
 
 BarFit fit_bar(const std::vector<Shot>& shots, const BarFitOptions& options) {

@@ -11,8 +11,9 @@ namespace {
 
 /// With a record that holds many returns, those beyond this many are taken alike.
 constexpr std::size_t kMostReturns = 12;
-/// Bins whose noise is taken together.
-constexpr std::size_t kLowestBins = 20;
+/// Bins whose noise is taken together: to 15 kHz in records of 4 ms. Where losses show in them, an
+/// average over returns states deviations that are 4 to 8 % small.
+constexpr std::size_t kLowestBins = 60;
 /// Places at which noise enters, per bin: what moves faster is not in them.
 constexpr std::size_t kPlacesPerBin = 12;
 
@@ -244,9 +245,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
       }
     }
   }
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(covariance);
-  lowest_lower_inverse_ =
-      factor.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.rows()));
+  lowest_factor_.compute(covariance);
 }
 
 void BarLikelihood::weigh(std::span<const double> at, bool exact) {
@@ -356,8 +355,9 @@ Eigen::MatrixXd BarLikelihood::white(const std::vector<Eigen::MatrixXcd>& bins) 
   }
   if (lowest_bins_ > 0) {
     const Eigen::Index coupled = 2 * others * static_cast<Eigen::Index>(lowest_bins_);
-    rows.topRows(coupled) =
-        (lowest_lower_inverse_.triangularView<Eigen::Lower>() * rows.topRows(coupled)).eval();
+    Eigen::MatrixXd lowest = rows.topRows(coupled);
+    lowest_factor_.matrixL().solveInPlace(lowest);
+    rows.topRows(coupled) = lowest;
   }
   return rows;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
 #include <span>
 #include <vector>
 
@@ -77,7 +77,7 @@ class BarLikelihood {
   BarModel model_;
   std::vector<Whitening> whitening_;
   /// Of the first bins, real parts of all gauges before imaginary ones, bin after bin.
-  Eigen::MatrixXd lowest_lower_inverse_;
+  Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> lowest_factor_;
   std::size_t lowest_bins_ = 0;
   Spectrum product_;
 };

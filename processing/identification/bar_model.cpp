@@ -7,38 +7,6 @@ namespace kolsky {
 
 namespace {
 
-/// sinh(z) / z.
-Complex sinhc(Complex z) {
-  return std::abs(z) < 1e-3 ? 1.0 + z * z / 6.0 : std::sinh(z) / z;
-}
-
-/// d log sinhc(z) / dz = coth(z) - 1/z.
-Complex log_slope_of_sinhc(Complex z) {
-  return std::abs(z) < 1e-2 ? z / 3.0 : 1.0 / std::tanh(z) - 1.0 / z;
-}
-
-/// d log J / d log p of each parameter of a solid, by central differences: J is smooth in them to
-/// all orders, and the error of 1e-10 is below that of J itself in its effect.
-std::vector<std::vector<Complex>> log_slopes(SolidKind kind, std::vector<double> parameters,
-                                             const std::vector<Complex>& path) {
-  constexpr double kStep = 1e-5;
-  std::vector<std::vector<Complex>> slopes(parameters.size());
-  for (std::size_t m = 0; m < parameters.size(); ++m) {
-    const double value = parameters[m];
-    parameters[m] = value * std::exp(kStep);
-    const auto above = make_solid(kind, parameters);
-    parameters[m] = value * std::exp(-kStep);
-    const auto below = make_solid(kind, parameters);
-    parameters[m] = value;
-    for (const Complex s : path) {
-      const Complex up = above->at(s);
-      const Complex down = below->at(s);
-      slopes[m].push_back((up - down) / (up + down) / kStep);
-    }
-  }
-  return slopes;
-}
-
 std::vector<double> exponentials(std::span<const double> logs) {
   std::vector<double> values(logs.size());
   std::transform(logs.begin(), logs.end(), values.begin(),
@@ -106,108 +74,76 @@ double BarModel::reflection(std::span<const double> at) const {
   return at[*reflection_at()];
 }
 
-/// What the derivatives of one gauge's transfer need.
-struct BarModel::Place {
-  std::size_t gauge;
-  double x0, x, length_m, length0_m, reflection;
-  const MovedBench& moved;
-  const std::vector<BarMode>& modes;
-  const std::vector<std::vector<Complex>>& solid_slopes;
-  const std::vector<BarMode>* other_poisson;  ///< modes at Poisson's ratio 0.1 % up
-  double bar_length_m;
+bool BarModel::varies(KnownUnknown::Of number) const {
+  return std::any_of(unknowns_.begin(), unknowns_.end(),
+                     [&](const KnownUnknown& unknown) { return unknown.of == number; });
+}
 
-  struct Slopes {
-    Complex by_gamma, by_x, by_x0, by_length, by_reflection;  ///< of log g
-  };
-  [[nodiscard]] Slopes at(std::size_t k) const {
-    const Complex gamma = modes[k].gamma;
-    const Complex q = std::exp(-2.0 * gamma * (bar_length_m - x));
-    const Complex q0 = std::exp(-2.0 * gamma * (bar_length_m - x0));
-    const Complex e = q / (1.0 + reflection * q);
-    const Complex e0 = q0 / (1.0 + reflection * q0);
-    const Complex re = reflection * e;
-    const Complex re0 = reflection * e0;
-    Slopes slopes;
-    slopes.by_gamma = x0 - x - 2.0 * (bar_length_m - x) * re + 2.0 * (bar_length_m - x0) * re0;
-    if (length_m != length0_m) {
-      slopes.by_gamma += 0.5 * length_m * log_slope_of_sinhc(0.5 * gamma * length_m) -
-                         0.5 * length0_m * log_slope_of_sinhc(0.5 * gamma * length0_m);
-    }
-    slopes.by_x = gamma * (2.0 * re - 1.0);
-    slopes.by_x0 = -gamma * (2.0 * re0 - 1.0);
-    slopes.by_length = -2.0 * gamma * (re - re0);
-    slopes.by_reflection = e - e0;
-    return slopes;
-  }
-};
-
-void BarModel::differentiate(const Place& place, Transfer& transfer) const {
+/// d log g_j by a known unknown in its standard deviations: a number where it is the same at all
+/// frequencies, nothing where it does not move this gauge.
+std::optional<BarModel::LogSlope> BarModel::slope_by(const KnownUnknown& unknown, std::size_t gauge,
+                                                     const MovedBench& bench,
+                                                     const RatioSlopes& ratio,
+                                                     const GammaSlopes& gamma) const {
   using Of = KnownUnknown::Of;
-  constexpr double kPoissonStep = 1e-3;
-  std::vector<Place::Slopes> slopes;
-  slopes.reserve(transfer.g.size());
-  for (std::size_t k = 0; k < transfer.g.size(); ++k) {
-    slopes.push_back(place.at(k));
+  const bool own = unknown.gauge == gauge;
+  const bool concerns = own || unknown.gauge == 0;
+  const auto relative = [&](const Measured& filed, const Measured& now) {
+    return unknown.sd * filed / now;
+  };
+  switch (unknown.of) {
+    case Of::gain:
+      if (concerns) {
+        return LogSlope{(own ? 1.0 : -1.0) * unknown.sd / bench.gain[unknown.gauge], nullptr,
+                        nullptr};
+      }
+      return std::nullopt;
+    case Of::position:
+      if (concerns) {
+        return LogSlope{unknown.sd, own ? &ratio.by_x : &ratio.by_x0, nullptr};
+      }
+      return std::nullopt;
+    case Of::length:
+      return LogSlope{unknown.sd, &ratio.by_length, nullptr};
+    case Of::density:
+      return LogSlope{relative(bar_.density_kg_m3, bench.bar.density_kg_m3), &ratio.by_gamma,
+                      &gamma.by_density};
+    case Of::diameter:
+      return LogSlope{relative(bar_.diameter_m, bench.bar.diameter_m), &ratio.by_gamma,
+                      &gamma.by_diameter};
+    case Of::poisson_ratio:
+      break;
   }
-  const auto add = [&](std::size_t parameter, const auto& log_slope) {
+  return LogSlope{relative(bar_.poisson_ratio, bench.bar.poisson_ratio), &ratio.by_gamma,
+                  &gamma.by_poisson};
+}
+
+void BarModel::differentiate(std::size_t gauge, const MovedBench& bench, const BarWaves& waves,
+                             const GammaSlopes& gamma, Transfer& transfer) const {
+  const RatioSlopes ratio(waves, bench, gauge);
+  const auto add = [&](std::size_t parameter, const LogSlope& slope) {
+    if (slope.ratio == nullptr) {
+      transfer.derivatives.push_back({parameter, slope.factor, {}});
+      return;
+    }
     Spectrum of_g(transfer.g.size());
     for (std::size_t k = 0; k < of_g.size(); ++k) {
-      of_g[k] = transfer.g[k] * log_slope(k);
+      of_g[k] = slope.factor * transfer.g[k] * (*slope.ratio)[k];
+    }
+    for (std::size_t k = 0; slope.gamma != nullptr && k < of_g.size(); ++k) {
+      of_g[k] *= (*slope.gamma)[k];
     }
     transfer.derivatives.push_back({parameter, std::nullopt, std::move(of_g)});
   };
   for (std::size_t m = 0; m < solid_parameters(); ++m) {
-    add(m, [&](std::size_t k) {
-      return slopes[k].by_gamma * place.modes[k].gamma * place.modes[k].slope *
-             place.solid_slopes[m][k];
-    });
+    add(m, {1.0, &ratio.by_gamma, &gamma.by_solid[m]});
   }
   if (const auto at = reflection_at()) {
-    add(*at, [&](std::size_t k) { return slopes[k].by_reflection; });
+    add(*at, {1.0, &ratio.by_reflection, nullptr});
   }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const KnownUnknown& u = unknowns_[i];
-    const std::size_t at = first_unknown() + i;
-    const bool own = u.gauge == place.gauge;
-    switch (u.of) {
-      case Of::gain:
-        if (own || u.gauge == 0) {
-          const double change = u.sd / place.moved.gain[u.gauge];
-          transfer.derivatives.push_back({at, own ? change : -change, {}});
-        }
-        break;
-      case Of::position:
-        if (own || u.gauge == 0) {
-          add(at, [&](std::size_t k) { return u.sd * (own ? slopes[k].by_x : slopes[k].by_x0); });
-        }
-        break;
-      case Of::length:
-        add(at, [&](std::size_t k) { return u.sd * slopes[k].by_length; });
-        break;
-      case Of::density: {
-        const double change = u.sd * bar_.density_kg_m3 / place.moved.bar.density_kg_m3;
-        add(at, [&](std::size_t k) {
-          return change * slopes[k].by_gamma * place.modes[k].gamma * place.modes[k].slope;
-        });
-        break;
-      }
-      case Of::diameter: {
-        const double change = u.sd * bar_.diameter_m / place.moved.bar.diameter_m;
-        add(at, [&](std::size_t k) {
-          return change * slopes[k].by_gamma * place.modes[k].gamma *
-                 (2.0 * place.modes[k].slope - 1.0);
-        });
-        break;
-      }
-      case Of::poisson_ratio: {
-        const double change =
-            u.sd * bar_.poisson_ratio / (kPoissonStep * place.moved.bar.poisson_ratio);
-        add(at, [&](std::size_t k) {
-          return change * slopes[k].by_gamma *
-                 ((*place.other_poisson)[k].gamma - place.modes[k].gamma);
-        });
-        break;
-      }
+    if (const auto slope = slope_by(unknowns_[i], gauge, bench, ratio, gamma)) {
+      add(first_unknown() + i, *slope);
     }
   }
 }
@@ -215,46 +151,24 @@ void BarModel::differentiate(const Place& place, Transfer& transfer) const {
 std::vector<BarModel::Transfer> BarModel::transfers_with(std::span<const double> at, double R,
                                                          const std::vector<Complex>& path,
                                                          bool with_derivatives) const {
-  const auto compliance = solid(at);
-  const MovedBench moved_bench = moved(at);
-  const std::vector<BarMode> modes = bar_modes(theory_.waves, moved_bench.bar, *compliance, path);
-  std::vector<std::vector<Complex>> solid_slopes;
-  std::vector<BarMode> other_poisson;
+  const MovedBench bench = moved(at);
+  const bool with_echo = R != 0.0 || (with_derivatives && reflection_at());
+  const BarWaves waves(theory_.waves, bench, *solid(at), R, with_echo, gauge_length_m_, path);
+  std::optional<GammaSlopes> gamma;
   if (with_derivatives) {
-    solid_slopes = log_slopes(theory_.solid, exponentials(at.first(solid_parameters())), path);
-    const bool varies = std::any_of(unknowns_.begin(), unknowns_.end(), [](const auto& u) {
-      return u.of == KnownUnknown::Of::poisson_ratio;
-    });
-    if (varies) {
-      Bar other = moved_bench.bar;
-      other.poisson_ratio.value *= 1.001;
-      other_poisson = bar_modes(theory_.waves, other, *compliance, path);
-    }
+    gamma.emplace(theory_.waves, bench.bar, theory_.solid,
+                  exponentials(at.first(solid_parameters())), waves,
+                  varies(KnownUnknown::Of::poisson_ratio), path);
   }
-  const double length_m = moved_bench.bar.length_m;
-  const double x0 = moved_bench.position_m[0];
   std::vector<Transfer> list(records_->position_m.size() - 1);
   for (std::size_t j = 1; j <= list.size(); ++j) {
     Transfer& transfer = list[j - 1];
-    const double x = moved_bench.position_m[j];
-    const double gain = moved_bench.gain[j] / moved_bench.gain[0];
-    const bool blurred = gauge_length_m_[j] != gauge_length_m_[0];
-    for (const BarMode& mode : modes) {
-      const Complex gamma = mode.gamma;
-      Complex g = gain * std::exp(-gamma * (x - x0));
-      if (R != 0.0) {
-        g *= (1.0 + R * std::exp(-2.0 * gamma * (length_m - x))) /
-             (1.0 + R * std::exp(-2.0 * gamma * (length_m - x0)));
-      }
-      if (blurred) {
-        g *= sinhc(0.5 * gamma * gauge_length_m_[j]) / sinhc(0.5 * gamma * gauge_length_m_[0]);
-      }
-      transfer.g.push_back(g);
+    transfer.g = waves.ratio(bench, j);
+    for (Complex& g : transfer.g) {
+      g *= bench.gain[j] / bench.gain[0];
     }
-    if (with_derivatives) {
-      differentiate({j, x0, x, gauge_length_m_[j], gauge_length_m_[0], R, moved_bench, modes,
-                     solid_slopes, &other_poisson, length_m},
-                    transfer);
+    if (gamma) {
+      differentiate(j, bench, waves, *gamma, transfer);
     }
   }
   return list;
@@ -274,17 +188,7 @@ std::vector<BarModel::Transfer> BarModel::first_passages(std::span<const double>
 
 std::vector<BarModel::Spectrum> BarModel::returns(std::span<const double> at,
                                                   const std::vector<Complex>& path) const {
-  const MovedBench moved_bench = moved(at);
-  const auto compliance = solid(at);
-  const auto modes = bar_modes(theory_.waves, moved_bench.bar, *compliance, path);
-  std::vector<Spectrum> list;
-  for (const double x : moved_bench.position_m) {
-    Spectrum& q = list.emplace_back();
-    for (const BarMode& mode : modes) {
-      q.push_back(std::exp(-2.0 * mode.gamma * (moved_bench.bar.length_m - x)));
-    }
-  }
-  return list;
+  return BarWaves(theory_.waves, moved(at), *solid(at), 0.0, true, gauge_length_m_, path).echo;
 }
 
 }  // namespace kolsky

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/identification/known_unknowns.hpp"
-#include "processing/identification/solids.hpp"
-#include "processing/waves/bar_modes.hpp"
+#include "processing/identification/bar_waves.hpp"
 
 namespace kolsky {
 
@@ -77,11 +75,21 @@ class BarModel {
                                               const std::vector<Complex>& path) const;
 
  private:
-  struct Place;
+  /// factor x ratio x gamma, of which null ones are 1.
+  struct LogSlope {
+    double factor = 0.0;
+    const Spectrum* ratio = nullptr;
+    const Spectrum* gamma = nullptr;
+  };
+  [[nodiscard]] bool varies(KnownUnknown::Of number) const;
+  [[nodiscard]] std::optional<LogSlope> slope_by(const KnownUnknown& unknown, std::size_t gauge,
+                                                 const MovedBench& bench, const RatioSlopes& ratio,
+                                                 const GammaSlopes& gamma) const;
   [[nodiscard]] std::vector<Transfer> transfers_with(std::span<const double> at, double reflection,
                                                      const std::vector<Complex>& path,
                                                      bool with_derivatives) const;
-  void differentiate(const Place& place, Transfer& transfer) const;
+  void differentiate(std::size_t gauge, const MovedBench& bench, const BarWaves& waves,
+                     const GammaSlopes& gamma, Transfer& transfer) const;
 
   Bar bar_;
   const BarRecords* records_;

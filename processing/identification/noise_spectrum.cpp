@@ -1,5 +1,6 @@
 #include "processing/identification/noise_spectrum.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -58,12 +59,20 @@ double slow_power(double keep, double cycles, double n) {
   return 2.0 * sum.real() - 1.0;
 }
 
+/// The same at whole cycles of a window of n samples, where z^n is keep^n. @param turn  z / keep
+double slow_power_at_bin(double keep, double keep_to_n, std::complex<double> turn, double n) {
+  const std::complex<double> z = keep * turn;
+  const std::complex<double> inverse = 1.0 / (1.0 - z);
+  return 2.0 * (inverse - z * (inverse * inverse) * ((1.0 - keep_to_n) / n)).real() - 1.0;
+}
+
 /// Mean power of the stretches' last `samples` at the transform's bins but that at zero.
 struct Periodogram {
   std::size_t samples = 0;
   double stretches = 0.0;
   std::vector<double> cycles;
-  std::vector<double> power;
+  std::vector<std::complex<double>> turn;  ///< exp(-2 pi i cycles)
+  Eigen::ArrayXd power;
 
   explicit Periodogram(const std::vector<std::span<const double>>& quiet) {
     std::size_t shortest = SIZE_MAX;
@@ -82,29 +91,27 @@ struct Periodogram {
     }
     DampedTransform transform(samples, 1.0, 1.0);
     std::vector<Complex> spectrum(transform.bins());
-    cycles.resize(transform.bins() - 2);
-    power.assign(cycles.size(), 0.0);
+    const std::size_t bins = transform.bins() - 2;
+    power = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(bins));
     for (const auto& stretch : quiet) {
       if (stretch.empty()) {
         continue;
       }
       transform.forward(stretch.last(samples), spectrum);
-      for (std::size_t k = 0; k < power.size(); ++k) {
-        power[k] += std::norm(spectrum[k + 1]) / (static_cast<double>(samples) * stretches);
+      for (std::size_t k = 0; k < bins; ++k) {
+        power[static_cast<Eigen::Index>(k)] +=
+            std::norm(spectrum[k + 1]) / (static_cast<double>(samples) * stretches);
       }
     }
-    for (std::size_t k = 0; k < cycles.size(); ++k) {
-      cycles[k] = static_cast<double>(k + 1) / static_cast<double>(samples);
+    for (std::size_t k = 0; k < bins; ++k) {
+      cycles.push_back(static_cast<double>(k + 1) / static_cast<double>(samples));
+      turn.push_back(std::polar(1.0, -2.0 * std::numbers::pi * cycles.back()));
     }
   }
 
   /// Whittle's log likelihood of a model's powers.
-  [[nodiscard]] double log_likelihood(const std::vector<double>& model) const {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < power.size(); ++k) {
-      sum -= std::log(model[k]) + power[k] / model[k];
-    }
-    return stretches * sum;
+  [[nodiscard]] double log_likelihood(const Eigen::ArrayXd& model) const {
+    return -stretches * (model.log() + power / model).sum();
   }
 };
 
@@ -113,68 +120,53 @@ struct Periodogram {
 /// A sum of parts with positive weights, fitted to a periodogram.
 class NoiseSpectrum::Fit {
  public:
-  explicit Fit(const Periodogram& data) : data_(&data) {
-    parts_.push_back(std::vector<double>(data.power.size(), 1.0));
-    const double mean = std::accumulate(data.power.begin(), data.power.end(), 0.0) /
-                        static_cast<double>(data.power.size());
-    weights_ = {mean};
+  explicit Fit(const Periodogram& data)
+      : data_(&data),
+        parts_(Eigen::MatrixXd::Ones(data.power.size(), 1)),
+        weights_(Eigen::VectorXd::Constant(1, data.power.mean())) {
     refine();
   }
 
   void add(double keep) {
-    std::vector<double> part(data_->cycles.size());
-    for (std::size_t k = 0; k < part.size(); ++k) {
-      part[k] = slow_power(keep, data_->cycles[k], static_cast<double>(data_->samples));
+    const Eigen::Index count = parts_.cols();
+    parts_.conservativeResize(Eigen::NoChange, count + 1);
+    const auto n = static_cast<double>(data_->samples);
+    const double keep_to_n = std::pow(keep, n);
+    for (Eigen::Index k = 0; k < parts_.rows(); ++k) {
+      parts_(k, count) =
+          slow_power_at_bin(keep, keep_to_n, data_->turn[static_cast<std::size_t>(k)], n);
     }
-    const double share = 0.3 * weights_[0] * static_cast<double>(part.size()) /
-                         std::accumulate(part.begin(), part.end(), 0.0);
-    weights_.push_back(share);
-    parts_.push_back(std::move(part));
+    weights_.conservativeResize(count + 1);
+    weights_[count] = 0.3 * weights_[0] / parts_.col(count).mean();
     keeps_.push_back(keep);
     refine();
   }
 
-  [[nodiscard]] double log_likelihood() const { return data_->log_likelihood(sum()); }
+  [[nodiscard]] double log_likelihood() const { return data_->log_likelihood(parts_ * weights_); }
   [[nodiscard]] double white() const { return weights_[0]; }
   [[nodiscard]] std::vector<SlowPart> slow() const {
     std::vector<SlowPart> list;
     for (std::size_t i = 0; i < keeps_.size(); ++i) {
-      list.push_back({weights_[i + 1], keeps_[i]});
+      list.push_back({weights_[static_cast<Eigen::Index>(i) + 1], keeps_[i]});
     }
     return list;
   }
 
  private:
-  [[nodiscard]] std::vector<double> sum() const {
-    std::vector<double> total(data_->power.size(), 0.0);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      for (std::size_t k = 0; k < total.size(); ++k) {
-        total[k] += weights_[i] * parts_[i][k];
-      }
-    }
-    return total;
-  }
-
   /// Steps that multiply the weights, keep them positive and never lower the likelihood.
   void refine() {
     for (int round = 0; round < kRounds; ++round) {
-      const std::vector<double> total = sum();
-      for (std::size_t i = 0; i < parts_.size(); ++i) {
-        double up = 0.0;
-        double down = 0.0;
-        for (std::size_t k = 0; k < total.size(); ++k) {
-          const double share = parts_[i][k] / total[k];
-          up += share * data_->power[k] / total[k];
-          down += share;
-        }
-        weights_[i] *= std::sqrt(up / down);
-      }
+      const Eigen::ArrayXd inverse = (parts_ * weights_).array().inverse();
+      const Eigen::VectorXd excess = inverse.square() * data_->power;
+      const Eigen::ArrayXd up = parts_.transpose() * excess;
+      const Eigen::ArrayXd down = parts_.transpose() * inverse.matrix();
+      weights_.array() *= (up / down).sqrt();
     }
   }
 
   const Periodogram* data_;
-  std::vector<std::vector<double>> parts_;
-  std::vector<double> weights_;  ///< of white noise first
+  Eigen::MatrixXd parts_;    ///< by column: what each shows at each frequency
+  Eigen::VectorXd weights_;  ///< of white noise first
   std::vector<double> keeps_;
 };
 
@@ -226,7 +218,7 @@ NoiseSpectrum::Autoregression NoiseSpectrum::autoregression(
 NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) {
   const Autoregression shaped = autoregression(quiet);
   const Periodogram data(quiet);
-  if (data.power.empty() || shaped.innovation <= 0.0) {
+  if (data.power.size() == 0 || shaped.innovation <= 0.0) {
     shaped_ = shaped;
     return;
   }
@@ -261,7 +253,7 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
   }
   white_ = best.white();
   slow_ = best.slow();
-  std::vector<double> powers(data.cycles.size());
+  Eigen::ArrayXd powers(data.power.size());
   std::transform(data.cycles.begin(), data.cycles.end(), powers.begin(),
                  [&](double cycles) { return shaped.power(cycles); });
   const double own = likelihood - 2.0 * static_cast<double>(slow_.size());

@@ -61,7 +61,7 @@ void require_gauges(const Bar& bar, const std::vector<SeparationGauge>& gauges,
       throw InputError("gauges", "at " + in_words(gauge.position_m, "m") + " is off the bar",
                        "give positions from the bar's start");
     }
-    if (gauge.strain.size() != gauges.front().strain.size() || gauge.strain.empty()) {
+    if (gauge.values.size() != gauges.front().values.size() || gauge.values.empty()) {
       throw InputError("gauges", "have records of different lengths, or none",
                        "give all gauges of one shot");
     }
@@ -71,6 +71,17 @@ void require_gauges(const Bar& bar, const std::vector<SeparationGauge>& gauges,
   if (needed == 2 && !(most > least)) {
     throw InputError("gauges", "are all at one place", "give gauges at two places of the bar");
   }
+}
+
+/// Undamped frequencies to a limit, close enough to see what a passage does.
+std::vector<Complex> axis_to(double limit_Hz, double passage_s) {
+  constexpr double kPerPassage = 50.0;
+  const double step_Hz = 0.5 / (passage_s * kPerPassage);
+  std::vector<Complex> axis;
+  for (double f = step_Hz; f < limit_Hz; f += step_Hz) {
+    axis.emplace_back(0.0, 2.0 * std::numbers::pi * f);
+  }
+  return axis;
 }
 
 double weight_of(const SeparationGauge& gauge) {
@@ -86,30 +97,54 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
       density_kg_m3_(bar.density_kg_m3),
       period_s_(period_s),
       band_limit_Hz_(band_limit_Hz),
-      samples_(gauges.empty() ? 0 : gauges.front().strain.size()),
+      samples_(gauges.empty() ? 0 : gauges.front().values.size()),
       lead_(0) {
   require_gauges(bar, gauges, ends);
   // Waves are looked for where they came from, before the gauges saw them: room for two passages.
   const double passage_s = length_m_ / front_speed_m_per_s(bar, compliance);
   lead_ = static_cast<std::size_t>(std::ceil(2.5 * passage_s / period_s_)) + 16;
-  DampedTransform transform(samples_ + 2 * lead_, period_s_);
+  const DampedTransform transform(samples_ + 2 * lead_, period_s_);
   for (std::size_t k = 0; k < transform.bins(); ++k) {
     path_.push_back(transform.s(k));
   }
   modes_ = bar_modes(theory, bar, compliance, path_);
+  solve(gauges, ends);
 
+  // Blindness is that of the undamped waves.
+  const std::vector<Complex> axis = axis_to(band_limit_Hz_, passage_s);
+  find_blind(gauges, ends, bar_modes(theory, bar, compliance, axis), axis);
+}
+
+Complex WaveSeparation::stiffness(std::size_t k) const {
+  const Complex slowness = modes_[k].gamma / path_[k];
+  return density_kg_m3_ / (slowness * slowness) * modes_[k].mean_over_surface;
+}
+
+std::vector<std::vector<Complex>> WaveSeparation::surface_strains(
+    const std::vector<SeparationGauge>& gauges) const {
+  DampedTransform transform(samples_ + 2 * lead_, period_s_);
   BandLimit band(transform, 16);
   std::vector<std::vector<Complex>> spectra;
   std::vector<double> padded(transform.length());
   for (const SeparationGauge& gauge : gauges) {
     std::fill(padded.begin(), padded.end(), 0.0);
-    std::copy(gauge.strain.begin(), gauge.strain.end(),
+    std::copy(gauge.values.begin(), gauge.values.end(),
               padded.begin() + static_cast<std::ptrdiff_t>(lead_));
     auto& spectrum = spectra.emplace_back(transform.bins());
     transform.forward(padded, spectrum);
     band.apply_half(band_limit_Hz_, spectrum);
     band.apply_half(band_limit_Hz_, spectrum);
+    if (gauge.record == SeparationRecord::mean_stress_Pa) {
+      for (std::size_t k = 0; k < spectrum.size(); ++k) {
+        spectrum[k] /= stiffness(k);
+      }
+    }
   }
+  return spectra;
+}
+
+void WaveSeparation::solve(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends) {
+  const auto spectra = surface_strains(gauges);
   for (std::size_t k = 0; k < path_.size(); ++k) {
     const Complex gamma = modes_[k].gamma;
     Normal normal;
@@ -136,16 +171,12 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
     right_.push_back(right);
     left_.push_back(left);
   }
+}
 
-  // Blindness is that of the undamped waves.
+void WaveSeparation::find_blind(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
+                                const std::vector<BarMode>& undamped,
+                                const std::vector<Complex>& axis) {
   constexpr double kBlind = 5.0;
-  constexpr double kPerPassage = 50.0;
-  std::vector<Complex> axis;
-  const double step_Hz = 0.5 / (passage_s * kPerPassage);
-  for (double f = step_Hz; f < band_limit_Hz_; f += step_Hz) {
-    axis.emplace_back(0.0, 2.0 * std::numbers::pi * f);
-  }
-  const auto undamped = bar_modes(theory, bar, compliance, axis);
   double best = 0.0;
   for (const SeparationGauge& gauge : gauges) {
     best += weight_of(gauge);
@@ -181,9 +212,8 @@ SeparatedWaves WaveSeparation::at(double position_m) const {
     const Complex gamma = modes_[k].gamma;
     right[k] = right_[k] * std::exp(-gamma * position_m);
     left[k] = left_[k] * std::exp(-gamma * (length_m_ - position_m));
-    const Complex mean = modes_[k].mean_over_surface;
-    stress[k] = density_kg_m3_ * s * s / (gamma * gamma) * mean * (right[k] + left[k]);
-    velocity[k] = s / gamma * mean * (right[k] - left[k]);
+    stress[k] = stiffness(k) * (right[k] + left[k]);
+    velocity[k] = s / gamma * modes_[k].mean_over_surface * (right[k] - left[k]);
   }
   const auto history = [&](const std::vector<Complex>& spectrum) {
     std::vector<double> record(transform.length());

@@ -8,11 +8,19 @@
 
 namespace kolsky {
 
-/// A record of one gauge on a bar.
+/// What a record holds.
+enum class SeparationRecord {
+  surface_strain,
+  mean_stress_Pa,  ///< over the section, as at an end whose force is known from elsewhere
+};
+
+/// A record of one gauge on a bar, or of a section whose stress is known: the end at a specimen in
+/// equilibrium carries the force that the other bar's gauge gives.
 struct SeparationGauge {
   double position_m = 0.0;         ///< from the bar's start
-  std::span<const double> strain;  ///< at the surface, compression positive, baseline taken off
-  double noise_rms = 0.0;          ///< 0 where all gauges are as good
+  std::span<const double> values;  ///< compression positive, baseline taken off
+  double noise_rms = 0.0;          ///< of the strain; 0 where all gauges are as good
+  SeparationRecord record = SeparationRecord::surface_strain;
 };
 
 /// What is known of a bar's ends: a free end returns every wave inverted, at all times of the
@@ -58,6 +66,15 @@ class WaveSeparation {
   [[nodiscard]] const std::vector<BlindFrequency>& blind() const { return blind_; }
 
  private:
+  /// Spectra of the records as surface strains, filtered.
+  [[nodiscard]] std::vector<std::vector<Complex>> surface_strains(
+      const std::vector<SeparationGauge>& gauges) const;
+  void solve(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends);
+  void find_blind(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
+                  const std::vector<BarMode>& undamped, const std::vector<Complex>& axis);
+  /// Mean stress over surface strain.
+  [[nodiscard]] Complex stiffness(std::size_t k) const;
+
   double length_m_;
   double density_kg_m3_;
   double period_s_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <new>
 #include <numbers>
@@ -31,6 +32,63 @@ struct FftwFree {
   void operator()(void* memory) const { fftw_free(memory); }
 };
 
+using TimeArray = std::unique_ptr<double[], FftwFree>;
+using FrequencyArray = std::unique_ptr<fftw_complex[], FftwFree>;
+
+/// There and back for one length, on any arrays of FFTW's alignment and in any number of threads.
+class Plans {
+ public:
+  /// @pre the planner's lock is held
+  explicit Plans(std::size_t length) {
+    const TimeArray time(fftw_alloc_real(length));
+    const FrequencyArray frequency(fftw_alloc_complex(length / 2 + 1));
+    if (!time || !frequency) {
+      throw std::bad_alloc();
+    }
+    const int n = static_cast<int>(length);
+    // FFTW remembers parts of earlier plans, even estimated ones, and would build on them: the same
+    // transform would round differently in a program that has planned other lengths before.
+    fftw_forget_wisdom();
+    to_frequency_ = fftw_plan_dft_r2c_1d(n, time.get(), frequency.get(), FFTW_ESTIMATE);
+    to_time_ = fftw_plan_dft_c2r_1d(n, frequency.get(), time.get(), FFTW_ESTIMATE);
+  }
+  ~Plans() {
+    const std::scoped_lock lock(planner_lock());
+    fftw_destroy_plan(to_frequency_);
+    fftw_destroy_plan(to_time_);
+  }
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+
+  void to_frequency(double* time, fftw_complex* frequency) const {
+    fftw_execute_dft_r2c(to_frequency_, time, frequency);
+  }
+  void to_time(fftw_complex* frequency, double* time) const {
+    fftw_execute_dft_c2r(to_time_, frequency, time);
+  }
+
+ private:
+  fftw_plan to_frequency_;
+  fftw_plan to_time_;
+};
+
+/// Planning costs as much as hundreds of transforms, and a plan depends on its length alone: those
+/// of the lengths in use are kept, which changes no bit of any result.
+std::shared_ptr<const Plans> plans_of(std::size_t length) {
+  constexpr std::size_t kMostLengths = 32;
+  std::map<std::size_t, std::shared_ptr<const Plans>> old;  // goes after the lock
+  const std::scoped_lock lock(planner_lock());
+  static std::map<std::size_t, std::shared_ptr<const Plans>> known;
+  const auto found = known.find(length);
+  if (found != known.end()) {
+    return found->second;
+  }
+  if (known.size() >= kMostLengths) {
+    old.swap(known);
+  }
+  return known.emplace(length, std::make_shared<Plans>(length)).first->second;
+}
+
 }  // namespace
 
 std::size_t good_transform_length(std::size_t samples) {
@@ -46,10 +104,9 @@ struct DampedTransform::State {
   std::size_t length;
   double bin_width_Hz;
   double eta_per_s;
-  std::unique_ptr<double[], FftwFree> time;
-  std::unique_ptr<fftw_complex[], FftwFree> frequency;
-  fftw_plan to_frequency;
-  fftw_plan to_time;
+  TimeArray time;
+  FrequencyArray frequency;
+  std::shared_ptr<const Plans> plans;
   std::vector<double> damping;    // exp(-eta t)
   std::vector<double> undamping;  // exp(+eta t) / length
 
@@ -59,6 +116,7 @@ struct DampedTransform::State {
         eta_per_s(-std::log(wrap_damping) * bin_width_Hz),
         time(fftw_alloc_real(length)),
         frequency(fftw_alloc_complex(length / 2 + 1)),
+        plans(plans_of(length)),
         damping(length),
         undamping(length) {
     if (!time || !frequency) {
@@ -69,21 +127,7 @@ struct DampedTransform::State {
       damping[n] = std::exp(-exponent);
       undamping[n] = std::exp(exponent) / static_cast<double>(length);
     }
-    const std::scoped_lock lock(planner_lock());
-    const int n = static_cast<int>(length);
-    // FFTW remembers parts of earlier plans, even estimated ones, and would build on them: the same
-    // transform would round differently in a program that has planned other lengths before.
-    fftw_forget_wisdom();
-    to_frequency = fftw_plan_dft_r2c_1d(n, time.get(), frequency.get(), FFTW_ESTIMATE);
-    to_time = fftw_plan_dft_c2r_1d(n, frequency.get(), time.get(), FFTW_ESTIMATE);
   }
-  ~State() {
-    const std::scoped_lock lock(planner_lock());
-    fftw_destroy_plan(to_frequency);
-    fftw_destroy_plan(to_time);
-  }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
 };
 
 DampedTransform::DampedTransform(std::size_t samples, double period_s, double wrap_damping)
@@ -116,7 +160,7 @@ void DampedTransform::forward(std::span<const double> record, std::span<Complex>
     time[n] = record[n] * damping[n];
   }
   std::fill(time + record.size(), time + state_->length, 0.0);
-  fftw_execute(state_->to_frequency);
+  state_->plans->to_frequency(time, state_->frequency.get());
   // FFTW's complex numbers are laid out as those of the standard library.
   const auto* frequency = reinterpret_cast<const Complex*>(state_->frequency.get());
   std::copy_n(frequency, bins(), spectrum.begin());
@@ -124,7 +168,7 @@ void DampedTransform::forward(std::span<const double> record, std::span<Complex>
 
 void DampedTransform::inverse(std::span<const Complex> spectrum, std::span<double> record) {
   std::copy_n(spectrum.begin(), bins(), reinterpret_cast<Complex*>(state_->frequency.get()));
-  fftw_execute(state_->to_time);
+  state_->plans->to_time(state_->frequency.get(), state_->time.get());
   const double* time = state_->time.get();
   const double* undamping = state_->undamping.data();
   for (std::size_t n = 0; n < record.size(); ++n) {

@@ -92,8 +92,8 @@ std::optional<Section> elastic_waves() {
                                        1.0 / rows[i].mean_over_surface));
     }
     section.rows.push_back({digits(nu, 4), std::to_string(rows.size()),
-                            digits(rows.back().a_over_wavelength, 3), digits(speed, 1),
-                            digits(ratio, 1)});
+                            digits(rows.back().a_over_wavelength, 3), digits(speed, 2),
+                            digits(ratio, 2)});
   }
   return section;
 }

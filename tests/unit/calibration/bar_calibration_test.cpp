@@ -12,12 +12,17 @@
 namespace kolsky {
 namespace {
 
+/// Enough samples for what comes back from the far end to be in the records.
+constexpr int kLong = 2048;
+/// Enough for the pulse's first passage at every gauge, and half the price.
+constexpr int kShort = 1024;
+
 testing::Campaign campaign(std::uint64_t seed, testing::Tolerances tolerances, int shots,
-                           const std::vector<std::string>& effects = {}) {
+                           const std::vector<std::string>& effects = {}, int samples = kShort) {
   testing::CampaignWishes wishes;
   wishes.seed = seed;
   wishes.shots = shots;
-  wishes.samples = 2048;
+  wishes.samples = samples;
   wishes.rate_Hz = 5e5;
   wishes.tolerances = tolerances;
   testing::Campaign made = testing::draw_campaign(wishes);
@@ -48,7 +53,7 @@ std::vector<std::string> named(const Calibration& calibration) {
 }
 
 TEST(BarCalibration, BenchFiledWithinItsDeviationsPasses) {
-  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 4);
+  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 4, {}, kLong);
   const Calibration calibration = calibrate(testing::shots_of(made), {});
   EXPECT_EQ(calibration.certificate, Certificate::pass);
   ASSERT_EQ(calibration.parts.size(), 1U);
@@ -93,8 +98,8 @@ TEST(BarCalibration, GainThreePerCentOffIsNamedWithItsFactor) {
 }
 
 TEST(BarCalibration, SeveralFaultsAreNamedTogether) {
-  const testing::Campaign made =
-      campaign(5, testing::Tolerances::none, 4, {"gauge-factor:g2=0.03", "channel-delay:g4=2e-6"});
+  const testing::Campaign made = campaign(5, testing::Tolerances::none, 4,
+                                          {"gauge-factor:g2=0.03", "channel-delay:g4=2e-6"}, kLong);
   const Calibration calibration = calibrate(testing::shots_of(made), {});
   EXPECT_EQ(named(calibration), (std::vector<std::string>{"gauge-factor:g2", "channel-delay:g4"}));
   const CalibratedNumber& late = number(calibration.parts.front(), "channel-delay:g4");
@@ -163,7 +168,7 @@ TEST(BarCalibration, StatedIntervalsHoldTheTruth) {
 }
 
 TEST(BarCalibration, RefusesWhatCannotServe) {
-  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 2);
+  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 2, {}, kLong);
   std::vector<Shot> shots = testing::shots_of(made);
   EXPECT_THROW((void)calibrate({}, {}), InputError);
   CalibrationOptions options;

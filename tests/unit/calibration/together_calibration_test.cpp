@@ -143,6 +143,31 @@ TEST(BarsTogether, MomentumSeesWhatAllGaugesShare) {
   EXPECT_NE(calibration.reasons.front().find("momentum"), std::string::npos);
 }
 
+/// An output bar that has aged: what its face returns tells its modulus from the input bar's.
+TEST(BarsTogether, EachRodHasItsOwnModuli) {
+  testing::LinearShpb model = one_long_bar();
+  model.output.E1_Pa *= 0.95;
+  model.gauge_out_m = 0.4;
+  Material filed = paper_pmma();
+  filed.E1_Pa.sd = 0.1 * filed.E1_Pa;
+  filed.E2_Pa.sd = 0.1 * filed.E2_Pa;
+  filed.eta2_Pa_s.sd = 0.1 * filed.eta2_Pa_s;
+  CalibrationOptions options;
+  options.bars = BarPrior(filed);
+  const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 5), options);
+  const PartResult& part = calibration.parts.front();
+  EXPECT_NEAR(part.chi2_reduced, 1.0, 0.15);
+  const CalibratedNumber& in = number(part, "E1_Pa");
+  const CalibratedNumber& out = number(part, "output:E1_Pa");
+  std::printf("E1 %.4g +- %.2g, output %.4g +- %.2g\n", in.combined.value, in.combined.sd,
+              out.combined.value, out.combined.sd);
+  EXPECT_NEAR(in.combined.value, 5.66e9, 3.0 * in.combined.sd);
+  EXPECT_NEAR(out.combined.value, 0.95 * 5.66e9, 3.0 * out.combined.sd);
+  EXPECT_LT(out.combined.sd, 0.01 * 5.66e9);
+}
+
+/// Of a viscoelastic bar the first pass's tail lies under the return: with it left there the speed
+/// is 0.05 % low, six of its deviations.
 TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
   testing::LinearShpb model;
   model.specimen = {1140.0, 1.0, 0.0, 0.0};  // nothing behind the input bar
@@ -151,8 +176,8 @@ TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
   const std::vector<Shot> shots = shots_of(model.bench(), model.solve(), 5);
   Material filed = paper_pmma();
   filed.E1_Pa = {5.5e9, 0.3e9};
-  filed.E2_Pa.sd = 0.3 * filed.E2_Pa;
-  filed.eta2_Pa_s.sd = 0.3 * filed.eta2_Pa_s;
+  filed.E2_Pa = {1.2 * filed.E2_Pa, 0.3 * filed.E2_Pa};
+  filed.eta2_Pa_s = {0.8 * filed.eta2_Pa_s, 0.3 * filed.eta2_Pa_s};
   CalibrationOptions options;
   options.bars = BarPrior(filed);
   const Calibration calibration = calibrate(shots, options);
@@ -160,13 +185,16 @@ TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
   const PartResult& part = calibration.parts.front();
   EXPECT_EQ(part.lay, BarsLay::input_alone);
   EXPECT_TRUE(part.two_passes);
-  EXPECT_NEAR(part.wave_speed_m_per_s.value, 2173.72,
-              std::max(1.0, 4.0 * part.wave_speed_m_per_s.sd));
-  EXPECT_NEAR(number(part, "E1_Pa").combined.value, 5.66e9, 0.02 * 5.66e9);
+  // Speed of the paper's PMMA at 10 kHz, physics.md.
+  EXPECT_LT(part.wave_speed_m_per_s.sd, 0.2);
+  EXPECT_NEAR(part.wave_speed_m_per_s.value, 2173.72, 3.0 * part.wave_speed_m_per_s.sd);
+  const CalibratedNumber& E1 = number(part, "E1_Pa");
+  EXPECT_NEAR(E1.combined.value, 5.66e9, 3.0 * E1.combined.sd);
+  const CalibratedNumber& E2 = number(part, "E2_Pa");
+  EXPECT_NEAR(E2.combined.value, 37e9, 3.0 * E2.combined.sd);
   std::printf("one gauge: c %.2f +- %.2f m/s, E1 %.4g +- %.2g, E2 %.4g +- %.2g\n",
-              part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd,
-              number(part, "E1_Pa").combined.value, number(part, "E1_Pa").combined.sd,
-              number(part, "E2_Pa").combined.value, number(part, "E2_Pa").combined.sd);
+              part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd, E1.combined.value,
+              E1.combined.sd, E2.combined.value, E2.combined.sd);
 }
 
 }  // namespace

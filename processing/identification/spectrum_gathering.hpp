@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "processing/identification/bar_model.hpp"
+#include "processing/identification/bar_spectrum.hpp"
+#include "processing/identification/damped_band.hpp"
+
+namespace kolsky {
+
+/// One estimate of log J at a frequency, and its variance in each of real and imaginary part.
+struct LogEstimate {
+  Complex log_J;  ///< over the fitted one
+  double variance = 0.0;
+};
+
+/// Gathers estimates of log (J / J fitted) over shots, and what the bench leaves open of them.
+class SpectrumGathering {
+ public:
+  SpectrumGathering(const BarData& data, const BarFit& fit, const BarModel& model,
+                    const DampedBand& band);
+
+  void add(std::size_t shot, LogEstimate estimate) { shots_[shot].push_back(estimate); }
+  /// Standard deviations that the bench gives log J, one complex number per independent cause.
+  void add_bench(std::size_t k, std::vector<Complex> causes) { bench_[k] = std::move(causes); }
+  /// What the estimates are relative to, off the axis.
+  [[nodiscard]] Complex fitted_off_axis(std::size_t k) const { return J_path_[k]; }
+
+  [[nodiscard]] BarSpectrum spectrum(double widened) const;
+
+ private:
+  void append(std::size_t k, double widened, const std::function<double(Complex)>& of,
+              SpectrumLine& line) const;
+
+  std::vector<double> frequency_Hz_;
+  std::vector<Complex> axis_;
+  std::vector<BarMode> fitted_;
+  std::vector<Complex> J_axis_;
+  std::vector<Complex> J_path_;
+  std::vector<std::vector<LogEstimate>> shots_;
+  std::vector<std::vector<Complex>> bench_;
+};
+
+}  // namespace kolsky
