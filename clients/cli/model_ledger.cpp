@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "processing/criticism/search_trials.hpp"
+
 namespace kolsky::cli {
 
 namespace {

@@ -18,4 +18,17 @@ struct Workers {
       };
 };
 
+/// One after the other, on a worker that is already at work: for what is called by work shared out.
+[[nodiscard]] inline Workers serial_on(std::size_t worker) {
+  Workers serial;
+  serial.first = worker;
+  serial.run = [worker](std::size_t count,
+                        const std::function<void(std::size_t, std::size_t)>& work) {
+    for (std::size_t index = 0; index < count; ++index) {
+      work(index, worker);
+    }
+  };
+  return serial;
+}
+
 }  // namespace kolsky

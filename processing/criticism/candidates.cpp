@@ -219,14 +219,8 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, const
         own.push_back(i);
       }
     }
-    Workers serial;
-    serial.run = [worker](std::size_t count,
-                          const std::function<void(std::size_t, std::size_t)>& work) {
-      for (std::size_t i = 0; i < count; ++i) {
-        work(i, worker);
-      }
-    };
-    direction.columns = derivatives(composition, residuals, theta, fit.residual, own, serial);
+    direction.columns =
+        derivatives(composition, residuals, theta, fit.residual, own, serial_on(worker));
     direction.model_share = fit.jacobian.transpose() * direction.columns;
     direction.unprojected = direction.columns.transpose() * direction.columns;
     direction.pull = -direction.columns.transpose() * fit.residual;

@@ -1,38 +1,18 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "processing/criticism/candidates.hpp"
+#include "processing/criticism/candidate_table.hpp"
 
 namespace kolsky {
 
 enum class DiagnosisVerdict { named, tied, unknown, adequate, untestable, bad_data };
 
 [[nodiscard]] std::string name_of(DiagnosisVerdict verdict);
-
-/// Of the generator that the search's simulated repeats are drawn from.
-inline constexpr std::uint64_t kSearchSeed = 20260101;
-
-/// What became of one effect of the library.
-struct CandidateResult {
-  std::string effect;
-  std::string parameter;
-  std::string unit;
-  double strength = 0.0;
-  double sd = 0.0;
-  double log_p = 0.0;  ///< ln of its probability under noise, the search over all included
-  double gain = 0.0;   ///< of chi2, in units of the noise found
-  double held_out_gain = 0.0;
-  double detectable = 0.0;    ///< the strength that stands at 6 sigma here; infinite: none does
-  double identifiable = 0.0;  ///< and still at 5 beside its nearest rival
-  std::string nearest_rival;
-  std::string verdict;  ///< "named", "tied", "rejected", "untestable", "not needed"
-};
 
 struct HeldOut {
   double before = 0.0;  ///< chi2 per residual on shots the fit did not see

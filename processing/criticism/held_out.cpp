@@ -49,4 +49,16 @@ std::vector<double> held_out_squares(const Studied& studied, std::size_t residua
   return squares;
 }
 
+Certification certification(const Studied& before, const Studied& after,
+                            std::size_t residuals_per_shot) {
+  const auto a = held_out_squares(before, residuals_per_shot);
+  const auto b = held_out_squares(after, residuals_per_shot);
+  Certification certified;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    certified.gain += a[n] - b[n];
+    certified.better += a[n] > b[n] ? 1 : 0;
+  }
+  return certified;
+}
+
 }  // namespace kolsky

@@ -12,4 +12,13 @@ namespace kolsky {
 [[nodiscard]] std::vector<double> held_out_squares(const Studied& studied,
                                                    std::size_t residuals_per_shot);
 
+/// What an effect brought on shots that the fits did not see.
+struct Certification {
+  double gain = 0.0;       ///< of chi2
+  std::size_t better = 0;  ///< how many shots gained
+};
+
+[[nodiscard]] Certification certification(const Studied& before, const Studied& after,
+                                          std::size_t residuals_per_shot);
+
 }  // namespace kolsky

@@ -31,23 +31,6 @@ constexpr double kSolverDoubt = 6.0;
 const char* const kReading = "three-dimensional-reading";
 constexpr std::array kReadingNames{"full", "bulk-E1", "bulk-Einf", "exact"};
 
-Workers on_worker(std::size_t worker) {
-  Workers serial;
-  serial.first = worker;
-  serial.run = [worker](std::size_t count,
-                        const std::function<void(std::size_t, std::size_t)>& work) {
-    for (std::size_t i = 0; i < count; ++i) {
-      work(i, worker);
-    }
-  };
-  return serial;
-}
-
-double log_tail(double gain, double freedom, bool one_sided) {
-  const double log_p = log_chi2_tail(std::max(gain, 0.0), std::max(freedom, 1.0));
-  return one_sided ? log_p - std::log(2.0) : log_p;
-}
-
 struct Tested {
   Candidate candidate;
   Direction direction;
@@ -123,18 +106,6 @@ std::pair<double, double> disagreement(const Studied& studied, const std::string
   return {q, groups - 1.0};
 }
 
-void set_strength(const Studied& studied, const std::string& id, CandidateResult& result) {
-  const EffectUse* use = studied.model.find(id);
-  if (use == nullptr) {
-    return;
-  }
-  const std::size_t at = id == "end-reflection" ? 1 : 0;
-  result.parameter = use->effect->about().parameters[at].name;
-  result.unit = use->effect->about().parameters[at].unit;
-  result.strength = use->values[at].value;
-  result.sd = use->values[at].sd;
-}
-
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
@@ -193,8 +164,8 @@ class Diagnostician {
           direction_of(own.candidate, current, study_.campaign(), study_.residuals(), worker);
       own.testable = !beyond_reach(own);
       if (own.testable) {
-        own.evidence = equivalent_square(log_tail(own.direction.gain / kSolverDoubt,
-                                                  own.direction.freedom, own.candidate.one_sided));
+        own.evidence = equivalent_square(log_gain_tail(
+            own.direction.gain / kSolverDoubt, own.direction.freedom, own.candidate.one_sided));
       }
     });
     trials_ = 1.0;
@@ -256,10 +227,10 @@ class Diagnostician {
         }
       }
     }
-    ModelFit fit = fit_model(composition, study_.residuals(), on_worker(worker), start);
+    ModelFit fit = fit_model(composition, study_.residuals(), serial_on(worker), start);
     if (!std::isfinite(fit.objective())) {
       // First order led to a ball that the solver refuses: begin at null.
-      fit = fit_model(composition, study_.residuals(), on_worker(worker),
+      fit = fit_model(composition, study_.residuals(), serial_on(worker),
                       carry(current.composition, current.fit.theta, composition));
     }
     if (!std::isfinite(fit.objective()) || !fit.covariance.allFinite()) {
@@ -273,8 +244,9 @@ class Diagnostician {
                            out.studied.fit.degrees_of_freedom(out.studied.composition);
     out.gain =
         (current.fit.objective() - out.studied.fit.objective()) / std::max(1.0, misfit.noise_scale);
-    out.log_p = log_tail(out.gain / kSolverDoubt, candidate.frees_prior ? 1.0 : std::round(freedom),
-                         candidate.one_sided && freedom < 1.5);
+    out.log_p =
+        log_gain_tail(out.gain / kSolverDoubt, candidate.frees_prior ? 1.0 : std::round(freedom),
+                      candidate.one_sided && freedom < 1.5);
     out.evidence = equivalent_square(out.log_p);
     if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign())) {
       return std::nullopt;
@@ -377,7 +349,7 @@ class Diagnostician {
       if (r != now) {
         Model model = first.model;
         model.find(kReading)->values[0].value = static_cast<double>(r);
-        objective[r] = study_.refit(model, on_worker(worker)).fit.objective();
+        objective[r] = study_.refit(model, serial_on(worker)).fit.objective();
       }
     });
     std::size_t best = now;
@@ -542,8 +514,8 @@ class Diagnostician {
         const double scale =
             own.candidate.frees_prior && prior_sd > 0.0 ? prior_sd : parameter.typical;
         result.gain = own.direction.gain;
-        result.log_p = with_search(log_tail(own.direction.gain / kSolverDoubt,
-                                            own.direction.freedom, own.candidate.one_sided));
+        result.log_p = with_search(log_gain_tail(own.direction.gain / kSolverDoubt,
+                                                 own.direction.freedom, own.candidate.one_sided));
         result.strength = parameter.null_value + own.direction.step[0] * scale;
         result.sd = scale / std::sqrt(own.direction.information(0, 0));
         result.detectable = kDetected * std::sqrt(kSolverDoubt) * result.sd;

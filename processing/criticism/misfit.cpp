@@ -54,4 +54,8 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double
   return misfit;
 }
 
+double noise_of(const Misfit& misfit, std::size_t shots) {
+  return shots > 1 ? misfit.noise_scale : std::max(1.0, misfit.noise_scale);
+}
+
 }  // namespace kolsky

@@ -18,6 +18,10 @@ struct Misfit {
   double repeatable_log_p = 0.0;  ///< ln probability of so much repeating under noise alone
 };
 
+/// The scale by which residuals of so many shots are judged: one shot cannot show that the noise is
+/// less than what was measured before its pulse.
+[[nodiscard]] double noise_of(const Misfit& misfit, std::size_t shots);
+
 /// What repeats: at each frequency and gauge, the part of the residuals that follows the shots'
 /// sources. What a linear, unchanging error of the model leaves is all there; noise is there by its
 /// share of one of N shots, and the rest measures it.

@@ -9,6 +9,11 @@ namespace kolsky {
 /// The same for Fisher's F with m and n degrees of freedom.
 [[nodiscard]] double log_f_tail(double f, double m, double n);
 
+/// ln of the probability that noise lets an effect gain so much chi2.
+/// @param freedom    strengths and other numbers that the effect is free in, at least 1
+/// @param one_sided  its strength has one sign only
+[[nodiscard]] double log_gain_tail(double gain, double freedom, bool one_sided);
+
 /// Evidence on one scale whatever the number of free strengths: the square of the normal deviate
 /// with this two-sided tail probability.
 [[nodiscard]] double equivalent_square(double log_tail);

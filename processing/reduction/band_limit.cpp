@@ -83,7 +83,8 @@ double BandLimit::loss(std::span<const double> pulse, double noise_rms, double l
   double taken = 0.0;
   for (std::size_t k = 0; k < pulse_spectrum_.size(); ++k) {
     const double energy = std::norm(pulse_spectrum_[k]) - noise;
-    const double kept = std::exp(-std::pow(pulse_transform_.s(k).imag() / wc, 4));
+    const double square = std::pow(pulse_transform_.s(k).imag() / wc, 2);
+    const double kept = std::exp(-square * square);
     all += energy;
     taken += energy * (1.0 - kept * kept);
   }

@@ -184,12 +184,9 @@ struct Tables {
 
   /// Where surface gauges go blind, if within so many bins.
   [[nodiscard]] double highest_Hz(const Plans& plans, std::size_t bins) const {
-    const auto first = [bins](const auto& list) {
-      return std::vector(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(bins));
-    };
-    const auto path = first(plans.path);
-    return std::min(blind_from_Hz(first(input.waves.modes), path),
-                    blind_from_Hz(first(output.waves.modes), path));
+    const auto path = std::span(plans.path).first(bins);
+    return std::min(blind_from_Hz(std::span(input.waves.modes).first(bins), path),
+                    blind_from_Hz(std::span(output.waves.modes).first(bins), path));
   }
 };
 
@@ -307,11 +304,11 @@ class Pass {
     t_.transform.forward(t_.input_strain, t_.rest);
     t_.transform.forward(t_.output_strain, t_.output_spectrum);
     for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
-      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
-      t_.band.apply_half(reduction_.band_limit_Hz, *spectrum);
+      t_.band.apply_half(reduction_.band_limit_Hz, in_band(*spectrum));
+      t_.band.apply_half(reduction_.band_limit_Hz, in_band(*spectrum));
     }
     complete_incident();
-    for (std::size_t k = 0; k < t_.rest.size(); ++k) {
+    for (std::size_t k = 0; k < bins_; ++k) {
       t_.rest[k] -= t_.incident[k];
     }
   }
@@ -331,12 +328,17 @@ class Pass {
     band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);
   }
 
+  /// All of a spectrum that the kernels go on to read.
+  [[nodiscard]] std::span<Complex> in_band(std::vector<Complex>& spectrum) const {
+    return std::span(spectrum).first(bins_);
+  }
+
   double limit_Hz_of_rate() const { return rate_Hz_ / 2.0; }
 
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there.
   void complete_incident() {
-    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, in_band(t_.incident));
     bars_.kernels.push_from_incident(t_.incident, bins_);
     t_.transform.inverse(t_.incident, t_.history);
     const double known =
@@ -346,7 +348,7 @@ class Pass {
     std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
     t_.transform.forward(t_.history, t_.incident);
     bars_.kernels.incident_from_push(t_.incident, bins_);
-    t_.band.apply_half(reduction_.band_limit_Hz, t_.incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, in_band(t_.incident));
   }
 
   /// How much of the push is left at the end of what is known of it, averaged over a few samples so

@@ -1,6 +1,7 @@
 #include "processing/reduction/stations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "processing/base/error.hpp"
@@ -66,8 +67,17 @@ void read_station(const Shot& shot, const Station& station, std::size_t quiet,
     const Gauge& gauge = shot.bench.gauges[index];
     const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
     const double unstrained = unstrained_reading(channel, quiet);
-    for (std::size_t n = 0; n < strains.size(); ++n) {
-      strains[n] += share * bridge.strain(channel.value(channel.codes[n]) - unstrained);
+    std::array<double, 256> readings;
+    std::array<double, 256> part;
+    for (std::size_t begin = 0; begin < strains.size(); begin += part.size()) {
+      const std::size_t count = std::min(part.size(), strains.size() - begin);
+      for (std::size_t n = 0; n < count; ++n) {
+        readings[n] = channel.value(channel.codes[begin + n]);
+      }
+      bridge.convert(std::span(readings).first(count), unstrained, std::span(part).first(count));
+      for (std::size_t n = 0; n < count; ++n) {
+        strains[begin + n] += share * part[n];
+      }
     }
   }
 }

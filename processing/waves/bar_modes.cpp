@@ -66,10 +66,10 @@ std::vector<BarMode> bar_modes(WaveTheory theory, const Bar& bar, const Complian
       .along(path);
 }
 
-double blind_from_Hz(const std::vector<BarMode>& modes, const std::vector<Complex>& path) {
-  constexpr double kHalf = 0.5;
+double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path) {
+  constexpr double kTwice = 2.0;
   for (std::size_t k = 0; k < modes.size(); ++k) {
-    if (std::abs(1.0 / modes[k].mean_over_surface) < kHalf) {
+    if (std::norm(modes[k].mean_over_surface) > kTwice * kTwice) {
       return path[k].imag() / (2.0 * std::numbers::pi);
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,7 @@ enum class WaveTheory { elementary, love, exact };
 
 /// Where surface gauges go blind: the frequency [Hz] on the path from which they read less than
 /// half of the mean strain. The path's highest frequency where that does not happen.
-[[nodiscard]] double blind_from_Hz(const std::vector<BarMode>& modes,
-                                   const std::vector<Complex>& path);
+[[nodiscard]] double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path);
 
 /// Speed of a wave's very front [m/s], 1 / sqrt(rho J(infinity)).
 [[nodiscard]] double front_speed_m_per_s(const Bar& bar, const Compliance& compliance);

@@ -117,18 +117,13 @@ void DampedTransform::forward(std::span<const double> record, std::span<Complex>
   }
   std::fill(time + record.size(), time + state_->length, 0.0);
   fftw_execute(state_->to_frequency);
-  const fftw_complex* frequency = state_->frequency.get();
-  for (std::size_t k = 0; k < bins(); ++k) {
-    spectrum[k] = {frequency[k][0], frequency[k][1]};
-  }
+  // FFTW's complex numbers are laid out as those of the standard library.
+  const auto* frequency = reinterpret_cast<const Complex*>(state_->frequency.get());
+  std::copy_n(frequency, bins(), spectrum.begin());
 }
 
 void DampedTransform::inverse(std::span<const Complex> spectrum, std::span<double> record) {
-  fftw_complex* frequency = state_->frequency.get();
-  for (std::size_t k = 0; k < bins(); ++k) {
-    frequency[k][0] = spectrum[k].real();
-    frequency[k][1] = spectrum[k].imag();
-  }
+  std::copy_n(spectrum.begin(), bins(), reinterpret_cast<Complex*>(state_->frequency.get()));
   fftw_execute(state_->to_time);
   const double* time = state_->time.get();
   const double* undamping = state_->undamping.data();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <thread>
 
 #include "daemon/daemon.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
@@ -138,10 +139,12 @@ TEST_F(LiveModel, WatchHearsComparisonsOfTheirOwn) {
 TEST_F(LiveModel, DiagnosesTheLastShotsOnRequestAndFilesTheOutcome) {
   ASSERT_NO_FATAL_FAILURE(activate());
   (void)json_of(ask({"diagnose-live", "--shots", "3", "--no-wait", "--json"}));
-  // At the lowest priority it may have to wait long for a busy machine.
+  // At the lowest priority it may have to wait long for a busy machine; asking without pause would
+  // keep it busy.
   json live;
   EXPECT_TRUE(eventually(
       [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
         live = json_of(ask({"diagnose-live", "--last", "--json"}));
         return live["state"] != "running";
       },

@@ -1,0 +1,116 @@
+#include "processing/criticism/candidate_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "processing/criticism/held_out.hpp"
+#include "processing/criticism/statistics.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kDetected = 6.0;   ///< sigma
+constexpr double kToldApart = 5.0;  ///< sigma beside a rival
+
+/// The strength that stands at 5 sigma beside whichever other effect resembles it most.
+void set_identifiable(const Search& search, std::size_t i, CandidateResult& result) {
+  const Direction& own = search.directions()[i];
+  result.identifiable = result.detectable;
+  if (own.information.rows() != 1) {
+    return;
+  }
+  double closest = 0.0;
+  for (std::size_t k = 0; k < search.directions().size(); ++k) {
+    const Direction& other = search.directions()[k];
+    if (search.candidates()[k].id() == search.candidates()[i].id() ||
+        other.information.rows() != 1 || other.freedom != 1.0) {
+      continue;
+    }
+    const double cross = (own.columns.col(0).dot(other.columns.col(0)) - search.projected(i, k)) /
+                         std::sqrt(own.information(0, 0) * other.information(0, 0));
+    if (cross * cross > closest) {
+      closest = std::min(1.0, cross * cross);
+      result.nearest_rival = search.candidates()[k].id();
+    }
+  }
+  result.identifiable = std::max(
+      result.detectable, kToldApart * result.sd / std::sqrt(std::max(1e-12, 1.0 - closest)));
+}
+
+}  // namespace
+
+std::vector<CandidateResult> first_order_table(const Search& search) {
+  std::vector<CandidateResult> table;
+  std::map<std::string, std::size_t> at;
+  for (std::size_t i = 0; i < search.candidates().size(); ++i) {
+    const Candidate& candidate = search.candidates()[i];
+    const Direction& direction = search.directions()[i];
+    const auto known = at.find(candidate.id());
+    if (known != at.end() && table[known->second].gain >= direction.gain) {
+      continue;
+    }
+    CandidateResult result;
+    result.effect = candidate.id();
+    const EffectParameter& parameter = candidate.use.effect->about().parameters.front();
+    result.parameter = parameter.name;
+    result.unit = parameter.unit;
+    result.gain = direction.gain;
+    result.log_p =
+        search.with_search(log_gain_tail(direction.gain, direction.freedom, candidate.one_sided));
+    if (direction.freedom > 0.0 && direction.information.rows() > 0) {
+      const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
+                               ? candidate.use.values[0].prior_sd
+                               : parameter.typical;
+      result.strength = parameter.null_value + direction.step[0] * scale;
+      result.sd = scale / std::sqrt(direction.information(0, 0));
+      result.detectable = kDetected * result.sd;
+      set_identifiable(search, i, result);
+      result.verdict = "not needed";
+    } else {
+      result.detectable = result.identifiable = INFINITY;
+      result.verdict = "untestable";
+    }
+    if (known != at.end()) {
+      table[known->second] = result;
+    } else {
+      at[candidate.id()] = table.size();
+      table.push_back(std::move(result));
+    }
+  }
+  return table;
+}
+
+void note_refits(const Search& search, const std::vector<Refit>& refits, const Studied& current,
+                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table) {
+  for (const Refit& refit : refits) {
+    for (CandidateResult& result : table) {
+      if (result.effect == search.candidates()[refit.candidate].id()) {
+        result.gain = refit.gain;
+        result.log_p = search.with_search(refit.log_p);
+        result.held_out_gain = certification(current, refit.studied, residuals_per_shot).gain;
+        set_strength(refit.studied, result.effect, result);
+      }
+    }
+  }
+}
+
+void set_strength(const Studied& studied, const std::string& id, CandidateResult& result) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || use->values.empty()) {
+    return;
+  }
+  const auto& parameters = use->effect->about().parameters;
+  const std::size_t at = use->effect->about().strength;
+  result.parameter = parameters[at].name;
+  result.unit = parameters[at].unit;
+  result.strength = use->values[at].value;
+  result.sd = use->values[at].sd;
+  if (use->effect->about().quadrature) {
+    result.parameter = "A";
+    result.strength = std::hypot(use->values[0].value, use->values[1].value);
+  }
+}
+
+}  // namespace kolsky

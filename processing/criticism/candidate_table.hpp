@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/criticism/search.hpp"
+
+namespace kolsky {
+
+/// What became of one effect of the library.
+struct CandidateResult {
+  std::string effect;
+  std::string parameter;
+  std::string unit;
+  double strength = 0.0;
+  double sd = 0.0;
+  double log_p = 0.0;  ///< ln of its probability under noise, the search over all included
+  double gain = 0.0;   ///< of chi2, in units of the noise found
+  double held_out_gain = 0.0;
+  double detectable = 0.0;    ///< the strength that stands at 6 sigma here; infinite: none does
+  double identifiable = 0.0;  ///< and still at 5 beside its nearest rival
+  std::string nearest_rival;
+  std::string verdict;  ///< "named", "tied", "rejected", "untestable", "not needed"
+};
+
+/// First-order strengths and limits of every effect beside the model that was searched.
+[[nodiscard]] std::vector<CandidateResult> first_order_table(const Search& search);
+
+/// Puts what the refits found in the place of first order.
+/// @param current  the model without any of them
+void note_refits(const Search& search, const std::vector<Refit>& refits, const Studied& current,
+                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table);
+
+/// Strength and deviation of an effect in a fitted model.
+void set_strength(const Studied& studied, const std::string& id, CandidateResult& result);
+
+}  // namespace kolsky

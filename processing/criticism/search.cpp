@@ -1,0 +1,252 @@
+#include "processing/criticism/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "processing/criticism/own_strengths.hpp"
+#include "processing/criticism/search_trials.hpp"
+#include "processing/criticism/shot_strengths.hpp"
+#include "processing/criticism/statistics.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
+constexpr std::size_t kMostRefits = 14;
+constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
+constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
+
+/// What is known of the noise beforehand counts as much as this many shots; of slow noise, among
+/// which additions to a record are sought, little is known.
+double belief_in(const Effect& effect) {
+  return effect.about().stage == Stage::record ? 3.0 : 20.0;
+}
+
+}  // namespace
+
+Search::Search(Study& study, const Studied& base, const Model& start)
+    : study_(study),
+      base_(base),
+      start_(start),
+      candidates_(candidates_for(base, study.campaign())),
+      directions_(candidates_.size()) {
+  study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
+    directions_[i] = direction_of(candidates_[i], base_, study_, worker);
+  });
+  trials_ = independent_trials(base_, candidates_, directions_);
+}
+
+double Search::with_search(double log_p) const {
+  return std::min(0.0, log_p + std::log(trials_));
+}
+
+double Search::projected(std::size_t a, std::size_t b) const {
+  return directions_[a].model_share.col(0).dot(base_.fit.covariance *
+                                               directions_[b].model_share.col(0));
+}
+
+std::vector<Refit> Search::refits() {
+  const std::vector<std::size_t> chosen = worth_refitting();
+  std::vector<std::optional<Refit>> done(chosen.size());
+  study_.executor().run(chosen.size(), [&](std::size_t i, std::size_t worker) {
+    done[i] = refit(chosen[i], worker);
+  });
+  std::vector<Refit> list;
+  for (auto& own : done) {
+    if (own && std::isfinite(own->studied.fit.objective()) &&
+        !beyond_the_record(own->studied, *own) &&
+        own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
+                                study_.campaign())) {
+      list.push_back(std::move(*own));
+    }
+  }
+  rate(list);
+  std::sort(list.begin(), list.end(),
+            [](const Refit& a, const Refit& b) { return a.evidence > b.evidence; });
+  return list;
+}
+
+/// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
+/// (a dashpot, a spring) that it only imitates.
+bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
+  const Candidate& candidate = candidates_[refit.candidate];
+  const EffectUse* use = studied.model.find(candidate.id());
+  const auto& parameters = candidate.use.effect->about().parameters;
+  constexpr double kMuchSlower = 5.0;
+  const double period_s = study_.residuals().judged_period_s();
+  const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
+  for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
+    const double value = use->values[p].value;
+    if (parameters[p].auxiliary() && parameters[p].unit == "s" &&
+        (value > kMuchSlower * record_s || value < 0.5 * study_.campaign().period_s)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+double Search::evidence_of(const Direction& direction, const Candidate& candidate) const {
+  return direction.freedom > 0.0 ? equivalent_square(log_gain_tail(
+                                       direction.gain, direction.freedom, candidate.one_sided))
+                                 : 0.0;
+}
+
+/// The best variant of each effect, those near the best of all; first-order ties can separate at
+/// finite size, the more so the larger the misfit.
+std::vector<std::size_t> Search::worth_refitting() const {
+  std::map<std::string, std::pair<double, std::size_t>> best;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const double evidence = evidence_of(directions_[i], candidates_[i]);
+    const EffectUse& use = candidates_[i].use;
+    auto& own = best[use.id() + (use.per_shot ? " per shot" : "") + (use.alike ? " alike" : "")];
+    if (evidence > own.first) {
+      own = {evidence, i};
+    }
+  }
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (const auto& [id, own] : best) {
+    if (own.first > 0.0) {
+      ranked.push_back(own);
+    }
+  }
+  std::sort(ranked.rbegin(), ranked.rend());
+  std::vector<std::size_t> chosen;
+  for (const auto& [evidence, i] : ranked) {
+    const double margin = std::max(25.0, 0.6 * ranked.front().first);
+    // Far from the records, first order says little of what fits best.
+    const bool far = base_.misfit.chi2_reduced > kFarOff;
+    const bool near = evidence > ranked.front().first - margin ||
+                      ((far || chosen.size() < kAlwaysRefits) && evidence > kWorthRefitting);
+    if (chosen.size() < kMostRefits && near) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+/// Where first order says the strengths and the model's numbers are, or as far on the way as
+/// makes things better.
+std::vector<double> Search::begin_near(const Candidate& candidate, const Direction& direction,
+                                       const Composition& composition, std::size_t worker) const {
+  std::vector<std::size_t> strengths;
+  for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    const EffectUse& use = composition.uses()[number.use];
+    if (use.id() == candidate.id() &&
+        !use.effect->about().parameters[number.parameter].auxiliary()) {
+      strengths.push_back(i);
+    }
+  }
+  std::vector<double> best = carry(base_.composition, base_.fit.theta, composition);
+  if (candidate.frees_prior ||
+      static_cast<Eigen::Index>(strengths.size()) != direction.step.size()) {
+    return best;
+  }
+  const std::vector<double> null = best;
+  const Eigen::VectorXd along = -base_.fit.covariance * direction.model_share * direction.step;
+  double least = study_.residuals().evaluate(composition, best, worker).squaredNorm();
+  for (const double share : {1.0, 0.3, 0.1}) {
+    std::vector<double> moved = base_.fit.theta;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const FreeNumber& number = base_.composition.numbers()[i];
+      moved[i] = std::clamp(moved[i] + share * along[static_cast<Eigen::Index>(i)],
+                            number.lower / number.scale, number.upper / number.scale);
+    }
+    std::vector<double> start = carry(base_.composition, moved, composition);
+    for (std::size_t i = 0; i < strengths.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[strengths[i]];
+      start[strengths[i]] =
+          std::clamp(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)],
+                     number.lower / number.scale, number.upper / number.scale);
+    }
+    const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
+    if (chi2 < least) {
+      least = chi2;
+      best = std::move(start);
+    }
+  }
+  return best;
+}
+
+std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
+  const Candidate& candidate = candidates_[index];
+  const Direction& direction = directions_[index];
+  const Model model = with(base_.model, candidate, true);
+  Composition composition(model, study_.campaign());
+  ModelFit fit = fit_model(composition, study_.residuals(), serial_on(worker),
+                           begin_near(candidate, direction, composition, worker));
+  if (base_.misfit.chi2_reduced > kFarOff) {
+    // The model's own numbers may have gone far astray for want of this effect: begin again from
+    // where they started.
+    Model fresh = with(start_, candidate, true);
+    start_moduli(fresh, study_.campaign(), study_.residuals(), worker);
+    const Composition again(fresh, study_.campaign());
+    ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
+                               carry(again, again.start(), composition));
+    if (other.objective() < fit.objective()) {
+      fit = std::move(other);
+    }
+  }
+  const Misfit misfit =
+      misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
+  Refit out{index,
+            {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit}};
+  const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
+                         out.studied.fit.degrees_of_freedom(out.studied.composition);
+  out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
+  out.one_sided = candidate.one_sided && freedom < 1.5;
+  out.scatter = scatter_of(out.studied, candidate.id());
+  return out;
+}
+
+/// Rates rivals by one measure of the noise, that of the best: what they leave of each other's
+/// misfit must not count as noise.
+void Search::rate(std::vector<Refit>& list) const {
+  const auto best = std::min_element(list.begin(), list.end(), [](const Refit& a, const Refit& b) {
+    return a.studied.fit.objective() < b.studied.fit.objective();
+  });
+  if (best == list.end()) {
+    return;
+  }
+  const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
+  for (Refit& refit : list) {
+    refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
+    refit.evidence = equivalent_square(log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
+    refit.log_p = chance_of(refit);
+  }
+}
+
+/// How much more than noise the shots differ in the direction of an effect's strength: noise
+/// whose frequencies hang together scatters more there than its spectrum says.
+double Search::scatter_of(const Studied& studied, const std::string& id) const {
+  const Effect* effect = studied.model.find(id)->effect;
+  const bool slow = effect->about().stage == Stage::record;
+  const double belief = belief_in(*effect);
+  const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
+  const double q = shots.disagreement();
+  constexpr double kOrdinary = -4.6;
+  if (!slow && log_chi2_tail(q, shots.freedom()) > kOrdinary) {
+    return 1.0;  // chance alone must not rank rivals
+  }
+  return std::max(1.0, (belief + q) / (belief + shots.freedom()));
+}
+
+/// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no
+/// better than so many degrees of freedom do.
+double Search::chance_of(const Refit& refit) const {
+  const EffectUse& use = candidates_[refit.candidate].use;
+  const std::size_t shots = study_.campaign().shots.size();
+  if (use.per_shot || shots < 3 || refit.gain <= 0.0) {
+    return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
+  }
+  const double freedom = std::max(refit.freedom, 1.0);
+  const double known = belief_in(*use.effect) + static_cast<double>(shots - 1);
+  const double log_p = log_f_tail(refit.gain / freedom, freedom, known);
+  return refit.one_sided ? log_p - std::log(2.0) : log_p;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/candidates.hpp"
+
+namespace kolsky {
+
+/// A candidate refitted in full beside the model.
+struct Refit {
+  std::size_t candidate = 0;
+  Studied studied;
+  double freedom = 1.0;
+  bool one_sided = false;
+  double scatter = 1.0;   ///< how much more than noise the shots differ in its direction
+  double gain = 0.0;      ///< of the objective, over the noise
+  double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
+  double log_p = 0.0;
+};
+
+/// One search for what a fitted model lacks: every candidate tested at first order, those near the
+/// best refitted in full.
+class Search {
+ public:
+  /// @param base   the model as fitted; outlives this
+  /// @param start  the same before anything was fitted; outlives this
+  Search(Study& study, const Studied& base, const Model& start);
+
+  [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// Of the candidates, one each.
+  [[nodiscard]] const std::vector<Direction>& directions() const { return directions_; }
+
+  /// ln of the chance that the best of all candidates does as well on noise.
+  [[nodiscard]] double with_search(double log_p) const;
+
+  /// What two directions share through the model's own numbers.
+  [[nodiscard]] double projected(std::size_t a, std::size_t b) const;
+
+  /// The candidates worth it, refitted; the best first.
+  [[nodiscard]] std::vector<Refit> refits();
+
+ private:
+  [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
+  [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const;
+  [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
+  [[nodiscard]] std::vector<double> begin_near(const Candidate& candidate,
+                                               const Direction& direction,
+                                               const Composition& composition,
+                                               std::size_t worker) const;
+  [[nodiscard]] std::optional<Refit> refit(std::size_t index, std::size_t worker);
+  void rate(std::vector<Refit>& list) const;
+  [[nodiscard]] double scatter_of(const Studied& studied, const std::string& id) const;
+  [[nodiscard]] double chance_of(const Refit& refit) const;
+
+  Study& study_;
+  const Studied& base_;
+  const Model& start_;
+  std::vector<Candidate> candidates_;
+  std::vector<Direction> directions_;
+  double trials_ = 1.0;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/criticism/study.hpp"
+
+namespace kolsky {
+
+/// What single shots say of an effect's strength.
+struct ShotStrengths {
+  std::vector<double> over_common;  ///< each shot's strength over the common one
+  std::vector<double> weight;       ///< one over the variances of these
+
+  /// The chi2 that strengths of their own would gain over strengths in proportion to `like`.
+  [[nodiscard]] double departure_from(const std::vector<double>& like) const;
+  [[nodiscard]] double disagreement() const;
+  [[nodiscard]] double freedom() const;
+};
+
+/// @return nothing for strengths that are each shot's own, or fewer than three shots
+[[nodiscard]] ShotStrengths shot_strengths(const Studied& studied, const std::string& id,
+                                           std::size_t residuals_per_shot);
+
+/// An effect with the right shape but the wrong name has strengths that differ from shot to shot by
+/// more than noise, and by more than a small part of what it explains. Of what is added to the
+/// records, slow noise makes strengths differ anyway: there it tells that they follow the shots'
+/// amplitudes.
+/// @param gain  of chi2 over the noise that the effect brought
+[[nodiscard]] bool shots_agree(const Studied& studied, double gain, const std::string& id,
+                               const Campaign& campaign, std::size_t residuals_per_shot);
+
+}  // namespace kolsky
