@@ -82,7 +82,8 @@ class Diagnostician {
                           : "testing what remains after " + diagnosis_.effects.back());
     Search search(study_, current, start_);
     if (diagnosis_.candidates.empty()) {
-      diagnosis_.candidates = first_order_table(search);
+      diagnosis_.candidates = first_order_table(
+          {search.candidates(), search.directions(), current, search.log_trials()});
     }
     const std::vector<Refit> refits = search.refits();
     if (diagnosis_.effects.empty()) {

@@ -58,7 +58,7 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
   /// Covariance of one shot by itself, and what all shots of a group share of the solver's error.
   [[nodiscard]] Eigen::MatrixXd covariance(std::size_t group) const {
-    return whitening_->own(group) + whitening_->shared(group);
+    return whitening_->own(group) + whitening_->shared(group, group);
   }
   /// Residuals of a shot that its own arrival and offsets take up.
   [[nodiscard]] double eliminated() const { return 1.0 + static_cast<double>(campaign_.gauges()); }

@@ -118,9 +118,9 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
   }
 }
 
-Eigen::MatrixXd ImpactWhitening::shared(std::size_t group) const {
-  const auto at = static_cast<Eigen::Index>(group) * size_;
-  return shared_.block(at, at, size_, size_);
+Eigen::MatrixXd ImpactWhitening::shared(std::size_t g, std::size_t h) const {
+  return shared_.block(static_cast<Eigen::Index>(g) * size_, static_cast<Eigen::Index>(h) * size_,
+                       size_, size_);
 }
 
 Eigen::VectorXd ImpactWhitening::white(const std::vector<Eigen::VectorXd>& residual) const {

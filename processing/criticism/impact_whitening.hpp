@@ -46,8 +46,8 @@ class ImpactWhitening {
   [[nodiscard]] Eigen::VectorXd white(const std::vector<Eigen::VectorXd>& residual) const;
 
   [[nodiscard]] const Eigen::MatrixXd& own(std::size_t group) const { return own_[group]; }
-  /// D_gg
-  [[nodiscard]] Eigen::MatrixXd shared(std::size_t group) const;
+  /// D_gh
+  [[nodiscard]] Eigen::MatrixXd shared(std::size_t g, std::size_t h) const;
 
  private:
   void set_own(const std::vector<ImpactShape>& shapes, const ImpactDoubts& doubts);
