@@ -103,9 +103,10 @@ class Diagnostician {
       const bool agrees = shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot);
       // A filed number that was held by its deviation is found by the other shots whether it is
       // set free or not: nothing is gained on a held-out shot, and nothing may be lost.
+      // Products of what each shot and each gauge has of its own are foretold by each other.
       const bool foretells = search.candidates()[refit.candidate].frees_prior
                                  ? gain > -kLostByChance
-                                 : gain > 0.0 && 2 * better > shots;
+                                 : refit.products || (gain > 0.0 && 2 * better > shots);
       if (!foretells || !agrees || search.with_search(refit.log_p) > options_.log_alpha) {
         set_verdict(id, "rejected");
         continue;

@@ -54,15 +54,11 @@ bool slopes_agree(const std::vector<double>& found, const std::vector<double>& b
   return found.size() > 2 && share > 0.5 && share < 1.5 && share > kSigma * sd;
 }
 
-bool one_phase(Eigen::MatrixXcd amplitudes) {
-  // What all gauges have alike the shot's source takes up: it is not there to be judged.
-  const Eigen::VectorXcd common = amplitudes.rowwise().mean();
-  amplitudes.colwise() -= common;
-  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(amplitudes);
-  constexpr double kOfOneProduct = 0.85;
-  const double all = svd.singularValues().squaredNorm();
-  return amplitudes.cols() > 2 && amplitudes.rows() > 2 &&
-         svd.singularValues()[0] * svd.singularValues()[0] > kOfOneProduct * all;
+/// Nearer to products than noise comes in one of a thousand, and not for one gauge's sake.
+bool are_products(const ProductTest& test) {
+  constexpr double kChance = -6.9;
+  constexpr double kBeyond = 25.0;
+  return test.log_p < kChance && test.beyond_one_gauge > kBeyond;
 }
 
 /// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
@@ -132,14 +128,36 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
   if (use == nullptr || !use->per_shot) {
     return true;
   }
-  if (use->effect->about().each_gauge && !use->alike) {
-    return one_phase(amplitudes_of(studied, id, campaign));
+  if (const auto test = product_test_of(studied, id, campaign)) {
+    return are_products(*test);
   }
   if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0))) {
     return false;
   }
   const Slopes slopes = slopes_of(studied, id, campaign);
   return slopes_agree(slopes.found, slopes.before);
+}
+
+std::optional<ProductTest> product_test_of(const Studied& studied, const std::string& id,
+                                           const Campaign& campaign) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || !use->per_shot || !use->effect->about().each_gauge || use->alike) {
+    return std::nullopt;
+  }
+  // In the order of the composition: by parameter, then shot, then gauge.
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id) {
+      own.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> theta(studied.fit.theta.data(),
+                                                studied.fit.covariance.rows());
+  const Eigen::MatrixXd covariance = studied.fit.covariance(own, own);
+  const auto size = covariance.rows();
+  return test_products(theta(own), covariance.ldlt().solve(Eigen::MatrixXd::Identity(size, size)),
+                       campaign.shots.size(), campaign.gauges());
 }
 
 }  // namespace kolsky

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "processing/criticism/product_test.hpp"
 #include "processing/criticism/study.hpp"
 
 namespace kolsky {
@@ -9,11 +11,17 @@ namespace kolsky {
 /// Whether strengths that every shot has of its own are more than slow noise that they followed. No
 /// other shot can confirm them, so something else has to:
 ///   a drift must show in the samples before the pulse, too, with the same slopes;
-///   a hum has one phase in a shot, whatever the gauge: its amplitudes by shot and gauge are a
-///   product of one number per shot and one per gauge; one that is alike at all gauges must show
-///   before the pulse, too, as a drift must.
+///   a hum has one phase in a shot, whatever the gauge: its amplitudes by shot and gauge are
+///   products of a complex number per shot and a real one per gauge, nearer than noise comes to it
+///   and than one noisy gauge explains; one that is alike at all gauges must show before the pulse,
+///   too, as a drift must.
 /// True for effects without strengths of their own.
 [[nodiscard]] bool own_strengths_confirmed(const Studied& studied, const std::string& id,
                                            const Campaign& campaign);
+
+/// How near a hum's amplitudes by shot and gauge are to products. @return nothing for other effects
+[[nodiscard]] std::optional<ProductTest> product_test_of(const Studied& studied,
+                                                         const std::string& id,
+                                                         const Campaign& campaign);
 
 }  // namespace kolsky

@@ -199,6 +199,7 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
   out.one_sided = candidate.one_sided && freedom < 1.5;
   out.scatter = scatter_of(out.studied, candidate.id());
+  out.products = product_test_of(out.studied, candidate.id(), study_.campaign());
   return out;
 }
 
@@ -214,8 +215,10 @@ void Search::rate(std::vector<Refit>& list) const {
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
   for (Refit& refit : list) {
     refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
-    refit.evidence = equivalent_square(log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
     refit.log_p = chance_of(refit);
+    // What differs between the shots has been taken for noise: gain says little of it.
+    refit.evidence = equivalent_square(
+        refit.products ? refit.log_p : log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
   }
 }
 
@@ -238,6 +241,13 @@ double Search::scatter_of(const Studied& studied, const std::string& id) const {
 /// better than so many degrees of freedom do.
 double Search::chance_of(const Refit& refit) const {
   const EffectUse& use = candidates_[refit.candidate].use;
+  if (refit.products) {
+    // Nothing else is judged by products: what has been sought among is the effect's own variants.
+    const auto variants = std::count_if(candidates_.begin(), candidates_.end(), [&](const auto& c) {
+      return c.id() == use.id() && c.use.per_shot && !c.use.alike;
+    });
+    return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
+  }
   const std::size_t shots = study_.campaign().shots.size();
   if (use.per_shot || shots < 3 || refit.gain <= 0.0) {
     return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "processing/criticism/candidates.hpp"
+#include "processing/criticism/product_test.hpp"
 
 namespace kolsky {
 
@@ -14,7 +15,9 @@ struct Refit {
   Studied studied;
   double freedom = 1.0;
   bool one_sided = false;
-  double scatter = 1.0;   ///< how much more than noise the shots differ in its direction
+  double scatter = 1.0;  ///< how much more than noise the shots differ in its direction
+  /// That strengths which every shot and gauge has of its own are products all the same.
+  std::optional<ProductTest> products = std::nullopt;
   double gain = 0.0;      ///< of the objective, over the noise
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
   double log_p = 0.0;
