@@ -274,14 +274,25 @@ class Diagnostician {
           "no shot is repeated: noise is what the samples before the pulse show, and deviations of "
           "the speed go unseen");
     }
-    diagnosis_.notes.push_back(
-        fmt::format("judged up to {:.3g} kHz{}; nothing within {:.2g} % of the force is claimed: "
-                    "the mesh of {} "
-                    "elements differs from {} by {:.2g} % rms",
-                    1e-3 * window.cutoff_Hz,
-                    window.to_far_end_only ? ", until the far end's reflection is back" : "",
-                    100.0 * residuals.solver_sd(), kMiddleBall, kFineBall,
-                    100.0 * residuals.mesh_difference()));
+    diagnosis_.notes.push_back(fmt::format(
+        "judged up to {:.3g} kHz{}; the calculation may be off by {:.2g} % of the force slowly and "
+        "by as much from sample to sample (the mesh of {} elements differs from {} by {:.2g} % "
+        "rms), and a square of a deviate counts over {:.2g}: `detectable` says what that leaves",
+        1e-3 * window.cutoff_Hz,
+        window.to_far_end_only ? ", until the far end's reflection is back" : "",
+        100.0 * residuals.solver_sd(), kMiddleBall, kFineBall, 100.0 * residuals.mesh_difference(),
+        scale_));
+    const std::size_t unsaid = records().unsaid_rebounds();
+    if (unsaid == study_.campaign().shots.size()) {
+      diagnosis_.notes.emplace_back(
+          "no rebound speeds: what damps the ball is known by the force alone");
+    } else {
+      diagnosis_.notes.push_back(fmt::format(
+          "rebound speeds of {} shots are fitted, each known to {:.2g} %; of restitution the "
+          "calculation may be off by {:.2g}",
+          study_.campaign().shots.size() - unsaid, 100.0 * residuals.rebound_sd(),
+          ImpactWhitening::kRestitutionDoubt));
+    }
     if (const EffectUse* law = current.model.find("finite-strain-law")) {
       diagnosis_.notes.push_back(fmt::format(
           "finite-strain law: {:.2f} ± {:.2f} on the way from Kirchhoff's stress (0) to Cauchy's "

@@ -76,6 +76,35 @@ Eigen::MatrixXd borrowed(const Candidate& candidate, const Direction& direction,
   return columns;
 }
 
+/// Whether a candidate is one filed number set free: what it does far from there, first order does
+/// not say (friction acts most where there is little of it).
+bool is_filed_number(const Candidate& candidate) {
+  return candidate.frees_prior && candidate.use.values.size() == 1;
+}
+
+/// From three filed deviations to either side. @return the best of these and `fit`
+ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& composition,
+                   const std::vector<double>& start, ShotResiduals& residuals,
+                   const Workers& executor) {
+  for (const double deviations : {-3.0, 3.0}) {
+    std::vector<double> there = start;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[i];
+      if (composition.uses()[number.use].id() == candidate.id()) {
+        const ModelValue& filed = candidate.use.values.front();
+        there[i] =
+            std::clamp(filed.prior_mean + deviations * filed.prior_sd, number.lower, number.upper) /
+            number.scale;
+      }
+    }
+    ModelFit other = fit_model(composition, residuals, executor, there);
+    if (std::isfinite(other.objective()) && !(fit.objective() <= other.objective())) {
+      fit = std::move(other);
+    }
+  }
+  return fit;
+}
+
 }  // namespace
 
 ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
@@ -128,7 +157,9 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
   for (const std::size_t i : ranked) {
     const double first = evidence_[ranked.front()];
     const double margin = std::max(150.0, 0.6 * first);
-    if (chosen.size() < kMostRefits && evidence_[i] > kWorthIt && evidence_[i] > first - margin) {
+    const bool near = evidence_[i] > kWorthIt && evidence_[i] > first - margin;
+    const bool filed = directions_[i].freedom > 0.0 && is_filed_number(candidates_[i]);
+    if (chosen.size() < kMostRefits && (near || filed)) {
       chosen.push_back(i);
     }
   }
@@ -148,6 +179,11 @@ std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, std::size_t wo
     // First order led to a ball that the solver refuses: begin at null.
     fit = fit_model(composition, study_.residuals(), alone,
                     carry(base_.composition, base_.fit.theta, composition));
+  }
+  if (is_filed_number(candidate)) {
+    fit = from_afar(candidate, std::move(fit), composition,
+                    carry(base_.composition, base_.fit.theta, composition), study_.residuals(),
+                    alone);
   }
   if (!std::isfinite(fit.objective()) || !fit.covariance.allFinite()) {
     return std::nullopt;
