@@ -8,7 +8,9 @@
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/identification/bar_records.hpp"
+#include "processing/reduction/ball_flight.hpp"
 #include "processing/reduction/first_pulse.hpp"
+#include "processing/reduction/formatted.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
@@ -102,27 +104,37 @@ void set_temperatures(const std::vector<Shot>& shots, Campaign& campaign) {
   }
 }
 
-/// A ball's speeds from the capture's facts. The force follows the speed: without it nothing can be
-/// foretold.
-void set_speeds(const Shot& shot, ShotFacts& facts) {
-  const char* const incident = "incident_speed_m_per_s";
-  facts.incident_speed_m_per_s = logged(shot, incident);
-  if (!facts.incident_speed_m_per_s) {
-    const bool there = shot.meta.count(incident) > 0;
-    throw InputError("capture " + shot.id + ": meta." + incident,
-                     there ? "is not a number: \"" + shot.meta.at(incident) + "\"" : "is missing",
-                     "import it with --meta incident_speed_m_per_s=V");
+[[noreturn]] void refuse_speed(const Shot& shot, const std::string& what) {
+  throw InputError("capture " + shot.id + ": incident speed", what,
+                   shot.bench.photo_sensors.empty()
+                       ? "import it with --meta incident_speed_m_per_s=V"
+                       : "leave this capture out, or import it again with a bench without "
+                         "photo_sensors and --meta incident_speed_m_per_s=V");
+}
+
+/// A ball's speeds as the reduction finds them, from photo-sensors or facts. The force follows the
+/// speed: without it nothing can be foretold.
+/// @param touch_s  first touch, from the first sample
+void set_speeds(const Shot& shot, double touch_s, ShotFacts& facts) {
+  if (logged(shot, "incident_speed_m_per_s").value_or(0.0) < 0.0) {
+    refuse_speed(
+        shot, "is " + shot.meta.at("incident_speed_m_per_s") + ": towards the bar it is positive");
+  }
+  const BallFlight flight = ball_flight(shot, touch_s);
+  if (!flight.incident_m_per_s) {
+    refuse_speed(shot, "is missing: " + flight.problem);
   }
   constexpr double kFastest_m_per_s = 300.0;
-  if (!(*facts.incident_speed_m_per_s > 0.0) || *facts.incident_speed_m_per_s > kFastest_m_per_s) {
-    throw InputError("capture " + shot.id + ": meta." + incident,
-                     "is " + shot.meta.at(incident) + ", outside 0 to 300 m/s",
-                     "give the ball's speed in m/s, towards the bar positive");
+  if (*flight.incident_m_per_s > kFastest_m_per_s) {
+    refuse_speed(
+        shot, "is " + formatted("%.4g", flight.incident_m_per_s->value) + ", outside 0 to 300 m/s");
   }
-  facts.incident_speed_sd_m_per_s =
-      std::abs(logged(shot, "incident_speed_m_per_s_sd").value_or(0.0));
-  facts.rebound_speed_m_per_s = logged(shot, "rebound_speed_m_per_s");
-  facts.rebound_speed_sd_m_per_s = std::abs(logged(shot, "rebound_speed_m_per_s_sd").value_or(0.0));
+  facts.incident_speed_m_per_s = flight.incident_m_per_s->value;
+  facts.incident_speed_sd_m_per_s = flight.incident_m_per_s->sd;
+  if (flight.rebound_m_per_s) {
+    facts.rebound_speed_m_per_s = flight.rebound_m_per_s->value;
+    facts.rebound_speed_sd_m_per_s = flight.rebound_m_per_s->sd;
+  }
 }
 
 CampaignShot read_shot(const Shot& shot, std::size_t reference) {
@@ -148,6 +160,14 @@ CampaignShot read_shot(const Shot& shot, std::size_t reference) {
   return out;
 }
 
+/// From the struck face to the reference gauge, as an elastic bar's front goes.
+double travel_to_reference_s(const Campaign& campaign) {
+  const Bar& bar = campaign.bench.input;
+  return bar.youngs_modulus_Pa ? campaign.bench.gauges[campaign.reference].position_m /
+                                     std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3)
+                               : 0.0;
+}
+
 void require_gauges(const Bench& bench) {
   // The ball's force is foretold; a source that is free is known by another gauge only.
   if (bench.kind != BenchKind::impact && bench.gauges.size() < 2) {
@@ -167,10 +187,16 @@ std::string bad_data(const Shot& shot) {
     return unusable;
   }
   const std::size_t reference = reference_of(shot.bench);
-  if (reference == shot.bench.gauges.size() || shot.channels.size() != shot.bench.gauges.size()) {
+  if (reference == shot.bench.gauges.size()) {
     return "no channel of a gauge on the input bar";
   }
-  for (const ChannelRecord& channel : shot.channels) {
+  if (const std::size_t filed = shot.bench.channels().size(); shot.channels.size() != filed) {
+    return std::to_string(shot.channels.size()) + " channels where the bench files " +
+           std::to_string(filed);
+  }
+  // A photo-sensor stays at its levels by nature.
+  for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
+    const ChannelRecord& channel = shot.channels[j];
     if (const std::size_t flat = flat_top(readings_of(channel)); flat > 0) {
       return "gauge " + channel.gauge + " stays at its extreme for " + std::to_string(flat) +
              " samples: it was cut off there";
@@ -197,6 +223,7 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
   require_gauges(campaign.bench);
   campaign.period_s = shots.front().rate.period_s();
   campaign.reference = reference_of(campaign.bench);
+  const double travel_s = travel_to_reference_s(campaign);
   for (const Shot& shot : shots) {
     if (shot.rate != shots.front().rate || shot.bench_toml != shots.front().bench_toml) {
       throw InputError("capture " + shot.id, "is of another bench or rate than " + shots.front().id,
@@ -207,7 +234,8 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
     }
     campaign.shots.push_back(read_shot(shot, campaign.reference));
     if (campaign.bench.kind == BenchKind::impact) {
-      set_speeds(shot, campaign.shots.back().facts);
+      CampaignShot& own = campaign.shots.back();
+      set_speeds(shot, own.foot_s - travel_s, own.facts);
     }
     campaign.shots.back().facts.shot = campaign.shots.size() - 1;
   }

@@ -15,29 +15,35 @@ constexpr double kDetected = 6.0;   ///< sigma
 constexpr double kToldApart = 5.0;  ///< sigma beside a rival
 
 /// The strength that stands at 5 sigma beside whichever other effect resembles it most.
-void set_identifiable(const Search& search, std::size_t i, double power, CandidateResult& result) {
-  const Direction& own = search.directions()[i];
+void set_identifiable(const Tried& tried, std::size_t i, double power, CandidateResult& result) {
+  const Direction& own = tried.directions[i];
   result.identifiable = result.detectable;
   if (own.information.rows() != 1) {
     return;
   }
   double closest = 0.0;
-  for (std::size_t k = 0; k < search.directions().size(); ++k) {
-    const Direction& other = search.directions()[k];
-    if (search.candidates()[k].id() == search.candidates()[i].id() ||
-        other.information.rows() != 1 || other.freedom != 1.0) {
+  for (std::size_t k = 0; k < tried.directions.size(); ++k) {
+    const Direction& other = tried.directions[k];
+    if (tried.candidates[k].id() == tried.candidates[i].id() || other.information.rows() != 1 ||
+        other.freedom != 1.0) {
       continue;
     }
-    const double cross = (own.columns.col(0).dot(other.columns.col(0)) - search.projected(i, k)) /
+    // Less what both share through the model's own numbers.
+    const double shared =
+        tried.base.fit.covariance.size() > 0
+            ? own.model_share.col(0).dot(tried.base.fit.covariance * other.model_share.col(0))
+            : 0.0;
+    const double cross = (own.columns.col(0).dot(other.columns.col(0)) - shared) /
                          std::sqrt(own.information(0, 0) * other.information(0, 0));
     if (cross * cross > closest) {
       closest = std::min(1.0, cross * cross);
-      result.nearest_rival = search.candidates()[k].id();
+      result.nearest_rival = tried.candidates[k].id();
     }
   }
   result.identifiable =
-      std::max(result.detectable,
-               result.sd * root(kToldApart / std::sqrt(std::max(1e-12, 1.0 - closest)), power));
+      std::max(result.detectable, result.sd * root(kToldApart * std::sqrt(tried.scale) /
+                                                       std::sqrt(std::max(1e-12, 1.0 - closest)),
+                                                   power));
 }
 
 /// Root mean square over shots and gauges of an amplitude in cosine and sine parts.
@@ -63,12 +69,12 @@ void set_amplitude(const Studied& studied, const std::string& id, CandidateResul
 
 }  // namespace
 
-std::vector<CandidateResult> first_order_table(const Search& search) {
+std::vector<CandidateResult> first_order_table(const Tried& tried) {
   std::vector<CandidateResult> table;
   std::map<std::string, std::size_t> at;
-  for (std::size_t i = 0; i < search.candidates().size(); ++i) {
-    const Candidate& candidate = search.candidates()[i];
-    const Direction& direction = search.directions()[i];
+  for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
+    const Candidate& candidate = tried.candidates[i];
+    const Direction& direction = tried.directions[i];
     const auto known = at.find(candidate.id());
     if (known != at.end() && table[known->second].gain >= direction.gain) {
       continue;
@@ -79,8 +85,9 @@ std::vector<CandidateResult> first_order_table(const Search& search) {
     result.parameter = parameter.name;
     result.unit = parameter.unit;
     result.gain = direction.gain;
-    result.log_p =
-        search.with_search(log_gain_tail(direction.gain, direction.freedom, candidate.one_sided));
+    result.log_p = std::min(
+        0.0, log_gain_tail(direction.gain / tried.scale, direction.freedom, candidate.one_sided) +
+                 tried.log_trials);
     if (direction.freedom > 0.0 && direction.information.rows() > 0) {
       const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
                                ? candidate.use.values[0].prior_sd
@@ -88,8 +95,8 @@ std::vector<CandidateResult> first_order_table(const Search& search) {
       const double sd = 1.0 / std::sqrt(direction.information(0, 0));
       result.strength = parameter.null_value + scale * root(direction.step[0], parameter.power);
       result.sd = scale * root(sd, parameter.power);
-      result.detectable = scale * root(kDetected * sd, parameter.power);
-      set_identifiable(search, i, parameter.power, result);
+      result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
+      set_identifiable(tried, i, parameter.power, result);
       result.verdict = "not needed";
     } else {
       result.detectable = result.identifiable = INFINITY;

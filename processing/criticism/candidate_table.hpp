@@ -24,8 +24,17 @@ struct CandidateResult {
   std::string verdict;  ///< "named", "tied", "rejected", "untestable", "not needed"
 };
 
+/// What one search tried at first order.
+struct Tried {
+  const std::vector<Candidate>& candidates;
+  const std::vector<Direction>& directions;  ///< of the candidates, one each
+  const Studied& base;                       ///< the model that was searched
+  double log_trials = 0.0;                   ///< ln of how many tests the search amounts to
+  double scale = 1.0;                        ///< what a square of a normal deviate counts over
+};
+
 /// First-order strengths and limits of every effect beside the model that was searched.
-[[nodiscard]] std::vector<CandidateResult> first_order_table(const Search& search);
+[[nodiscard]] std::vector<CandidateResult> first_order_table(const Tried& tried);
 
 /// Puts what the refits found in the place of first order.
 /// @param held_out  one per refit

@@ -84,7 +84,8 @@ class Diagnostician {
     Search search(study_, current, start_);
     const bool first = diagnosis_.effects.empty();
     if (diagnosis_.candidates.empty()) {
-      diagnosis_.candidates = first_order_table(search);
+      diagnosis_.candidates = first_order_table(
+          {search.candidates(), search.directions(), current, search.log_trials()});
     }
     std::optional<Choice> choice = choose(search, current, first);
     if (!choice) {

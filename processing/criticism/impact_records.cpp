@@ -117,7 +117,49 @@ double clear_s(const Campaign& campaign, bool whole) {
   return least;
 }
 
+/// Relative deviation of all speeds alike, from what the photo-sensors' bench files.
+double common_speed_sd(const Bench& bench) {
+  const std::vector<PhotoSensor>& beams = bench.photo_sensors;
+  if (beams.size() == 2) {
+    return std::hypot(beams[0].distance_m.sd, beams[1].distance_m.sd) /
+           std::abs(beams[0].distance_m - beams[1].distance_m);
+  }
+  const bool timed = beams.size() == 1 && bench.ball;
+  return timed ? bench.ball->outer_diameter_m.sd / bench.ball->outer_diameter_m : 0.0;
+}
+
+void read_speeds(const Campaign& campaign, ImpactRecords& records) {
+  const Bar& bar = campaign.bench.input;
+  records.wave_speed_m_per_s = std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3);
+  records.common_speed_sd = common_speed_sd(campaign.bench);
+  for (const CampaignShot& shot : campaign.shots) {
+    const ShotFacts& facts = shot.facts;
+    const double sd = facts.incident_speed_sd_m_per_s / *facts.incident_speed_m_per_s;
+    const double own = sd * sd - records.common_speed_sd * records.common_speed_sd;
+    records.own_speed_sd = std::max(records.own_speed_sd, std::sqrt(std::max(0.0, own)));
+    records.rebound.emplace_back();
+    if (facts.rebound_speed_m_per_s) {
+      const double speed = std::abs(*facts.rebound_speed_m_per_s);
+      const double alike = records.common_speed_sd * speed;
+      const double variance = std::pow(facts.rebound_speed_sd_m_per_s, 2) - alike * alike;
+      records.rebound.back() =
+          Measured{speed / records.wave_speed_m_per_s,
+                   std::sqrt(std::max(0.0, variance)) / records.wave_speed_m_per_s};
+    }
+  }
+}
+
 }  // namespace
+
+std::size_t ImpactRecords::unsaid_rebounds(std::size_t group) const {
+  return static_cast<std::size_t>(std::count_if(groups[group].shots.begin(),
+                                                groups[group].shots.end(),
+                                                [&](std::size_t n) { return !rebound[n]; }));
+}
+
+std::size_t ImpactRecords::unsaid_rebounds() const {
+  return static_cast<std::size_t>(std::count(rebound.begin(), rebound.end(), std::nullopt));
+}
 
 ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double cutoff_Hz) {
   if (!campaign.bench.input.youngs_modulus_Pa) {
@@ -145,6 +187,7 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
       records.group_of[n] = g;
     }
   }
+  read_speeds(campaign, records);
   // The same stretch of every shot.
   double lead_s = kLead_s;
   double after_s = clear_s(campaign, whole);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "processing/base/measured.hpp"
 #include "processing/criticism/campaign.hpp"
 
 namespace kolsky {
@@ -33,6 +35,22 @@ struct ImpactRecords {
   std::vector<double> first_s;              ///< by shot: time of the first judged sample
   std::vector<std::vector<double>> noise;   ///< by gauge: autocovariance, judged samples apart
   std::vector<double> peak;                 ///< by shot: largest judged strain
+  /// By shot: rebound speed over the speed of waves in the bar, a number of the size of strains;
+  /// its deviation of zero: none was filed.
+  std::vector<std::optional<Measured>> rebound;
+  double wave_speed_m_per_s = 1.0;
+  /// Relative deviations of the incident speeds: the largest of a shot by itself, and what is
+  /// common to all (the distance of the beams that timed them).
+  double own_speed_sd = 0.0;
+  double common_speed_sd = 0.0;
+
+  /// A group's incident speed as `rebound` counts speeds.
+  [[nodiscard]] double incident(std::size_t group) const {
+    return groups[group].speed_m_per_s / wave_speed_m_per_s;
+  }
+  /// Shots of a group without a rebound speed.
+  [[nodiscard]] std::size_t unsaid_rebounds(std::size_t group) const;
+  [[nodiscard]] std::size_t unsaid_rebounds() const;
 };
 
 /// @param whole  judge beyond the far end's reflection, up to where the struck end sends it back

@@ -14,19 +14,22 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kBefore_s = 150e-6;       ///< of the fine grid, before the first touch
-constexpr double kSolverFloor = 0.005;     ///< of the force: no mesh study sees all of it
-constexpr double kRippleMemory_s = 12e-6;  ///< of a contact that grows node by node
-constexpr double kSolverMemory_s = 60e-6;  ///< over which a solver's error keeps its sign
-constexpr double kArrivalFree_s = 5e-6;
+constexpr double kBefore_s = 150e-6;    ///< of the fine grid, before the first touch
+constexpr double kSolverFloor = 0.005;  ///< of the force: no mesh study sees all of it
 constexpr double kSettled_s = 1e-11;
+constexpr double kFinestRebound = 1e-4;  ///< relative: no two beams tell speeds better
 
-Eigen::MatrixXd symmetric_power(const Eigen::MatrixXd& matrix, double power) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
-  const double least = 1e-14 * solver.eigenvalues().maxCoeff();
-  return solver.eigenvectors() *
-         solver.eigenvalues().cwiseMax(least).array().pow(power).matrix().asDiagonal() *
-         solver.eigenvectors().transpose();
+/// Mean square of the filed deviations of the rebound speeds, relative.
+double filed_rebound_sd(const ImpactRecords& records) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const auto& rebound : records.rebound) {
+    if (rebound) {
+      squares += std::pow(rebound->sd / rebound->value, 2);
+      count += 1.0;
+    }
+  }
+  return std::max(kFinestRebound, std::sqrt(squares / std::max(1.0, count)));
 }
 
 /// Third-order interpolation on the fine grid and its derivative by time.
@@ -76,7 +79,7 @@ ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cu
 }
 
 std::size_t ImpactResiduals::per_shot() const {
-  return records_.window.samples * campaign_.gauges();
+  return of_gauges() + 1;
 }
 
 std::vector<double> ImpactResiduals::times_s() const {
@@ -159,7 +162,7 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
   Foretold out;
   const std::size_t gauges = campaign_.gauges();
   const std::size_t samples = records_.window.samples;
-  const auto size = static_cast<Eigen::Index>(per_shot());
+  const auto size = static_cast<Eigen::Index>(of_gauges());
   const std::size_t shots = campaign_.shots.size();
   out.reading.resize(shots);
   out.residual.resize(shots);
@@ -208,17 +211,7 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
         }
       }
       // The arrival where it fits best, by the noise alone.
-      Eigen::VectorXd measured = Eigen::Map<const Eigen::VectorXd>(records_.judged[n].data(), size);
-      for (std::size_t j = 0; j < gauges; ++j) {
-        const std::vector<double>& added = record.record.additions[j];
-        for (std::size_t k = 0; k < samples && !added.empty(); ++k) {
-          const double place =
-              (records_.first_s[n] + static_cast<double>(k) * records_.window.period_s) /
-              campaign_.period_s;
-          const auto i = std::min(static_cast<std::size_t>(std::lround(place)), added.size() - 1);
-          measured[static_cast<Eigen::Index>(j * samples + k)] -= added[i];
-        }
-      }
+      const Eigen::VectorXd record_n = measured(n, record.record);
       double touch_s = touch_s_[n];
       Eigen::VectorXd reading(size);
       Eigen::VectorXd slope(size);
@@ -233,22 +226,66 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
           }
         }
         const Eigen::VectorXd weighted =
-            whiteners_.empty() ? slope : Eigen::VectorXd(whiteners_[g].noise_inverse * slope);
+            noise_inverse_.size() == 0 ? slope : Eigen::VectorXd(noise_inverse_ * slope);
         constexpr double kLongestStep_s = 20e-6;
-        const double step_s = std::clamp(-weighted.dot(measured - reading) / weighted.dot(slope),
+        const double step_s = std::clamp(-weighted.dot(record_n - reading) / weighted.dot(slope),
                                          -kLongestStep_s, kLongestStep_s);
         if (!std::isfinite(step_s) || std::abs(step_s) < kSettled_s) {
           break;
         }
         touch_s += step_s;
       }
-      out.reading[n] = reading;
-      out.residual[n] = measured - reading;
       out.arrival_s[n] = touch_s;
       out.rebound_m_per_s[n] = (1.0 - share) * readings.rebound_low + share * readings.rebound_high;
+      const double rebound = out.rebound_m_per_s[n] / records_.wave_speed_m_per_s;
+      const auto& said = records_.rebound[n];
+      out.reading[n].resize(size + 1);
+      out.reading[n] << reading, rebound;
+      out.residual[n].resize(size + 1);
+      out.residual[n] << record_n - reading, said ? *said - rebound : 0.0;
+    }
+  }
+  fill_unsaid_rebounds(out);
+  return out;
+}
+
+/// A shot's record as gauges sensed it, less what effects add to it.
+Eigen::VectorXd ImpactResiduals::measured(std::size_t shot, const RecordScene& record) const {
+  const std::size_t samples = records_.window.samples;
+  Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(records_.judged[shot].data(),
+                                                          static_cast<Eigen::Index>(of_gauges()));
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    const std::vector<double>& added = record.additions[j];
+    for (std::size_t k = 0; k < samples && !added.empty(); ++k) {
+      const double place =
+          (records_.first_s[shot] + static_cast<double>(k) * records_.window.period_s) /
+          campaign_.period_s;
+      const auto i = std::min(static_cast<std::size_t>(std::lround(place)), added.size() - 1);
+      out[static_cast<Eigen::Index>(j * samples + k)] -= added[i];
     }
   }
   return out;
+}
+
+/// A group's mean rebound is that of the shots that say one.
+void ImpactResiduals::fill_unsaid_rebounds(Foretold& foretold) const {
+  const auto last = static_cast<Eigen::Index>(of_gauges());
+  for (std::size_t g = 0; g < records_.groups.size(); ++g) {
+    const SpeedGroup& group = records_.groups[g];
+    const std::size_t unsaid = records_.unsaid_rebounds(g);
+    if (unsaid == 0 || unsaid == group.shots.size()) {
+      continue;
+    }
+    double sum = 0.0;
+    for (const std::size_t n : group.shots) {
+      sum += records_.rebound[n] ? foretold.residual[n][last] : 0.0;
+    }
+    for (const std::size_t n : group.shots) {
+      if (!records_.rebound[n]) {
+        foretold.residual[n][last] = sum / static_cast<double>(group.shots.size() - unsaid);
+      }
+    }
+  }
 }
 
 Eigen::VectorXd ImpactResiduals::evaluate(const Composition& composition,
@@ -259,20 +296,7 @@ Eigen::VectorXd ImpactResiduals::evaluate(const Composition& composition,
   if (!foretold.sound) {
     return Eigen::VectorXd::Constant(size * shots, std::numeric_limits<double>::quiet_NaN());
   }
-  Eigen::VectorXd white(size * shots);
-  for (std::size_t g = 0; g < records_.groups.size(); ++g) {
-    const SpeedGroup& group = records_.groups[g];
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
-    for (const std::size_t n : group.shots) {
-      mean += foretold.residual[n] / static_cast<double>(group.shots.size());
-    }
-    const Eigen::VectorXd shared = whiteners_[g].mean_root * mean;
-    for (const std::size_t n : group.shots) {
-      white.segment(static_cast<Eigen::Index>(n) * size, size) =
-          whiteners_[g].own_root * (foretold.residual[n] - mean) + shared;
-    }
-  }
-  return white;
+  return whitening_->white(foretold.residual);
 }
 
 Eigen::VectorXd ImpactResiduals::evaluate_shot(const Composition& composition,
@@ -284,8 +308,8 @@ Eigen::VectorXd ImpactResiduals::evaluate_shot(const Composition& composition,
 
 Eigen::MatrixXd ImpactResiduals::noise_matrix() const {
   const std::size_t samples = records_.window.samples;
-  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(per_shot()),
-                                                static_cast<Eigen::Index>(per_shot()));
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(of_gauges()),
+                                                static_cast<Eigen::Index>(of_gauges()));
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     const std::vector<double>& own = records_.noise[j];
     for (std::size_t a = 0; a < samples; ++a) {
@@ -344,137 +368,111 @@ void ImpactResiduals::prepare(const Composition& composition, const std::vector<
     throw InputError("model", "has a ball that the solver refuses", "bring its numbers nearer");
   }
   touch_s_ = foretold.arrival_s;
-  set_whiteners(foretold, composition, theta);
+  set_whitening(foretold, composition, theta);
 }
 
-void ImpactResiduals::set_whiteners(const Foretold& foretold, const Composition& composition,
+/// What one shot in the middle of a group foretells, from the group's two calculated impacts.
+ImpactShape ImpactResiduals::shape_of(std::size_t g, const Foretold& foretold,
+                                      const std::vector<std::vector<double>>& low,
+                                      const std::vector<std::vector<double>>& high) const {
+  const SpeedGroup& group = records_.groups[g];
+  const std::size_t n = group.shots[group.shots.size() / 2];
+  const auto gauges = static_cast<Eigen::Index>(of_gauges());
+  const double per_speed = group.speed_m_per_s / (group.high_m_per_s - group.low_m_per_s);
+  ImpactShape shape{foretold.reading[n], Eigen::VectorXd::Zero(gauges + 1),
+                    Eigen::VectorXd::Zero(gauges + 1)};
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    for (std::size_t k = 0; k < records_.window.samples; ++k) {
+      const auto i = static_cast<Eigen::Index>(j * records_.window.samples + k);
+      const double time_s = records_.first_s[n] +
+                            static_cast<double>(k) * records_.window.period_s -
+                            foretold.arrival_s[n];
+      const Interpolated a = at(low[j], time_s);
+      shape.by_speed[i] = (at(high[j], time_s).value - a.value) * per_speed;
+      shape.by_time[i] = a.slope_per_s;
+    }
+  }
+  return shape;
+}
+
+void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition& composition,
                                     const std::vector<double>& theta) {
-  const std::size_t gauges = campaign_.gauges();
-  const std::size_t samples = records_.window.samples;
-  const auto size = static_cast<Eigen::Index>(per_shot());
   BallScene ball;
   const auto transfer = transfers(composition, theta, 0, ball);
-  const Eigen::MatrixXd noise = noise_matrix();
-  const Eigen::MatrixXd noise_inverse = symmetric_power(noise, -1.0);
   // Twice what the mesh is seen to do, over all groups.
-  std::vector<Eigen::VectorXd> strained;  // by group: mean reading
-  std::vector<Eigen::VectorXd> by_speed;  // V dm/dV
-  std::vector<Eigen::VectorXd> by_time;
+  std::vector<ImpactShape> shapes;
+  const double judged_s =
+      kBefore_s + records_.window.period_s * static_cast<double>(records_.window.samples);
+  const auto last = static_cast<std::size_t>(judged_s / kRunStep_s);
   double mesh_square = 0.0;
   double reading_square = 0.0;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
-    const std::size_t n = group.shots[group.shots.size() / 2];
-    const auto low = recorded(read(force(ball, g, false), transfer, executor_.first), 0.0);
-    const auto high = recorded(read(force(ball, g, true), transfer, executor_.first), 0.0);
+    const BallRun slower = force(ball, g, false);
+    const BallRun faster = force(ball, g, true);
+    const auto low = recorded(read(slower, transfer, executor_.first), 0.0);
+    const auto high = recorded(read(faster, transfer, executor_.first), 0.0);
     const auto mesh = recorded(read(anchors_[g][0].mesh, transfer, executor_.first), 0.0);
-    Eigen::VectorXd speed(size);
-    Eigen::VectorXd slope(size);
-    for (std::size_t j = 0; j < gauges; ++j) {
-      for (std::size_t k = 0; k < samples; ++k) {
-        const auto i = static_cast<Eigen::Index>(j * samples + k);
-        const double time_s = records_.first_s[n] +
-                              static_cast<double>(k) * records_.window.period_s -
-                              foretold.arrival_s[n];
-        const Interpolated a = at(low[j], time_s);
-        const Interpolated b = at(high[j], time_s);
-        speed[i] =
-            (b.value - a.value) / (group.high_m_per_s - group.low_m_per_s) * group.speed_m_per_s;
-        slope[i] = a.slope_per_s;
-        const double off = at(mesh[j], time_s).value;
-        mesh_square += off * off;
-        reading_square += a.value * a.value;
+    shapes.push_back(shape_of(g, foretold, low, high));
+    shapes.back().by_speed.tail(1).setConstant((faster.rebound_m_per_s - slower.rebound_m_per_s) /
+                                               records_.wave_speed_m_per_s * group.speed_m_per_s /
+                                               (group.high_m_per_s - group.low_m_per_s));
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      for (std::size_t i = 0; i < std::min(last, low[j].size()); ++i) {
+        mesh_square += mesh[j][i] * mesh[j][i];
+        reading_square += low[j][i] * low[j][i];
       }
     }
-    by_speed.push_back(std::move(speed));
-    by_time.push_back(std::move(slope));
-    strained.push_back(foretold.reading[n]);
   }
   mesh_difference_ = std::sqrt(mesh_square / reading_square);
   solver_sd_ = std::max(kSolverFloor, 2.0 * mesh_difference_);
-  double filed = 0.0;
-  for (const CampaignShot& shot : campaign_.shots) {
-    filed =
-        std::max(filed, shot.facts.incident_speed_sd_m_per_s / *shot.facts.incident_speed_m_per_s);
-  }
-  speed_sd_ = std::max(speed_sd_, filed);
-  whiteners_.assign(records_.groups.size(), {});
+  speed_sd_ = std::max(speed_sd_, records_.own_speed_sd);
+  rebound_sd_ = std::max(rebound_sd_, filed_rebound_sd(records_));
+  const Eigen::MatrixXd noise = noise_matrix();
+  noise_inverse_ = symmetric_power(noise, -1.0);
+  whitening_ = std::make_unique<ImpactWhitening>(
+      records_, shapes, ImpactDoubts{noise, speed_sd_, rebound_sd_, solver_sd_});
   signal_energy_ = 0.0;
-  for (std::size_t g = 0; g < records_.groups.size(); ++g) {
-    Whitener& w = whiteners_[g];
-    w.own = noise + speed_sd_ * speed_sd_ * by_speed[g] * by_speed[g].transpose() +
-            kArrivalFree_s * kArrivalFree_s * by_time[g] * by_time[g].transpose();
-    w.shared = Eigen::MatrixXd::Zero(size, size);
-    const double peak = strained[g].cwiseAbs().maxCoeff();
-    for (std::size_t j = 0; j < gauges; ++j) {
-      const auto first = static_cast<Eigen::Index>(j * samples);
-      const auto count = static_cast<Eigen::Index>(samples);
-      // An offset of its own: what quiet samples before the pulse leave open, and more.
-      w.own.block(first, first, count, count).array() += 100.0 * noise(first, first);
-    }
-    for (Eigen::Index a = 0; a < size; ++a) {
-      for (Eigen::Index b = 0; b < size; ++b) {
-        const auto column = [&](Eigen::Index i) {
-          return static_cast<double>(static_cast<std::size_t>(i) % samples);
-        };
-        // The same size twice: slowly varying, and from sample to sample.
-        const double quick = (column(a) - column(b)) * records_.window.period_s / kRippleMemory_s;
-        const double apart = (column(a) - column(b)) * records_.window.period_s / kSolverMemory_s;
-        const auto size_at = [&](Eigen::Index i) {
-          const double e = std::abs(strained[g][i]);
-          // Where the contact is made and broken forces are small and times matter.
-          return solver_sd_ * (e > 1e-3 * peak ? e + 0.05 * peak : 0.0);
-        };
-        w.shared(a, b) = size_at(a) * size_at(b) *
-                         (std::exp(-0.5 * apart * apart) + std::exp(-0.5 * quick * quick));
-      }
-    }
-    w.own_root = symmetric_power(w.own, -0.5);
-    w.mean_root = symmetric_power(
-        w.own + static_cast<double>(records_.groups[g].shots.size()) * w.shared, -0.5);
-    w.noise_inverse = noise_inverse;
-    for (const std::size_t n : records_.groups[g].shots) {
-      const Eigen::Map<const Eigen::VectorXd> y(records_.judged[n].data(), size);
-      signal_energy_ += y.dot(noise_inverse * y);
-    }
+  for (const std::vector<double>& judged : records_.judged) {
+    const Eigen::Map<const Eigen::VectorXd> y(judged.data(), noise.rows());
+    signal_energy_ += y.dot(noise_inverse_ * y);
   }
 }
 
 void ImpactResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {
-  Foretold foretold = foretell(composition, theta, executor_.first);
+  const Foretold foretold = foretell(composition, theta, executor_.first);
   // Scatter along V dm/dV, clear of arrival and offset, is the speeds'; the rest is noise.
-  BallScene ball;
-  const auto transfer = transfers(composition, theta, 0, ball);
-  const auto size = static_cast<Eigen::Index>(per_shot());
+  const auto size = static_cast<Eigen::Index>(of_gauges());
   double scatter = 0.0;
   double expected = 0.0;
   double freedom = 0.0;
   double rest = 0.0;
   double rest_freedom = 0.0;
-  const double scale = noise_scale_;
-  const double filed = speed_sd_;
+  double rebounds = 0.0;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
     const auto count = static_cast<double>(group.shots.size());
     if (group.shots.size() < 2) {
       continue;
     }
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size + 1);
     Eigen::VectorXd reading = Eigen::VectorXd::Zero(size);
     for (const std::size_t n : group.shots) {
       mean += foretold.residual[n] / count;
-      reading += foretold.reading[n] / count;
+      reading += foretold.reading[n].head(size) / count;
     }
     // The force grows with the speed nearly in its own shape: arrivals and offsets are in `own`.
-    const Eigen::MatrixXd inverse = symmetric_power(whiteners_[g].own, -1.0);
+    const Eigen::MatrixXd inverse =
+        symmetric_power(whitening_->own(g).topLeftCorner(size, size), -1.0);
     const Eigen::VectorXd direction = inverse * reading;
     const double information = reading.dot(direction);
     for (const std::size_t n : group.shots) {
       const Eigen::VectorXd off = foretold.residual[n] - mean;
-      const double along = direction.dot(off) / information;
+      const double along = direction.dot(off.head(size)) / information;
       scatter += along * along;
-      const Eigen::VectorXd left = off - along * reading;
+      const Eigen::VectorXd left = off.head(size) - along * reading;
       rest += left.dot(inverse * left);
+      rebounds += std::pow(off[size] / foretold.reading[n][size], 2);
     }
     expected += (count - 1.0) / information;
     freedom += count - 1.0;
@@ -483,12 +481,17 @@ void ImpactResiduals::calibrate(const Composition& composition, const std::vecto
   if (freedom < 1.0) {
     return;
   }
+  const double scale = noise_scale_;
   noise_scale_ = scale * std::max(0.7, rest / rest_freedom);
   // Forces grow somewhat faster than speeds; what is found here is of the force.
   const double variance = std::max(0.0, (scatter - expected * noise_scale_ / scale) / freedom);
   constexpr double kForcePerSpeed = 1.15;
-  speed_sd_ = std::max(filed, std::sqrt(variance) / kForcePerSpeed);
-  set_whiteners(foretold, composition, theta);
+  speed_sd_ = std::sqrt(variance) / kForcePerSpeed;
+  // Speeds that are filed wrongly scatter the rebounds as well; that is counted with the speeds.
+  const double said = freedom - static_cast<double>(records_.unsaid_rebounds());
+  rebound_sd_ =
+      said >= 1.0 ? std::sqrt(std::max(0.0, rebounds / said - speed_sd_ * speed_sd_)) : 0.0;
+  set_whitening(foretold, composition, theta);
 }
 
 }  // namespace kolsky

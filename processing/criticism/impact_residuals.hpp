@@ -8,22 +8,19 @@
 #include "processing/base/workers.hpp"
 #include "processing/criticism/ball_runs.hpp"
 #include "processing/criticism/impact_records.hpp"
+#include "processing/criticism/impact_whitening.hpp"
 #include "processing/criticism/shot_residuals.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
 
-/// Whitened residuals of impacts: the records less what the ball's solver and the bar foretell, at
-/// every shot's own speed. Nothing of the source is free but its arrival.
+/// Whitened residuals of impacts: the records and the rebound speeds less what the ball's solver
+/// and the bar foretell, at every shot's own speed. Nothing of the source is free but its arrival.
 ///
-/// A shot's residual is r_n = y_n - m(theta, V_n, t_n), t_n where it fits best. Its covariance:
-///     S = N + sV^2 g g^T + arrival and offsets, free      for each shot by itself,
-///     D                                                   shared by all shots of a speed,
-/// N the gauges' noise before the pulse (scaled by what repeats scatter), g = V dm/dV, sV the
-/// deviation of a speed. D is what the calculation itself may be off by, in the shape of the force:
-/// of its mesh, contact and integration, twice what the middle mesh differs from the fine one and a
-/// floor. The white residuals of K shots of one speed, S^-1/2 (r_n - mean) + (S + K D)^-1/2 mean,
-/// have as their squares' sum the whole quadratic form.
+/// A shot's residual is r_n = y_n - m(theta, V_n, t_n), t_n where it fits best, its rebound's last.
+/// Its covariance is ImpactWhitening's: noise as before the pulse (scaled by what repeats scatter),
+/// speeds, arrival and offsets of each shot by itself; what the calculation may be off by, twice
+/// what the middle mesh differs from the fine one and at least a floor, is shared by all.
 ///
 /// Three meshes: m = fine(theta_0) + coarse(theta) - coarse(theta_0), theta_0 as prepared.
 class ImpactResiduals : public ShotResiduals {
@@ -48,8 +45,8 @@ class ImpactResiduals : public ShotResiduals {
 
   /// What is foretold of every shot at its judged samples, aligned, and its residual.
   struct Foretold {
-    std::vector<Eigen::VectorXd> reading;   ///< by shot
-    std::vector<Eigen::VectorXd> residual;  ///< by shot, not whitened
+    std::vector<Eigen::VectorXd> reading;   ///< by shot: gauge after gauge, then its rebound
+    std::vector<Eigen::VectorXd> residual;  ///< by shot, not whitened; unsaid rebounds: as fellows'
     std::vector<double> arrival_s;          ///< of the first touch, from the record's start
     std::vector<double> rebound_m_per_s;    ///< by shot
     bool sound = true;                      ///< false where the solver refused
@@ -60,17 +57,20 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] const ImpactRecords& records() const { return records_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
   /// Covariance of one shot by itself, and what all shots of a group share of the solver's error.
-  [[nodiscard]] const Eigen::MatrixXd& own_covariance(std::size_t group) const {
-    return whiteners_[group].own;
-  }
-  [[nodiscard]] const Eigen::MatrixXd& shared_covariance(std::size_t group) const {
-    return whiteners_[group].shared;
+  [[nodiscard]] Eigen::MatrixXd covariance(std::size_t group) const {
+    return whitening_->own(group) + whitening_->shared(group, group);
   }
   /// Residuals of a shot that its own arrival and offsets take up.
   [[nodiscard]] double eliminated() const { return 1.0 + static_cast<double>(campaign_.gauges()); }
+  /// Residuals of a shot that are of its gauges; the one behind them is of its rebound.
+  [[nodiscard]] std::size_t of_gauges() const {
+    return records_.window.samples * campaign_.gauges();
+  }
   /// Energy of all records over that of their noise.
   [[nodiscard]] double signal_energy() const { return signal_energy_; }
   [[nodiscard]] double speed_sd() const { return speed_sd_; }  ///< relative
+  /// Of a rebound speed, relative: what is filed, or how they scatter where that is more.
+  [[nodiscard]] double rebound_sd() const { return rebound_sd_; }
   [[nodiscard]] double noise_scale() const { return noise_scale_; }
   /// Relative size of what the calculation may be off by.
   [[nodiscard]] double solver_sd() const { return solver_sd_; }
@@ -82,13 +82,6 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] double force_per_strain_N() const;
 
  private:
-  struct Whitener {
-    Eigen::MatrixXd own;
-    Eigen::MatrixXd shared;
-    Eigen::MatrixXd own_root;   ///< S^-1/2
-    Eigen::MatrixXd mean_root;  ///< (S + K D)^-1/2
-    Eigen::MatrixXd noise_inverse;
-  };
   /// What gauges read of a group's two calculated impacts, on a fine grid from `kBefore_s` before
   /// the first touch on.
   struct Readings {
@@ -112,8 +105,13 @@ class ImpactResiduals : public ShotResiduals {
       std::size_t worker) const;
   [[nodiscard]] std::vector<std::vector<double>> recorded(std::vector<std::vector<double>> strain,
                                                           double bridge_b) const;
-  void set_whiteners(const Foretold& foretold, const Composition& composition,
+  void set_whitening(const Foretold& foretold, const Composition& composition,
                      const std::vector<double>& theta);
+  [[nodiscard]] ImpactShape shape_of(std::size_t group, const Foretold& foretold,
+                                     const std::vector<std::vector<double>>& low,
+                                     const std::vector<std::vector<double>>& high) const;
+  [[nodiscard]] Eigen::VectorXd measured(std::size_t shot, const RecordScene& record) const;
+  void fill_unsaid_rebounds(Foretold& foretold) const;
   [[nodiscard]] Eigen::MatrixXd noise_matrix() const;
 
   const Campaign& campaign_;
@@ -121,12 +119,14 @@ class ImpactResiduals : public ShotResiduals {
   ImpactRecords records_;
   BallRuns runs_;
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
-  std::vector<Whitener> whiteners_;
+  std::unique_ptr<ImpactWhitening> whitening_;
+  Eigen::MatrixXd noise_inverse_;
   std::vector<Complex> path_;
   std::vector<double> touch_s_;  ///< by shot: where the search for the arrival begins
   std::vector<std::unique_ptr<DampedTransform>> transforms_;  ///< by worker
   double noise_scale_ = 1.0;
   double speed_sd_ = 0.0;
+  double rebound_sd_ = 0.0;
   double solver_sd_ = 0.0;
   double mesh_difference_ = 0.0;
   double signal_energy_ = 0.0;

@@ -143,13 +143,19 @@ std::pair<double, double> ImpactStudy::repeated(const Eigen::VectorXd& white) co
     chi2 += mean.squaredNorm() / static_cast<double>(group.shots.size());
     freedom += static_cast<double>(size) - residuals_.eliminated();
   }
+  const ImpactRecords& records = residuals_.records();
+  for (std::size_t g = 0; g < records.groups.size(); ++g) {
+    freedom -= records.unsaid_rebounds(g) == records.groups[g].shots.size() ? 1.0 : 0.0;
+  }
   return {chi2, freedom};
 }
 
 Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
   Misfit misfit;
   const auto shots = static_cast<double>(campaign_.shots.size());
-  const double all = shots * (static_cast<double>(residuals_.per_shot()) - residuals_.eliminated());
+  const double all =
+      shots * (static_cast<double>(residuals_.per_shot()) - residuals_.eliminated()) -
+      static_cast<double>(residuals_.records().unsaid_rebounds());
   misfit.degrees_of_freedom = std::max(1.0, all - used);
   misfit.chi2_reduced = white.squaredNorm() / misfit.degrees_of_freedom;
   const auto [chi2, freedom] = repeated(white);
@@ -198,8 +204,9 @@ ImpactComparison ImpactStudy::compare(const Studied& studied) {
           mean.segment(static_cast<Eigen::Index>(j * samples), static_cast<Eigen::Index>(samples));
       own.array() -= own.mean();
     }
-    const double peak = reading.cwiseAbs().maxCoeff();
-    summary.rms_percent = 100.0 * rms(mean) / peak;
+    const auto gauges = static_cast<Eigen::Index>(residuals_.of_gauges());
+    const double peak = reading.head(gauges).cwiseAbs().maxCoeff();
+    summary.rms_percent = 100.0 * rms(mean.head(gauges)) / peak;
     summary.noise_percent = 100.0 * std::sqrt(records.noise[0][0] / count) / peak;
     for (std::size_t k = 0; k < samples; ++k) {
       const auto i = static_cast<Eigen::Index>(campaign_.reference * samples + k);
@@ -218,8 +225,7 @@ ImpactComparison ImpactStudy::compare(const Studied& studied) {
         white.squaredNorm() / count / (static_cast<double>(size) - residuals_.eliminated());
     out.speeds.push_back(std::move(summary));
 
-    const Eigen::MatrixXd covariance =
-        residuals_.own_covariance(g) + residuals_.shared_covariance(g);
+    const Eigen::MatrixXd covariance = residuals_.covariance(g);
     for (const std::size_t n : group.shots) {
       for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
         const auto first = static_cast<Eigen::Index>(j * samples);

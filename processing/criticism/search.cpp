@@ -39,9 +39,8 @@ double Search::with_search(double log_p) const {
   return std::min(0.0, log_p + std::log(trials_));
 }
 
-double Search::projected(std::size_t a, std::size_t b) const {
-  return directions_[a].model_share.col(0).dot(base_.fit.covariance *
-                                               directions_[b].model_share.col(0));
+double Search::log_trials() const {
+  return std::log(trials_);
 }
 
 std::vector<Refit> Search::refits() {

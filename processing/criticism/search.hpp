@@ -38,8 +38,7 @@ class Search {
   /// ln of the chance that the best of all candidates does as well on noise.
   [[nodiscard]] double with_search(double log_p) const;
 
-  /// What two directions share through the model's own numbers.
-  [[nodiscard]] double projected(std::size_t a, std::size_t b) const;
+  [[nodiscard]] double log_trials() const;
 
   /// The candidates worth it, refitted; the best first.
   [[nodiscard]] std::vector<Refit> refits();

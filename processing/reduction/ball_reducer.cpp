@@ -7,8 +7,12 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/reduction/ball_deviations.hpp"
 #include "processing/reduction/ball_flight.hpp"
+#include "processing/reduction/ball_kernels.hpp"
 #include "processing/reduction/ball_quality.hpp"
+#include "processing/reduction/ball_speeds.hpp"
+#include "processing/reduction/ball_stations.hpp"
 #include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/contact_numbers.hpp"
 #include "processing/reduction/pulse.hpp"
@@ -27,71 +31,10 @@ constexpr double kFootClearance_s = 10e-6;
 constexpr double kBaseline_s = 1e-3;
 /// Beyond it gauges show how the bar rings, not what the ball does (docs/impact.md).
 constexpr double kHighestLowPass_Hz = 50e3;
-/// The low-pass looks ahead: what it looks for before the record's start wraps round to the end of
-/// the transform, where undamping raises it. Elastic waves need little damping, and room keeps it
-/// apart.
-constexpr double kWrapDamping = 1e-2;
-constexpr double kPadding_s = 0.5e-3;
 constexpr double kLeastThreshold = 0.01;
 constexpr double kThresholdOverNoise = 4.0;
 constexpr double kAfterContact_s = 50e-6;
 constexpr std::size_t kFewestDraws = 20;
-constexpr std::size_t kMostDraws = 200;
-
-/// The gauges at each place of the bar, nearest to the struck end first.
-std::vector<Station> stations_by_position(const Bench& bench) {
-  std::vector<std::size_t> order(bench.gauges.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return bench.gauges[a].position_m.value < bench.gauges[b].position_m.value;
-  });
-  std::vector<Station> stations;
-  double first_m = 0.0;
-  for (const std::size_t i : order) {
-    const double position_m = bench.gauges[i].position_m;
-    if (stations.empty() || position_m - first_m > bench.input.diameter_m) {
-      stations.emplace_back();
-      first_m = position_m;
-    }
-    stations.back().channels.push_back(i);
-  }
-  for (Station& station : stations) {
-    double sum_m = 0.0;
-    for (const std::size_t i : station.channels) {
-      sum_m += bench.gauges[i].position_m;
-    }
-    station.gauge_to_specimen_m = sum_m / static_cast<double>(station.channels.size());
-    station.gauge_to_far_end_m = bench.input.length_m - station.gauge_to_specimen_m;
-  }
-  return stations;
-}
-
-std::string names_of(const Station& station, const Bench& bench) {
-  std::string names;
-  for (const std::size_t i : station.channels) {
-    names += (names.empty() ? "" : "+") + bench.gauges[i].name;
-  }
-  return names;
-}
-
-double relative(const Measured& number) {
-  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
-}
-
-/// Relative deviation of a gauge's strain, from what converts it. @param strain  its largest
-double gain_sd(const Gauge& gauge, double strain) {
-  if (gauge.strain_per_V) {
-    return relative(*gauge.strain_per_V);
-  }
-  if (gauge.bridge) {
-    const Bridge& bridge = *gauge.bridge;
-    const double bend = bridge.gauge_factor_per_strain.sd * strain / bridge.gauge_factor;
-    return std::sqrt(std::pow(relative(bridge.gauge_factor), 2) +
-                     std::pow(relative(bridge.excitation_V), 2) +
-                     std::pow(relative(bridge.gain), 2) + bend * bend);
-  }
-  return gauge.gain_sd;
-}
 
 void require_bench(const Shot& shot) {
   if (!shot.bench.input.youngs_modulus_Pa) {
@@ -105,86 +48,6 @@ void require_bench(const Shot& shot) {
                      std::to_string(channels) + " channels are filed but the shot has " +
                          std::to_string(shot.channels.size()),
                      "file one gauge per channel, then the photo-sensors, in their order");
-  }
-}
-
-struct PlanKey {
-  std::size_t samples = 0;
-  SampleRate rate;
-  std::size_t delay = 0;
-  std::size_t longest_pulse = 0;
-  bool operator==(const PlanKey&) const = default;
-};
-
-struct Plans {
-  PlanKey key;
-  DampedTransform transform;
-  BandLimit band;
-  std::vector<Complex> path;
-  std::vector<Complex> spectrum;
-
-  explicit Plans(const PlanKey& k)
-      : key(k),
-        transform(k.samples + k.delay + static_cast<std::size_t>(kPadding_s * k.rate.Hz()),
-                  k.rate.period_s(), kWrapDamping),
-        band(transform, k.longest_pulse),
-        path(transform.bins()),
-        spectrum(transform.bins()) {
-    for (std::size_t n = 0; n < path.size(); ++n) {
-      path[n] = transform.s(n);
-    }
-  }
-
-  /// Bins in which a filter with this limit leaves more than 1e-18.
-  [[nodiscard]] std::size_t bins_within(double limit_Hz) const {
-    constexpr double kNothingFrom = 2.8;
-    const auto bins =
-        static_cast<std::size_t>(kNothingFrom * limit_Hz / transform.bin_width_Hz()) + 2;
-    return std::min(bins, path.size());
-  }
-};
-
-/// What turns strain at each station into the force on the face, late by the plans' delay.
-struct Kernels {
-  std::vector<double> numbers;
-  PlanKey key;
-  std::vector<std::vector<Complex>> force_of_strain;  ///< by station
-
-  [[nodiscard]] std::size_t bins() const {
-    return force_of_strain.empty() ? 0 : force_of_strain.front().size();
-  }
-};
-
-std::vector<double> numbers_of(const Bar& bar, WaveTheory theory,
-                               const std::vector<Station>& stations) {
-  std::vector<double> numbers{static_cast<double>(theory), bar.area_m2(),
-                              bar.density_kg_m3,           *bar.youngs_modulus_Pa,
-                              bar.poisson_ratio,           bar.dispersion_radius_m()};
-  for (const Station& station : stations) {
-    numbers.push_back(station.gauge_to_specimen_m);
-  }
-  return numbers;
-}
-
-void reach(Kernels& kernels, const Plans& plans, const Bar& bar, WaveTheory theory,
-           const std::vector<Station>& stations, std::size_t bins) {
-  if (kernels.bins() >= bins) {
-    return;
-  }
-  const std::vector<Complex> path(plans.path.begin(),
-                                  plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
-  const ElasticSolid solid(*bar.youngs_modulus_Pa);
-  const std::vector<BarMode> modes = bar_modes(theory, bar, solid, path);
-  const double delay_s = static_cast<double>(plans.key.delay) * plans.key.rate.period_s();
-  kernels.force_of_strain.assign(stations.size(), std::vector<Complex>(bins));
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    for (std::size_t k = 0; k < bins; ++k) {
-      const Complex s = path[k];
-      const Complex stress = bar.density_kg_m3.value * s * s / (modes[k].gamma * modes[k].gamma);
-      kernels.force_of_strain[i][k] =
-          bar.area_m2() * stress * modes[k].mean_over_surface *
-          std::exp(modes[k].gamma * stations[i].gauge_to_specimen_m - s * delay_s);
-    }
   }
 }
 
@@ -202,21 +65,11 @@ double rms(std::span<const double> values) {
   return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-double mean(std::span<const double> values) {
-  return values.empty() ? 0.0
-                        : std::accumulate(values.begin(), values.end(), 0.0) /
-                              static_cast<double>(values.size());
-}
-
-std::size_t index_of_largest(std::span<const double> values) {
-  return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
-}
-
 /// One reduction in progress. Force histories count from the record's first sample at the face.
 class Pass {
  public:
   Pass(const Shot& shot, const std::vector<Station>& stations, const ReductionOptions& options,
-       Plans& plans, Kernels& kernels)
+       BallPlans& plans, BallKernels& kernels)
       : shot_(shot),
         bar_(shot.bench.input),
         stations_(stations),
@@ -251,7 +104,10 @@ class Pass {
     }
     fill_history();
     measure();
-    find_speeds();
+    const BallFlight flight = ball_flight(shot_, reduction_.arrival_s);
+    speed_problem_ = flight.problem;
+    set_speeds(flight, shot_.bench.ball ? shot_.bench.ball->mass_kg : std::nullopt,
+               *reduction_.ball);
     judge_quality();
     return std::move(reduction_);
   }
@@ -309,7 +165,7 @@ class Pass {
       baseline_samples_ = std::max<std::size_t>(1, std::min(quiet, baseline));
       const std::span<const double> before(strain.data() + quiet - std::min(quiet, baseline),
                                            std::min(quiet, baseline));
-      const double level = mean(before);
+      const double level = mean_of(before);
       for (double& value : strain) {
         value -= level;
       }
@@ -490,13 +346,7 @@ class Pass {
     ball.clean_until_s = clean_ * period_s_;
   }
 
-  /// First and last sample of what the impulse is summed over, and its end in seconds from touch.
-  struct Span {
-    std::size_t begin;
-    std::size_t end;
-  };
-
-  Span contact_span(const Stay& stay, std::size_t known) const {
+  SampleRange contact_span(const Stay& stay, std::size_t known) const {
     const double margin = 2.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const double end = stay.end + margin + 20e-6 * rate_Hz_;
     return {static_cast<std::size_t>(std::max(0.0, touch_ - margin)),
@@ -509,19 +359,19 @@ class Pass {
     const std::size_t peak = index_of_largest(known);
     ball.contact_threshold = threshold_for(known[peak]);
     const Stay stay = stay_above(known, peak, ball.contact_threshold * known[peak]);
-    const Span span = contact_span(stay, known.size());
+    const SampleRange span = contact_span(stay, known.size());
     ball.contact_over = stay.over;
     ball.peak_force_N.value = known[peak];
     ball.peak_time_s = (static_cast<double>(peak) - touch_) * period_s_;
     ball.contact_time_s.value = (stay.end - stay.begin) * period_s_;
     ball.impulse_N_s.value = impulse(known, span);
     contact_end_s_ = (stay.end - touch_) * period_s_;
-    find_deviations(known, peak, stay, span);
+    find_deviations(known, stay, span);
     list_stations(span);
     look_after_contact(known, stay);
   }
 
-  double impulse(std::span<const double> force, const Span& span) const {
+  double impulse(std::span<const double> force, const SampleRange& span) const {
     return std::accumulate(force.begin() + static_cast<std::ptrdiff_t>(span.begin),
                            force.begin() + static_cast<std::ptrdiff_t>(span.end), 0.0) *
            period_s_;
@@ -539,8 +389,8 @@ class Pass {
 
   /// Relative deviation of every force alike: modulus, section, gauges.
   double scale_sd() const {
-    double variance = std::pow(relative(*bar_.youngs_modulus_Pa), 2) +
-                      std::pow(2.0 * relative(bar_.diameter_m), 2);
+    double variance = std::pow(relative_sd(*bar_.youngs_modulus_Pa), 2) +
+                      std::pow(2.0 * relative_sd(bar_.diameter_m), 2);
     for (std::size_t i = 0; i < stations_.size(); ++i) {
       for (const std::size_t channel : stations_[i].channels) {
         const double share = weights_[i] / static_cast<double>(stations_[i].channels.size());
@@ -552,8 +402,7 @@ class Pass {
 
   /// Noise and baseline: by adding stretches of the quiet before the impact to the force, each with
   /// a baseline of its own, and by the formulas for white noise; whichever is more.
-  void find_deviations(std::span<const double> known, std::size_t peak, const Stay& stay,
-                       const Span& span) {
+  void find_deviations(std::span<const double> known, const Stay& stay, const SampleRange& span) {
     BallImpact& ball = *reduction_.ball;
     const auto length = static_cast<double>(span.end - span.begin);
     const double baseline_N = raw_noise_N() / std::sqrt(static_cast<double>(baseline_samples_));
@@ -566,7 +415,8 @@ class Pass {
     }
     const std::size_t needed = baseline_samples_ + (span.end - span.begin);
     if (quiet_force_.size() > needed + kFewestDraws) {
-      const Drawn drawn = draw(known, peak, ball.contact_threshold, span);
+      const ForceDeviations drawn = drawn_deviations(
+          known, {quiet_force_, baseline_samples_, period_s_}, ball.contact_threshold, span);
       peak_sd = std::max(peak_sd, drawn.peak_sd);
       impulse_sd = std::max(impulse_sd, drawn.impulse_sd);
       contact_sd = std::max(contact_sd, drawn.contact_sd);
@@ -577,43 +427,7 @@ class Pass {
     ball.contact_time_s.sd = contact_sd;
   }
 
-  struct Drawn {
-    double peak_sd = 0.0;
-    double impulse_sd = 0.0;
-    double contact_sd = 0.0;
-  };
-
-  Drawn draw(std::span<const double> known, std::size_t peak, double threshold,
-             const Span& span) const {
-    const std::size_t length = span.end - span.begin;
-    const std::size_t room = quiet_force_.size() - baseline_samples_ - length;
-    const std::size_t step = std::max<std::size_t>(1, room / kMostDraws);
-    const double peak_N = known[peak];
-    const Stay truth = stay_above(known, peak, threshold * peak_N);
-    std::vector<double> force(known.begin(), known.end());
-    Drawn sums;
-    std::size_t draws = 0;
-    for (std::size_t offset = 0; offset <= room; offset += step, ++draws) {
-      const double level = mean(quiet_force_.subspan(offset, baseline_samples_));
-      const auto noise = quiet_force_.subspan(offset + baseline_samples_, length);
-      double impulse_N_s = 0.0;
-      for (std::size_t n = 0; n < length; ++n) {
-        force[span.begin + n] = known[span.begin + n] + noise[n] - level;
-        impulse_N_s += (noise[n] - level) * period_s_;
-      }
-      const std::size_t there = index_of_largest(force);
-      const Stay stay = stay_above(force, there, threshold * force[there]);
-      sums.peak_sd += std::pow(force[there] - peak_N, 2);
-      sums.impulse_sd += impulse_N_s * impulse_N_s;
-      sums.contact_sd += std::pow((stay.end - stay.begin - truth.end + truth.begin) * period_s_, 2);
-    }
-    for (double* sum : {&sums.peak_sd, &sums.impulse_sd, &sums.contact_sd}) {
-      *sum = std::sqrt(*sum / static_cast<double>(draws));
-    }
-    return sums;
-  }
-
-  void list_stations(const Span& span) {
+  void list_stations(const SampleRange& span) {
     const double N_per_strain = bar_.area_m2() * *bar_.youngs_modulus_Pa;
     for (std::size_t i = 0; i < stations_.size(); ++i) {
       ForceStation station;
@@ -634,56 +448,10 @@ class Pass {
       return;
     }
     const auto after = known.subspan(from);
-    after_contact_N_ = mean(after);
+    after_contact_N_ = mean_of(after);
     const auto count = static_cast<double>(after.size());
     after_contact_sd_N_ =
         raw_noise_N() * std::sqrt(1.0 / count + 1.0 / static_cast<double>(baseline_samples_));
-  }
-
-  void find_speeds() {
-    BallImpact& ball = *reduction_.ball;
-    const BallFlight flight = ball_flight(shot_, reduction_.arrival_s);
-    speed_problem_ = flight.problem;
-    ball.speed_source = flight.source;
-    ball.incident_speed_m_per_s = flight.incident_m_per_s;
-    ball.rebound_speed_m_per_s = flight.rebound_m_per_s;
-    ball.mass_kg = shot_.bench.ball ? shot_.bench.ball->mass_kg : std::nullopt;
-    if (!flight.incident_m_per_s) {
-      return;
-    }
-    const Measured& in = *flight.incident_m_per_s;
-    if (flight.rebound_m_per_s) {
-      const Measured& out = *flight.rebound_m_per_s;
-      const double e = out / in;
-      ball.restitution_by_speed = Measured{e, e * std::hypot(relative(in), relative(out))};
-    }
-    if (ball.mass_kg && ball.contact_over) {
-      find_restitution_by_impulse();
-    }
-  }
-
-  void find_restitution_by_impulse() {
-    BallImpact& ball = *reduction_.ball;
-    const Measured& in = *ball.incident_speed_m_per_s;
-    const Measured& mass = *ball.mass_kg;
-    const Measured& impulse_N_s = ball.impulse_N_s;
-    const double ratio = impulse_N_s / (mass * in);
-    const double push_sd = std::hypot(relative(impulse_N_s), relative(mass));
-    ball.restitution_by_impulse = Measured{ratio - 1.0, ratio * std::hypot(push_sd, relative(in))};
-    if (!ball.restitution_by_speed) {
-      return;
-    }
-    const double e = *ball.restitution_by_speed;
-    const Measured& out = *ball.rebound_speed_m_per_s;
-    // The incident speed is in both: its error moves them by (e - ratio) times itself.
-    ball.restitution_difference = Measured{
-        e - ratio + 1.0,
-        std::hypot(std::hypot(ratio * push_sd, e * relative(out)), (ratio - e) * relative(in))};
-    const double change = mass * (in + out);
-    const double momentum_ratio = impulse_N_s / change;
-    const double speed_sd = std::hypot(in.sd, out.sd) / (in + out);
-    ball.momentum_excess =
-        Measured{momentum_ratio - 1.0, momentum_ratio * std::hypot(push_sd, speed_sd)};
   }
 
   void judge_quality() {
@@ -701,8 +469,8 @@ class Pass {
   const Bar& bar_;
   const std::vector<Station>& stations_;
   const ReductionOptions& options_;
-  Plans& t_;
-  Kernels& kernels_;
+  BallPlans& t_;
+  BallKernels& kernels_;
   double rate_Hz_;
   double period_s_;
   double front_speed_m_per_s_;
@@ -738,8 +506,8 @@ std::size_t rounded_up(double samples) {
 }  // namespace
 
 struct BallReducer::State {
-  std::unique_ptr<Plans> plans;
-  std::unique_ptr<Kernels> kernels;
+  std::unique_ptr<BallPlans> plans;
+  std::unique_ptr<BallKernels> kernels;
 };
 
 BallReducer::BallReducer() : state_(std::make_unique<State>()) {}
@@ -754,16 +522,16 @@ Reduction BallReducer::reduce(const Shot& shot, const ReductionOptions& options)
   const std::vector<Station> stations = stations_by_position(shot.bench);
   const Bar& bar = shot.bench.input;
   const double samples_per_m = shot.rate.Hz() / Pass::front_speed(bar);
-  const PlanKey key{
+  const BallPlanKey key{
       shot.samples(), shot.rate, rounded_up(stations.back().gauge_to_specimen_m * samples_per_m),
       std::min(shot.samples(),
                rounded_up(2.0 * stations.front().gauge_to_far_end_m * samples_per_m))};
   if (!state_->plans || !(state_->plans->key == key)) {
-    state_->plans = std::make_unique<Plans>(key);
+    state_->plans = std::make_unique<BallPlans>(key);
   }
-  std::vector<double> numbers = numbers_of(bar, options.theory, stations);
+  std::vector<double> numbers = ball_kernel_numbers(bar, options.theory, stations);
   if (!state_->kernels || state_->kernels->numbers != numbers || !(state_->kernels->key == key)) {
-    state_->kernels = std::make_unique<Kernels>(Kernels{std::move(numbers), key, {}});
+    state_->kernels = std::make_unique<BallKernels>(BallKernels{std::move(numbers), key, {}});
   }
   return Pass(shot, stations, options, *state_->plans, *state_->kernels).run();
 }

@@ -9,6 +9,16 @@
 
 namespace kolsky {
 
+double mean_of(std::span<const double> values) {
+  return values.empty() ? 0.0
+                        : std::accumulate(values.begin(), values.end(), 0.0) /
+                              static_cast<double>(values.size());
+}
+
+std::size_t index_of_largest(std::span<const double> values) {
+  return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
+}
+
 Stay stay_above(std::span<const double> force, std::size_t peak, double level) {
   Stay stay;
   std::size_t n = peak;

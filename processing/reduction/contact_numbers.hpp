@@ -13,6 +13,10 @@ struct Stay {
   double slopes[2] = {0.0, 0.0};  ///< at both ends, per sample, upwards into the stay
 };
 
+/// Zero of none.
+[[nodiscard]] double mean_of(std::span<const double> values);
+[[nodiscard]] std::size_t index_of_largest(std::span<const double> values);
+
 /// @param peak  index of the sample that the stay is round
 [[nodiscard]] Stay stay_above(std::span<const double> force, std::size_t peak, double level);
 

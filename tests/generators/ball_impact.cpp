@@ -349,15 +349,33 @@ class Strike {
                                      (e.rr * e.rr + e.zz * e.zz + e.tt * e.tt + 2.0 * e.rz * e.rz));
   }
 
+  /// Of a circle about the ball's axis, by counting along it.
+  [[nodiscard]] double share_on_target(double radius_m) const {
+    if (impact_.offset_m == 0.0) {
+      return radius_m > impact_.target_radius_m ? 0.0 : 1.0;
+    }
+    constexpr int kPoints = 256;
+    int on = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      const double angle = kPi * (i + 0.5) / kPoints;
+      on += std::hypot(radius_m * std::cos(angle) + impact_.offset_m, radius_m * std::sin(angle)) <
+                    impact_.target_radius_m
+                ? 1
+                : 0;
+    }
+    return static_cast<double>(on) / kPoints;
+  }
+
   double contact() {
     double force = 0.0;
     for (std::size_t i = 0; i < surface_.size() / 2; ++i) {
       const std::size_t n = surface_[i];
       const double depth = plane_m_ - z_[n];
-      if (depth <= 0.0 || r_[n] > impact_.target_radius_m) {
+      const double share = share_on_target(r_[n]);
+      if (depth <= 0.0 || share == 0.0) {
         continue;
       }
-      const double push = penalty_per_s2_ * mass_[n] * depth;
+      const double push = share * penalty_per_s2_ * mass_[n] * depth;
       fz_[n] += push;
       force += push;
       // Coulomb, as much as stops the slip at most.

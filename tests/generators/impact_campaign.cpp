@@ -48,6 +48,13 @@ double at(const BallForce& force, double time_s) {
   return (1.0 - u) * force.force_N[n] + u * force.force_N[n + 1];
 }
 
+void file(const std::string& key, double speed, double relative_sd, std::mt19937_64& random,
+          std::map<std::string, std::string>& meta) {
+  const double error = relative_sd * std::normal_distribution<double>()(random);
+  meta[key] = std::to_string(speed * (1.0 + error));
+  meta[key + "_sd"] = std::to_string(speed * relative_sd);
+}
+
 }  // namespace
 
 std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
@@ -58,12 +65,16 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
   BallImpact impact;
   impact.core_diameter_m = bench.ball->core_diameter_m;
   impact.outer_diameter_m = bench.ball->outer_diameter_m;
-  impact.core = {1140.0, 0.376, 121e6, 143e6, 2860.0};
+  const std::array<double, 6>& moduli = wishes.moduli;
+  impact.core = {1140.0, 0.376, 121e6 * moduli[0], 143e6 * moduli[1], 2860.0 * moduli[2]};
   impact.core.b = wishes.core_b;
   impact.core.D_per_Pa = wishes.core_D_per_Pa;
   impact.core.tau_s = wishes.core_tau_s;
-  impact.cover = {960.0, 0.319, 987e6, 452e6, 6020.0};
+  impact.cover = {960.0, 0.319, 987e6 * moduli[3], 452e6 * moduli[4], 6020.0 * moduli[5]};
   impact.cover.b = wishes.cover_b;
+  impact.cover.D_per_Pa = wishes.cover_D_per_Pa;
+  impact.cover.tau_s = wishes.cover_tau_s;
+  impact.offset_m = wishes.offset_m;
   impact.friction = wishes.friction;
   impact.impedance_kg_per_s = bar.density_kg_m3 * c0 * bar.area_m2();
   impact.target_radius_m = bar.diameter_m / 2.0;
@@ -103,11 +114,11 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
       digitiser.pretrigger = static_cast<std::size_t>(kTrigger_s * bench.sampling_frequency_Hz);
       digitiser.seed = random();
       std::map<std::string, std::string> meta;
-      meta["incident_speed_m_per_s"] =
-          std::to_string(speed * (1.0 + wishes.speed_error * normal(random)));
+      file("incident_speed_m_per_s", speed, wishes.speed_error, random, meta);
       if (wishes.rebound) {
-        meta["rebound_speed_m_per_s"] = std::to_string((1.0 - share) * ends[0].rebound_m_per_s +
-                                                       share * ends[1].rebound_m_per_s);
+        const double rebound =
+            (1.0 - share) * ends[0].rebound_m_per_s + share * ends[1].rebound_m_per_s;
+        file("rebound_speed_m_per_s", rebound, wishes.rebound_error, random, meta);
       }
       shots.push_back(digitised(bench, {reading}, {2e-6 * normal(random)}, digitiser, meta));
       shots.back().id = "shot" + std::to_string(shots.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ struct ImpactWishes {
   std::vector<double> speeds_m_per_s{31.1, 40.3, 51.0};
   std::size_t shots = 5;         ///< at each speed
   double speed_scatter = 0.006;  ///< relative, known: it is in the shot's facts
-  double speed_error = 0.0;      ///< relative, of what the facts say
+  double speed_error = 0.0;      ///< relative, of what the facts say, filed beside them
+  double rebound_error = 1e-3;   ///< the same of the rebound speed
   double noise_strain = 1e-6;
   double bridge_b = 0.0;      ///< reading = e (1 + b e)
   double gauge_factor = 0.0;  ///< reading x (1 + kappa)
@@ -23,7 +25,12 @@ struct ImpactWishes {
   double core_D_per_Pa = 0.0;
   double core_tau_s = 1e-4;
   double cover_b = 0.0;
+  double cover_D_per_Pa = 0.0;
+  double cover_tau_s = 1e-4;
+  /// E1, E2, eta2 of the core, then the cover, over the paper's.
+  std::array<double, 6> moduli{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double friction = 0.3;
+  double offset_m = 0.0;   ///< of the ball's axis from the bar's
   std::size_t across = 8;  ///< cells, see BallImpact
   bool rebound = true;
 };

@@ -21,6 +21,12 @@ int main(int argc, char** argv) {
   app.add_option("--cover-nonlinearity", wishes.cover_b, "b");
   app.add_option("--core-relaxation", wishes.core_D_per_Pa, "D, 1/Pa");
   app.add_option("--core-relaxation-time", wishes.core_tau_s, "s");
+  app.add_option("--cover-relaxation", wishes.cover_D_per_Pa, "D, 1/Pa");
+  app.add_option("--cover-relaxation-time", wishes.cover_tau_s, "s");
+  app.add_option("--offset", wishes.offset_m, "m, of the ball's axis from the bar's");
+  app.add_option("--moduli", wishes.moduli, "E1 E2 eta2 of core and cover over the paper's");
+  app.add_option("--rebound-error", wishes.rebound_error,
+                 "relative deviation of the rebound speeds filed");
   app.add_option("--bridge-nonlinearity", wishes.bridge_b, "b");
   app.add_option("--gauge-factor", wishes.gauge_factor, "kappa");
   app.add_option("--friction", wishes.friction, "mu");

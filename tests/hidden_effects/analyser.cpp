@@ -54,10 +54,15 @@ std::string captures_of(const CaseFiles& files) {
 
 Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
   const std::filesystem::path model = files.folder / "model.toml";
-  const std::string bars = files.bars.empty() ? "" : " --bar-model " + quoted(files.bars);
+  std::string materials;
+  for (const auto& [option, file] : {std::pair{" --bar-model ", files.bars},
+                                     {" --core ", files.core},
+                                     {" --cover ", files.cover}}) {
+    materials += file.empty() ? "" : option + quoted(file);
+  }
   Answer made = run(analyser, files, "model-new",
                     fmt::format("model new --kind {} --bench {}{} -o {} --json", files.kind,
-                                quoted(files.bench), bars, quoted(model)));
+                                quoted(files.bench), materials, quoted(model)));
   if (made.code != 0) {
     return made;
   }

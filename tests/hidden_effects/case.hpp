@@ -25,7 +25,8 @@ struct Case {
 /// Where a case lies: the analyser gets `captures` and `bench` alone.
 struct CaseFiles {
   std::filesystem::path folder, bench, truth;
-  std::filesystem::path bars;  ///< empty where the bench says all about them
+  std::filesystem::path bars;         ///< empty where the bench says all about them
+  std::filesystem::path core, cover;  ///< of a ball; else empty
   std::string kind;
   std::vector<std::filesystem::path> captures;
 };

@@ -13,7 +13,7 @@ class BridgeNonlinearity final : public Effect {
             .definition = "reading = e (1 + b e)",
             .reference = "effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
-            .parameters = {{"b", "-", 0.0, -50.0, 50.0, 0.5, {}}},
+            .parameters = {{"b", "-", 0.0, -500.0, 500.0, 0.5, {}}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

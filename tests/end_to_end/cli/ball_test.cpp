@@ -49,6 +49,10 @@ class BallLab {
     return capture;
   }
   [[nodiscard]] const BallHistory& truth() const { return lab_.ball(); }
+  [[nodiscard]] std::string bench() const {
+    setup_.folder().write("ball.toml", lab_.bench());
+    return setup_.folder() / "ball.toml";
+  }
   [[nodiscard]] const Daemon& daemon() const { return daemon_; }
   [[nodiscard]] const scene::Folder& folder() const { return setup_.folder(); }
 
@@ -180,6 +184,31 @@ TEST(BallLive, AReplayedCaptureGivesTheSameResult) {
     return got.code == 0;
   })) << got.err;
   EXPECT_EQ(json_of(got)["force_N"], json_of(kolsky({"reduce", capture, "--json"}))["force_N"]);
+}
+
+/// What the reduction takes the speeds from serves the model too.
+TEST(BallLive, PhotoSensorsServeAModelOfTheBall) {
+  const BallLab lab("impact");
+  const std::string capture = lab.capture_of(lab.shoot());
+  const std::string model = lab.folder() / "m.toml";
+  const Answer made =
+      kolsky({"model", "new", "--kind", "impact", "--bench", lab.bench(), "-o", model});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const json told = json_of(kolsky({"compare", capture, "--model", model, "--json"}));
+  ASSERT_EQ(told["speeds"].size(), 1U);
+  const json& speed = told["speeds"][0];
+  const BallHistory& truth = lab.truth();
+  EXPECT_NEAR(speed["speed_m_per_s"].get<double>(), truth.incident_speed_m_per_s,
+              2e-3 * truth.incident_speed_m_per_s);
+  EXPECT_NEAR(speed["restitution"]["measured"].get<double>(),
+              truth.rebound_speed_m_per_s / truth.incident_speed_m_per_s, 0.003);
+  EXPECT_LT(speed["rms_percent_of_peak"].get<double>(), 0.5);
+
+  const std::string fitted = lab.folder() / "fitted.toml";
+  const Answer fit = kolsky({"fit", capture, "--model", model, "-o", fitted});
+  EXPECT_EQ(fit.code, 0) << fit.err;
+  const json found = json_of(kolsky({"diagnose", capture, "--model", model, "--json"}));
+  EXPECT_EQ(found["verdict"], "adequate") << found["notes"];
 }
 
 /// Tables of a push on a thin bar, in closed form.

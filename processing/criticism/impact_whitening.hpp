@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "processing/criticism/impact_records.hpp"
+
+namespace kolsky {
+
+/// A group's calculated impact at its judged samples, gauge after gauge, and its rebound last, as
+/// ImpactRecords measures them.
+struct ImpactShape {
+  Eigen::VectorXd reading;
+  Eigen::VectorXd by_speed;  ///< V dm/dV
+  Eigen::VectorXd by_time;   ///< dm/dt [1/s]
+};
+
+/// What the records may be off by.
+struct ImpactDoubts {
+  Eigen::MatrixXd noise;    ///< covariance of one shot's judged samples
+  double speed_sd = 0.0;    ///< relative, of each shot by itself
+  double rebound_sd = 0.0;  ///< relative, of each shot by itself
+  double solver_sd = 0.0;   ///< of the force, relative: what the calculation may be off by
+};
+
+/// The covariance of a campaign of impacts and its root. With r_n the residuals of shot n,
+///     S_g = N + sV^2 g g^T + sR^2 + arrival and offsets, free       by each shot of group g
+///     itself, D_gh                                                          shared by groups g and
+///     h.
+/// D is what the calculation may be off by, in the shape of the force: half of its variance varies
+/// slowly (60 us) and is much alike at neighbouring speeds, half of it is the ripple of a contact
+/// that grows node by node (12 us), another at every speed. Of the restitution it may be off by
+/// kRestitutionDoubt at all speeds alike. What is filed of the photo-sensors' distance moves all
+/// speeds alike too.
+class ImpactWhitening {
+ public:
+  /// Relative to the incident speed: by so much another code's restitution was seen to differ
+  /// (docs/impact.md).
+  static constexpr double kRestitutionDoubt = 0.002;
+
+  ImpactWhitening(const ImpactRecords& records, const std::vector<ImpactShape>& shapes,
+                  const ImpactDoubts& doubts);
+
+  /// S_g^-1/2 (r_n - mean) + K_g^-1/2 (C^-1/2 m)_g, m the groups' means below each other, C their
+  /// covariance diag(S_g / K_g) + D: the sum of squares is the whole quadratic form.
+  [[nodiscard]] Eigen::VectorXd white(const std::vector<Eigen::VectorXd>& residual) const;
+
+  [[nodiscard]] const Eigen::MatrixXd& own(std::size_t group) const { return own_[group]; }
+  /// D_gh
+  [[nodiscard]] Eigen::MatrixXd shared(std::size_t g, std::size_t h) const;
+
+ private:
+  void set_own(const std::vector<ImpactShape>& shapes, const ImpactDoubts& doubts);
+  void set_shared(const std::vector<ImpactShape>& shapes, const ImpactDoubts& doubts);
+
+  const ImpactRecords& records_;
+  Eigen::Index size_ = 0;               ///< of one shot's residuals
+  std::vector<Eigen::MatrixXd> own_;    ///< by group
+  std::vector<Eigen::MatrixXd> roots_;  ///< S^-1/2
+  Eigen::MatrixXd shared_;
+  Eigen::MatrixXd mean_root_;  ///< C^-1/2
+};
+
+/// A symmetric matrix's power; eigenvalues that are nothing beside the largest are held there.
+[[nodiscard]] Eigen::MatrixXd symmetric_power(const Eigen::MatrixXd& matrix, double power);
+
+}  // namespace kolsky
