@@ -258,8 +258,9 @@ class Diagnostician {
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     // That something is there is certain once an effect is certified.
     const double threshold = diagnosis_.effects.empty() ? kUnexplained : kUnexplainedBeside;
-    const bool rest = diagnosis_.unexplained_log_p < threshold &&
-                      left.excess > kAllowedRest * std::max(0.0, explained);
+    const bool rest = (diagnosis_.unexplained_log_p < threshold &&
+                       left.excess > kAllowedRest * std::max(0.0, explained)) ||
+                      at_all_gauges_but_one();
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {
@@ -297,6 +298,19 @@ class Diagnostician {
       diagnosis_.notes.emplace_back(
           "one shot: nothing was held out over shots; repeat the shot to certify");
     }
+  }
+
+  /// What all gauges but one need alike is something of that one which the library does not have.
+  [[nodiscard]] bool at_all_gauges_but_one() const {
+    std::map<std::string, std::size_t> gauges;
+    for (const std::string& id : diagnosis_.effects) {
+      if (const auto colon = id.find(':'); colon != std::string::npos) {
+        ++gauges[id.substr(0, colon)];
+      }
+    }
+    const std::size_t most = study_.campaign().gauges() - 1;
+    return most > 1 && std::any_of(gauges.begin(), gauges.end(),
+                                   [&](const auto& own) { return own.second >= most; });
   }
 
   void set_verdict(const std::string& id, const std::string& verdict) {

@@ -467,6 +467,8 @@ void WhiteResiduals::calibrate(const Composition& composition, const std::vector
   // Expectation and maximisation: what the residuals say of each gauge's noise, given the noise of
   // all as known so far. The slowest part halves its error at each step.
   constexpr int kSteps = 6;
+  // From below, for too much of it goes slowly.
+  noise_scale_.assign(campaign_.gauges(), std::vector<double>(band_.bins_judged, 1.0));
   for (int step = 0; step < kSteps; ++step) {
     freeze(composition, theta);
     share_out_noise(evaluate(composition, theta));

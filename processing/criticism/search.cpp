@@ -21,6 +21,12 @@ constexpr std::size_t kMostRefits = 14;
 constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
 constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
 
+/// Two sensor effects of one gauge.
+bool at_one_gauge(const Candidate& a, const Candidate& b) {
+  return !a.use.gauge.empty() && a.use.gauge == b.use.gauge && !a.frees_prior &&
+         a.use.effect->about().stage == Stage::sensor;
+}
+
 }  // namespace
 
 Search::Search(Study& study, const Studied& base, const Model& start)
@@ -119,6 +125,13 @@ std::vector<std::size_t> Search::worth_refitting() const {
       chosen.push_back(i);
     }
   }
+  // At one gauge a delay, a filter and a length differ by their second order only.
+  for (const auto& [evidence, i] : ranked) {
+    if (at_one_gauge(candidates_[i], candidates_[ranked.front().second]) &&
+        std::find(chosen.begin(), chosen.end(), i) == chosen.end()) {
+      chosen.push_back(i);
+    }
+  }
   return chosen;
 }
 
@@ -164,6 +177,23 @@ std::vector<double> Search::begin_near(const Candidate& candidate, const Directi
   return best;
 }
 
+std::vector<double> Search::begin_large(const Candidate& candidate,
+                                        const Composition& composition) const {
+  constexpr double kTypicals = 3.0;
+  std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    const EffectUse& use = composition.uses()[number.use];
+    const EffectParameter& parameter = use.effect->about().parameters[number.parameter];
+    if (use.id() == candidate.id() && !parameter.auxiliary()) {
+      const double side = parameter.null_value >= parameter.upper ? -1.0 : 1.0;
+      start[i] = number.inside(
+          number.theta_of(parameter.null_value + side * kTypicals * parameter.typical));
+    }
+  }
+  return start;
+}
+
 std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   const Candidate& candidate = candidates_[index];
   const Direction& direction = directions_[index];
@@ -179,6 +209,14 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
     const Composition again(fresh, study_.campaign());
     ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
                                carry(again, again.start(), composition));
+    if (other.objective() < fit.objective()) {
+      fit = std::move(other);
+    }
+  }
+  if (candidate.one_sided && evidence_of(direction, candidate) < kWorthRefitting) {
+    // At null its first order is what others take up: only a finite size shows what it does.
+    ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
+                               begin_large(candidate, composition));
     if (other.objective() < fit.objective()) {
       fit = std::move(other);
     }

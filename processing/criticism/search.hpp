@@ -51,6 +51,8 @@ class Search {
                                                const Direction& direction,
                                                const Composition& composition,
                                                std::size_t worker) const;
+  [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
+                                                const Composition& composition) const;
   [[nodiscard]] std::optional<Refit> refit(std::size_t index, std::size_t worker);
   void rate(std::vector<Refit>& list) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;

@@ -125,6 +125,15 @@ std::vector<const Identifiable*> drawn_families(const std::vector<Identifiable>&
   return out;
 }
 
+// A solid bar ends freely or not at all.
+bool go_together(const Identifiable& a, const Identifiable& b) {
+  const auto are = [&](const char* first, const char* second) {
+    return a.candidate.effect.id == first && b.candidate.effect.id == second;
+  };
+  return !are("geometric-dispersion", "end-reflection") &&
+         !are("end-reflection", "geometric-dispersion");
+}
+
 // Clearly there, and nobody could say which of several it is.
 std::vector<Planted> tied(const std::vector<Identifiable>& effects, Random& random) {
   std::vector<Planted> out;
@@ -196,10 +205,15 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
                          {sized(*singles[i], multiple, random)}));
   }
   for (int i = 0; i < plan.doubles_per_bench && singles.size() >= 2; ++i) {
-    const auto pair = drawn_families(found.effects(), false, random);
+    const auto drawn = drawn_families(found.effects(), false, random);
+    const std::size_t second = go_together(*drawn[0], *drawn[1]) ? 1 : 2;
+    if (second >= drawn.size()) {
+      continue;
+    }
     const double multiple = kMultiples[1 + random() % 2];
-    cases.push_back(with(id(CaseKind::two), CaseKind::two, anew(campaign, random),
-                         {sized(*pair[0], multiple, random), sized(*pair[1], multiple, random)}));
+    cases.push_back(
+        with(id(CaseKind::two), CaseKind::two, anew(campaign, random),
+             {sized(*drawn[0], multiple, random), sized(*drawn[second], multiple, random)}));
   }
   const auto unclear = tied(found.effects(), random);
   for (std::size_t i = 0; i < unclear.size() && i < static_cast<std::size_t>(plan.tied_per_bench);
