@@ -101,10 +101,6 @@ PageSection model_section(const std::string& title, const Model& model) {
 
 }  // namespace
 
-bool judges_whole(const Model& model) {
-  return model.find("end-reflection") != nullptr;
-}
-
 void require_kind(const Model& model, const Campaign& campaign) {
   if (model.kind != campaign.bench.kind) {
     throw InputError("model", "is of another kind of bench than the captures",

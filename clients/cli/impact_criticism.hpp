@@ -10,9 +10,6 @@
 
 namespace kolsky::cli {
 
-/// Whether the model asks for more of the records than what precedes the far end's reflection.
-[[nodiscard]] bool judges_whole(const Model& model);
-
 /// @throws InputError where the captures are of another kind of bench than the model
 void require_kind(const Model& model, const Campaign& campaign);
 

@@ -15,6 +15,7 @@
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
 #include "processing/criticism/examination.hpp"
+#include "processing/criticism/impact_diagnosis.hpp"
 
 namespace kolsky {
 
@@ -193,9 +194,14 @@ void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::str
       task(index, 0);
     }
   };
-  Study study(campaign, 0.0, std::move(one));
   DiagnosisOptions options;
   options.progress = [this](const std::string& what) { step(what); };
+  if (campaign.bench.kind == BenchKind::impact) {
+    ImpactStudy study(campaign, judges_whole(model.file.model), 0.0, std::move(one));
+    file(model, diagnose_impacts(study, model.file.model, options), captures);
+    return;
+  }
+  Study study(campaign, 0.0, std::move(one));
   file(model, diagnose(study, model.file.model, options), captures);
 }
 

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
 #include "processing/criticism/comparison.hpp"
+#include "processing/criticism/impact_study.hpp"
 
 namespace kolsky {
 
@@ -14,25 +16,52 @@ namespace {
 
 constexpr std::size_t kPlaces = 3;
 
-void put_places(const Comparison& comparison, const Bench& bench, v1::Comparison& message) {
-  std::vector<const Tile*> worst;
-  for (const Tile& tile : comparison.tiles) {
+/// @param band_of  the lowest and the highest frequency [Hz] of a tile
+template <typename AnyTile, typename BandOf>
+void put_places(const std::vector<AnyTile>& tiles, const BandOf& band_of, const Bench& bench,
+                v1::Comparison& message) {
+  std::vector<const AnyTile*> worst;
+  for (const AnyTile& tile : tiles) {
     if (tile.significant) {
       worst.push_back(&tile);
     }
   }
   std::stable_sort(worst.begin(), worst.end(),
-                   [](const Tile* a, const Tile* b) { return a->share > b->share; });
+                   [](const auto* a, const auto* b) { return a->share > b->share; });
   worst.resize(std::min(worst.size(), kPlaces));
-  for (const Tile* tile : worst) {
+  for (const AnyTile* tile : worst) {
     v1::MisfitPlace& place = *message.add_places();
+    const auto [low_Hz, high_Hz] = band_of(*tile);
     place.set_gauge(bench.gauges[tile->gauge].name);
     place.set_window(tile->window);
-    place.set_low_hz(comparison.bands[tile->band].low_Hz);
-    place.set_high_hz(comparison.bands[tile->band].high_Hz);
+    place.set_low_hz(low_Hz);
+    place.set_high_hz(high_Hz);
     place.set_sigma(tile->sigma);
     place.set_share(tile->share);
   }
+}
+
+Misfit compare_impact(const Campaign& campaign, const Model& model, v1::Comparison& message) {
+  ImpactStudy study(campaign, judges_whole(model), 0.0, Workers{});
+  const Studied studied = study.as_it_is(model);
+  const ImpactComparison comparison = study.compare(studied);
+  put_places(
+      comparison.tiles, [](const ImpactTile& tile) { return std::pair(tile.low_Hz, tile.high_Hz); },
+      campaign.bench, message);
+  return studied.misfit;
+}
+
+Misfit compare_bars(const Campaign& campaign, const Model& model, v1::Comparison& message) {
+  Study study(campaign, 0.0, Workers{});
+  const Studied studied = study.as_it_is(model);
+  const Comparison comparison = compare(study, studied);
+  put_places(
+      comparison.tiles,
+      [&](const Tile& tile) {
+        return std::pair(comparison.bands[tile.band].low_Hz, comparison.bands[tile.band].high_Hz);
+      },
+      campaign.bench, message);
+  return studied.misfit;
 }
 
 void put_light(const Misfit& misfit, const LightRule& rule, v1::Comparison& message) {
@@ -56,14 +85,14 @@ void compare_with_model(const Shot& shot, const ActiveModel& model, v1::Comparis
   message.set_model_sha256(model.sha256);
   try {
     const Campaign campaign = read_campaign({shot});
-    Study study(campaign, 0.0, Workers{});
-    const Studied studied = study.as_it_is(model.file.model);
+    const Misfit found = campaign.bench.kind == BenchKind::impact
+                             ? compare_impact(campaign, model.file.model, message)
+                             : compare_bars(campaign, model.file.model, message);
     v1::Misfit& misfit = *message.mutable_misfit();
-    misfit.set_chi2_reduced(studied.misfit.chi2_reduced);
-    misfit.set_repeatable_share(studied.misfit.repeatable_share);
-    misfit.set_noise_floor_share(studied.misfit.noise_floor_share);
-    put_places(compare(study, studied), campaign.bench, message);
-    put_light(studied.misfit, model.rule, message);
+    misfit.set_chi2_reduced(found.chi2_reduced);
+    misfit.set_repeatable_share(found.repeatable_share);
+    misfit.set_noise_floor_share(found.noise_floor_share);
+    put_light(found, model.rule, message);
     message.set_comparable(true);
   } catch (const InputError& error) {
     message.set_reason(error.what());

@@ -103,6 +103,10 @@ Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFi
   return {std::move(after), std::move(composition), std::move(fit), misfit};
 }
 
+bool judges_whole(const Model& model) {
+  return model.find("end-reflection") != nullptr;
+}
+
 Studied ImpactStudy::fit(const Model& model) {
   Composition composition(model, campaign_);
   residuals_.prepare(composition, composition.start());

@@ -45,6 +45,9 @@ struct ImpactComparison {
   std::vector<SpeedSummary> speeds;
 };
 
+/// Whether the model asks for more of the records than what precedes the far end's reflection.
+[[nodiscard]] bool judges_whole(const Model& model);
+
 /// A campaign of impacts under study.
 class ImpactStudy {
  public:

@@ -53,6 +53,14 @@ class BallLab {
     setup_.folder().write("ball.toml", lab_.bench());
     return setup_.folder() / "ball.toml";
   }
+  /// Makes a model file of the folder the active model.
+  void activate(const std::string& name) {
+    setup_.set("model", "file = \"" + name + "\"");
+    (void)setup_.write();
+    ASSERT_EQ(ask({"disarm"}).code, 0);
+    const Answer reloaded = ask({"reload"});
+    ASSERT_EQ(reloaded.code, 0) << reloaded.err;
+  }
   [[nodiscard]] const Daemon& daemon() const { return daemon_; }
   [[nodiscard]] const scene::Folder& folder() const { return setup_.folder(); }
 
@@ -209,6 +217,28 @@ TEST(BallLive, PhotoSensorsServeAModelOfTheBall) {
   EXPECT_EQ(fit.code, 0) << fit.err;
   const json found = json_of(kolsky({"diagnose", capture, "--model", model, "--json"}));
   EXPECT_EQ(found["verdict"], "adequate") << found["notes"];
+}
+
+TEST(BallLive, AModelIsComparedAsShotsComeIn) {
+  BallLab lab("impact");
+  const std::string model = lab.folder() / "m.toml";
+  ASSERT_EQ(kolsky({"model", "new", "--kind", "impact", "--bench", lab.bench(), "-o", model}).code,
+            0);
+  ASSERT_EQ(kolsky({"fit", lab.capture_of(lab.shoot()), "--model", model, "-o", model}).code, 0);
+  ASSERT_NO_FATAL_FAILURE(lab.activate("m.toml"));
+  const std::string id = lab.shoot();
+  json live;
+  ASSERT_TRUE(scene::eventually(
+      [&] {
+        live = json_of(lab.ask({"status", "--json"}))["comparison"];
+        return live["shot"] == id;
+      },
+      std::chrono::minutes(1)))
+      << live;
+  ASSERT_EQ(live["comparable"], true) << live;
+  EXPECT_EQ(live["light"], "green") << live;
+  const json file = json_of(kolsky({"compare", lab.capture_of(id), "--model", model, "--json"}));
+  EXPECT_EQ(live["misfit"]["chi2_reduced"], file["misfit"]["chi2_reduced"]);
 }
 
 /// Tables of a push on a thin bar, in closed form.
