@@ -4,6 +4,7 @@
 
 #include "clients/cli/daemon_text.hpp"
 #include "clients/cli/time_text.hpp"
+#include "proto/light.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -119,7 +120,7 @@ JsonValue describe(const v1::Comparison& comparison) {
       {"reason", comparison.reason()},
       {"misfit", describe(comparison.misfit())},
       {"excess_share", comparison.excess_share()},
-      {"light", light_name(comparison.light())},
+      {"light", wire::name_of(comparison.light())},
       {"rule", comparison.rule()},
       {"where", std::move(places)},
       {"trend", std::vector<double>(comparison.trend().begin(), comparison.trend().end())},

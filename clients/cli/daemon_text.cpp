@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clients/figure/layout.hpp"
+#include "proto/light.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -125,19 +126,6 @@ std::string shot_line(const v1::ShotSummary& shot, bool colour) {
   return shot.id() + "  " + verdict + outcome;
 }
 
-std::string light_name(v1::Comparison::Light light) {
-  switch (light) {
-    case v1::Comparison::GREEN:
-      return "green";
-    case v1::Comparison::AMBER:
-      return "amber";
-    case v1::Comparison::RED:
-      return "red";
-    default:
-      return "none";
-  }
-}
-
 std::string comparison_line(const v1::Comparison& comparison, bool colour) {
   if (!comparison.comparable()) {
     return "model: not compared: " + comparison.reason();
@@ -146,7 +134,7 @@ std::string comparison_line(const v1::Comparison& comparison, bool colour) {
                   : comparison.light() == v1::Comparison::RED ? Ink::bad
                                                               : Ink::doubtful;
   std::string text =
-      "model: " + inked(light_name(comparison.light()), ink, colour) +
+      "model: " + inked(wire::name_of(comparison.light()), ink, colour) +
       fmt::format(", chi2/N {:.3g}, {:.2g} % of the signal beyond noise",
                   comparison.misfit().chi2_reduced(), 100.0 * comparison.excess_share());
   if (comparison.trend_size() > 1) {

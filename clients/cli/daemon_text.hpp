@@ -38,12 +38,11 @@ namespace kolsky::cli {
 /// A shot in one line: id, verdict, outcome.
 [[nodiscard]] std::string shot_line(const v1::ShotSummary& shot, bool colour);
 
-/// One line per check.
-[[nodiscard]] std::string light_name(v1::Comparison::Light light);
 /// The last shot beside the model: light, misfit, trend and where it fails most.
 [[nodiscard]] std::string comparison_line(const v1::Comparison& comparison, bool colour);
 [[nodiscard]] std::string diagnosis_state(v1::DiagnosisSummary::State state);
 [[nodiscard]] std::string diagnosis_line(const v1::DiagnosisSummary& diagnosis);
+/// One line per check.
 [[nodiscard]] std::string preflight_text(const v1::Preflight& preflight, bool colour);
 
 }  // namespace kolsky::cli

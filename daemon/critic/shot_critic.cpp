@@ -7,25 +7,9 @@
 #include "daemon/log.hpp"
 #include "daemon/thread_priority.hpp"
 #include "kolsky/v1/kolsky.pb.h"
+#include "proto/light.hpp"
 
 namespace kolsky {
-
-namespace {
-
-const char* name_of(v1::Comparison::Light light) {
-  switch (light) {
-    case v1::Comparison::GREEN:
-      return "green";
-    case v1::Comparison::AMBER:
-      return "amber";
-    case v1::Comparison::RED:
-      return "red";
-    default:
-      return "not comparable";
-  }
-}
-
-}  // namespace
 
 ShotCritic::ShotCritic(Publisher& publisher) : publisher_(publisher) {}
 
@@ -145,7 +129,7 @@ void ShotCritic::compare_now(const Shot& shot) {
   publisher_.publish_comparison(message);
   log::info(message.comparable()
                 ? fmt::format("shot {}: {} beside {}, chi2/N {:.3g}", shot.id,
-                              name_of(message.light()), message.model_path(),
+                              wire::name_of(message.light()), message.model_path(),
                               message.misfit().chi2_reduced())
                 : fmt::format("shot {}: not compared: {}", shot.id, message.reason()));
 }

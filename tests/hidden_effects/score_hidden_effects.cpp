@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <exception>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -36,6 +38,7 @@ struct Settings {
 struct Scores {
   std::mutex mutex;
   std::vector<Verdict> verdicts;
+  std::exception_ptr failure;  ///< what ended a worker
 };
 
 bool went_well(const Verdict& verdict) {
@@ -130,9 +133,20 @@ int run(Settings& settings) {
   Scores scores;
   std::vector<std::jthread> workers;
   for (int i = 0; i < settings.jobs; ++i) {
-    workers.emplace_back([&] { work(settings, next, scores); });
+    workers.emplace_back([&] {
+      try {
+        work(settings, next, scores);
+      } catch (...) {
+        next = std::numeric_limits<int>::max() / 2;  // the others end with what they are at
+        const std::lock_guard lock(scores.mutex);
+        scores.failure = std::current_exception();
+      }
+    });
   }
   workers.clear();
+  if (scores.failure) {
+    std::rethrow_exception(scores.failure);
+  }
   return settings.draw_only ? 0 : report(settings, std::move(scores.verdicts));
 }
 

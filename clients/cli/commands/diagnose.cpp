@@ -92,8 +92,13 @@ std::string report(const Diagnosis& diagnosis) {
       fmt::format("  held-out misfit {:.4f} -> {:.4f}, noise alone {:.4f}\n",
                   diagnosis.held_out.before, diagnosis.held_out.after, diagnosis.held_out.floor);
   std::vector<CandidateResult> ranked = diagnosis.candidates;
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  // Chances of refits and of first-order tests are not of one scale; gains are, roughly.
+  const auto claimed = [](const CandidateResult& c) {
+    return c.verdict == "named" || c.verdict == "tied";
+  };
+  std::stable_sort(ranked.begin(), ranked.end(), [&](const auto& a, const auto& b) {
+    return claimed(a) != claimed(b) ? claimed(a) : a.gain > b.gain;
+  });
   text += fmt::format("\n  {:<26} {:>24} {:>12} {:>11} {:>13}  {}\n", "effect", "strength",
                       "chi2 gain", "detectable", "tells apart", "");
   constexpr std::size_t kShown = 14;
