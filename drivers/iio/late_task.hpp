@@ -18,7 +18,8 @@ namespace kolsky {
 /// Runs a task on a thread of its own and waits for it at most so long, or until `stop()`: what
 /// libiio does on a control connection has no cancel, and a server that answers a byte at a time
 /// holds it for good. A late task is left to end by itself; its result is thrown away, so it must
-/// own what it uses. It throws nothing but InputError.
+/// own what it uses. It throws nothing but InputError. What a task in time owned is gone when this
+/// returns.
 /// @return none if the task was late or stopped waiting for
 /// @throws InputError that the task threw
 template <typename Result>
@@ -31,7 +32,7 @@ std::optional<Result> run_within(std::chrono::milliseconds longest, std::functio
     std::optional<std::array<std::string, 3>> error;  // not the exception: threads share no text
   };
   const auto outcome = std::make_shared<Outcome>();
-  std::thread([outcome, task = std::move(task)] {
+  std::thread([outcome, task = std::move(task)]() mutable {
     std::optional<Result> result;
     std::optional<std::array<std::string, 3>> error;
     try {
@@ -39,6 +40,7 @@ std::optional<Result> run_within(std::chrono::milliseconds longest, std::functio
     } catch (const InputError& thrown) {
       error = {thrown.place(), thrown.problem(), thrown.mend()};
     }
+    task = nullptr;  // lets go of what it owned before anybody is told that it has ended
     const std::lock_guard lock(outcome->mutex);
     outcome->result = std::move(result);
     outcome->error = std::move(error);

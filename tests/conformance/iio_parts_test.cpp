@@ -4,10 +4,15 @@
 #include <iio.h>
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <string>
+#include <thread>
 
+#include "drivers/iio/late_task.hpp"
 #include "drivers/iio/loss_by_clock.hpp"
 #include "drivers/iio/sample_counter.hpp"
 #include "drivers/iio/scan_format.hpp"
@@ -246,6 +251,44 @@ TEST(LossByClock, AddsUpLossesThatAreEachTooSmall) {
     trial.run(6.0 + i);
   }
   EXPECT_GE(trial.reported_s().size(), 4U);
+}
+
+/// Takes its time to close, as a session that still holds the device's only buffer does.
+class SlowToClose {
+ public:
+  explicit SlowToClose(std::atomic<bool>& closed) : closed_(closed) {}
+  ~SlowToClose() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    closed_ = true;
+  }
+  SlowToClose(const SlowToClose&) = delete;
+  SlowToClose& operator=(const SlowToClose&) = delete;
+
+ private:
+  std::atomic<bool>& closed_;
+};
+
+TEST(LateTask, LetsGoOfWhatItOwnedBeforeItIsKnownToHaveEnded) {
+  const auto never = [] { return false; };
+  for (const bool fails : {false, true}) {
+    std::atomic<bool> closed = false;
+    const auto task = [&](std::shared_ptr<SlowToClose> session) -> std::function<bool()> {
+      return [session = std::move(session), fails] {
+        if (fails) {
+          throw InputError("ip:bench", "does not stream", "try again");
+        }
+        return true;
+      };
+    };
+    try {
+      EXPECT_TRUE(run_within<bool>(std::chrono::seconds(5),
+                                   task(std::make_shared<SlowToClose>(closed)), never)
+                      .value_or(false));
+    } catch (const InputError&) {
+      EXPECT_TRUE(fails);
+    }
+    EXPECT_TRUE(closed) << (fails ? "failed" : "done");
+  }
 }
 
 }  // namespace
