@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "processing/reduction/band_limit.hpp"
+#include "processing/waves/band_limit.hpp"
 #include "processing/waves/bar_modes.hpp"
 #include "processing/waves/transform.hpp"
 

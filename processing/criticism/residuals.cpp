@@ -10,8 +10,8 @@
 #include "processing/criticism/smooth_power.hpp"
 #include "processing/criticism/specimen_response.hpp"
 #include "processing/identification/noise_spectrum.hpp"
-#include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/pulse.hpp"
+#include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
 

@@ -6,7 +6,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
-#include "processing/reduction/band_limit.hpp"
+#include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
 

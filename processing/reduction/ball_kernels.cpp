@@ -26,13 +26,6 @@ BallPlans::BallPlans(const BallPlanKey& k)
   }
 }
 
-std::size_t BallPlans::bins_within(double limit_Hz) const {
-  constexpr double kNothingFrom = 2.8;
-  const auto bins =
-      static_cast<std::size_t>(kNothingFrom * limit_Hz / transform.bin_width_Hz()) + 2;
-  return std::min(bins, path.size());
-}
-
 std::vector<double> ball_kernel_numbers(const Bar& bar, WaveTheory theory,
                                         const std::vector<Station>& stations) {
   std::vector<double> numbers{static_cast<double>(theory), bar.area_m2(),

@@ -5,8 +5,8 @@
 
 #include "processing/base/bench.hpp"
 #include "processing/base/time.hpp"
-#include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/stations.hpp"
+#include "processing/waves/band_limit.hpp"
 #include "processing/waves/bar_modes.hpp"
 #include "processing/waves/transform.hpp"
 
@@ -30,9 +30,6 @@ struct BallPlans {
   std::vector<Complex> spectrum;
 
   explicit BallPlans(const BallPlanKey& k);
-
-  /// Bins in which a filter with this limit leaves more than 1e-18.
-  [[nodiscard]] std::size_t bins_within(double limit_Hz) const;
 };
 
 /// What turns strain at each station into the force on the face, late by the plans' delay.

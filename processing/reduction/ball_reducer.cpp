@@ -13,11 +13,11 @@
 #include "processing/reduction/ball_quality.hpp"
 #include "processing/reduction/ball_speeds.hpp"
 #include "processing/reduction/ball_stations.hpp"
-#include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/contact_numbers.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/stations.hpp"
+#include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
 
@@ -25,8 +25,6 @@ namespace {
 
 /// A run above the level shorter than this is a spike.
 constexpr double kShortestPulse_s = 5e-6;
-/// Before the foot of the wave, where its very beginning may be.
-constexpr double kFootClearance_s = 10e-6;
 /// The baseline is taken from so much before the wave: mains hum turns by a twentieth meanwhile.
 constexpr double kBaseline_s = 1e-3;
 /// Beyond it gauges show how the bar rings, not what the ball does (docs/impact.md).
@@ -49,12 +47,6 @@ void require_bench(const Shot& shot) {
                          std::to_string(shot.channels.size()),
                      "file one gauge per channel, then the photo-sensors, in their order");
   }
-}
-
-Reduction not_reducible(std::string reason) {
-  Reduction reduction;
-  reduction.quality.reason = std::move(reason);
-  return reduction;
 }
 
 double rms(std::span<const double> values) {
@@ -195,7 +187,7 @@ class Pass {
     if (!options_.band_limit_Hz) {
       limit_Hz = std::min(kHighestLowPass_Hz, t_.band.from_noise(wave, noise_strain_[quietest]));
     }
-    bins_ = t_.bins_within(limit_Hz);
+    bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
     reach(kernels_, t_, bar_, options_.theory, stations_, bins_);
     reduction_.band_limit_Hz = limit_Hz;
     band_loss_ = t_.band.loss(wave, noise_strain_[quietest], limit_Hz);

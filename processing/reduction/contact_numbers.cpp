@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/pulse.hpp"
+#include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
 

@@ -22,21 +22,26 @@ std::vector<double> slope_of(const std::vector<double>& history,
   return slope;
 }
 
-/// Of rho h^2 (e' - e^2).
-double axial_share(StressFrom from) {
+/// What a face's stress, or the mean of both, has more than the mean over the specimen.
+struct AxialShare {
+  double of_straining;  ///< of rho h^2 (e' - e^2)
+  double of_motion;     ///< of rho h times the back face's acceleration
+};
+
+AxialShare axial_share(StressFrom from) {
   switch (from) {
     case StressFrom::back:
-      return -1.0 / 6.0;
+      return {-1.0 / 6.0, -1.0 / 2.0};
     case StressFrom::front:
-      return 1.0 / 3.0;
+      return {1.0 / 3.0, 1.0 / 2.0};
     case StressFrom::both_faces:
       break;
   }
-  return 1.0 / 12.0;
+  return {1.0 / 12.0, 0.0};
 }
 
 void take_off_inertia(StressFrom from, const Corrections& corrections, const Specimen& specimen,
-                      Reduction& r) {
+                      std::span<const double> rate_of_front_per_s, Reduction& r) {
   if (!specimen.density_kg_m3) {
     throw InputError("specimen.density_kg_m3", "is missing, so its inertia is not known",
                      "file it, or leave the inertia corrections out");
@@ -45,13 +50,20 @@ void take_off_inertia(StressFrom from, const Corrections& corrections, const Spe
   const double a2 = std::pow(specimen.diameter_m / 2.0, 2);
   const double h2 = std::pow(specimen.length_m, 2);
   const std::vector<double> growth = slope_of(r.strain_rate_per_s, r.time_s);
+  std::vector<double> rate_of_back(r.strain_rate_per_s.size());
+  for (std::size_t n = 0; n < rate_of_back.size(); ++n) {
+    rate_of_back[n] = rate_of_front_per_s[n] - r.strain_rate_per_s[n];
+  }
+  const std::vector<double> back_growth = slope_of(rate_of_back, r.time_s);
+  const AxialShare share = axial_share(from);
   for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
     const double square = std::pow(r.strain_rate_per_s[n], 2);
     if (corrections.radial_inertia) {
       r.stress_Pa[n] -= rho * a2 * (growth[n] / 8.0 + square / 16.0);
     }
     if (corrections.axial_inertia) {
-      r.stress_Pa[n] -= axial_share(from) * rho * h2 * (growth[n] - square);
+      r.stress_Pa[n] -=
+          rho * h2 * (share.of_straining * (growth[n] - square) + share.of_motion * back_growth[n]);
     }
   }
 }
@@ -73,7 +85,7 @@ StressFrom stress_from(const std::string& name) {
 }
 
 void set_stress(StressFrom from, const Corrections& corrections, const Specimen& specimen,
-                Reduction& r) {
+                std::span<const double> rate_of_front_per_s, Reduction& r) {
   const double area_m2 = specimen.area_m2();
   for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
     const double front = r.force_front_N[n];
@@ -83,7 +95,7 @@ void set_stress(StressFrom from, const Corrections& corrections, const Specimen&
                                                  : (front + back) / (2.0 * area_m2);
   }
   if (corrections.axial_inertia || corrections.radial_inertia) {
-    take_off_inertia(from, corrections, specimen, r);
+    take_off_inertia(from, corrections, specimen, rate_of_front_per_s, r);
   }
   if (corrections.friction) {
     const double slender = specimen.diameter_m / (3.0 * specimen.length_m);

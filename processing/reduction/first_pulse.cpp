@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kShortestPulse_s = 5e-6;
 constexpr double kReach_s = 500e-6;
-constexpr double kFootClearance_s = 10e-6;
 constexpr std::size_t kShortestPulse_samples = 3;
 
 /// Where the record passes `level` between the sample below it and the next.

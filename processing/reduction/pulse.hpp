@@ -6,6 +6,9 @@
 
 namespace kolsky {
 
+/// The quiet part of a record ends this long before the pulse's foot.
+inline constexpr double kFootClearance_s = 10e-6;
+
 /// What a record is before its pulse.
 struct Quiet {
   double baseline = 0.0;

@@ -15,10 +15,10 @@ constexpr double kEnergyLimit = 0.05;
 constexpr double kBandLossLimit = 0.02;
 constexpr double kSignalToNoiseLimit_dB = 30.0;
 constexpr double kSignalToNoiseFloor_dB = 15.0;
-constexpr double kOverlapLimit = 0.02;
 constexpr double kOverlapFloor = 0.10;
 constexpr double kClosureLimit = 0.10;
 constexpr double kSeparationLimit = 0.10;
+constexpr double kSeparationNoiseLimit = 0.02;
 constexpr double kFewQuietSamples = 64;
 
 /// The loading: from the start to the largest strain.
@@ -91,6 +91,54 @@ Check window_overlap(const QualityInputs& in) {
                          "(limit %.0f %%): a shorter "
                          "pulse or a gauge further from the specimen is needed",
                          100 * check.value, 100 * kOverlapLimit);
+  return check;
+}
+
+/// The same where the waves are told apart by more than time.
+Check separated_overlap(const QualityInputs& in) {
+  Check check{.name = "window_overlap", .limit = kOverlapLimit, .unit = "1", .text = {}};
+  check.value = in.push_left_share;
+  const SeparationJudgement& separated = *in.separated;
+  check.text = formatted("%.1f %% of the striker's push is left when the reflection hides it",
+                         100 * check.value) +
+               ": the waves both ways are told apart by " + separated.gauges +
+               (separated.assumes_equilibrium ? " and the output bar's force" : "") +
+               (separated.ends_in_loading ? "; the record ends before the first loading does" : "");
+  check.verdict = separated.ends_in_loading ? Verdict::warn : Verdict::pass;
+  return check;
+}
+
+std::string blind_text(const std::vector<double>& blind_Hz) {
+  if (blind_Hz.empty()) {
+    return "; blind at no frequency within the band";
+  }
+  constexpr std::size_t kMost = 6;
+  std::string text = "; blind at ";
+  for (std::size_t i = 0; i < std::min(kMost, blind_Hz.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + formatted("%.2f", 1e-3 * blind_Hz[i]);
+  }
+  return text + (blind_Hz.size() > kMost ? " ... kHz" : " kHz");
+}
+
+/// What the gauges' noise becomes where they tell the waves apart: little at first, more with time,
+/// most of it at the frequencies at which they are blind.
+Check separation_noise(const SeparationJudgement& separated) {
+  Check check{.name = "separation_noise", .limit = kSeparationNoiseLimit, .unit = "1", .text = {}};
+  check.value = separated.noise_share;
+  check.verdict = check.value <= kSeparationNoiseLimit ? Verdict::pass : Verdict::warn;
+  check.text = formatted(
+                   "telling the waves apart leaves noise of %.2f %% of its peak in the front force "
+                   "at the histories' end (limit %.0f %%)",
+                   100 * check.value, 100 * kSeparationNoiseLimit) +
+               blind_text(separated.blind_Hz);
+  return check;
+}
+
+/// A check of front against back where both are the output bar's.
+Check untested(Check check, Verdict verdict) {
+  check.value = 0.0;
+  check.verdict = verdict;
+  check.text = "not tested: the front face's force is taken to be the back's";
   return check;
 }
 
@@ -203,7 +251,7 @@ Check separate(const QualityInputs& in, Reduction& r) {
       "lengths, wave "
       "speed or the far ends are not as filed",
       1e6 * in.returns_from_s, 100 * check.value);
-  if (in.may_shorten) {
+  if (in.may_shorten && !in.separated) {
     shorten(r, from);
     check.text += "; the histories end there";
   }
@@ -273,6 +321,12 @@ Verdict Quality::verdict() const {
   return worst;
 }
 
+Reduction not_reducible(std::string reason) {
+  Reduction reduction;
+  reduction.quality.reason = std::move(reason);
+  return reduction;
+}
+
 std::string unusable_because(const Shot& shot) {
   if (!shot.gaps.empty()) {
     const Gap& gap = shot.gaps.front();
@@ -296,16 +350,22 @@ std::string unusable_because(const Shot& shot) {
 void judge(const QualityInputs& inputs, Reduction& reduction) {
   const Check separation = separate(inputs, reduction);
   const std::size_t end = loading_end(reduction.strain);
-  reduction.quality.checks = {equilibrium(reduction, end),
+  const bool assumed = inputs.separated && inputs.separated->assumes_equilibrium;
+  const Check agree = equilibrium(reduction, end);
+  const Check lag = front_back_lag(reduction, end);
+  reduction.quality.checks = {assumed ? untested(agree, Verdict::warn) : agree,
                               signal_to_noise(inputs),
-                              window_overlap(inputs),
+                              inputs.separated ? separated_overlap(inputs) : window_overlap(inputs),
                               clipping(),
                               loop_closure(reduction, end),
-                              front_back_lag(reduction, end),
-                              separation,
+                              assumed ? untested(lag, Verdict::pass) : lag,
+                              assumed ? untested(separation, Verdict::pass) : separation,
                               energy_balance(inputs, reduction, end),
                               band(inputs, reduction),
                               quiet_start(inputs)};
+  if (inputs.separated) {
+    reduction.quality.checks.push_back(separation_noise(*inputs.separated));
+  }
 }
 
 }  // namespace kolsky

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,21 @@ inline constexpr double kEquilibriumLimit = 0.07;
 /// codes. Empty when they can.
 [[nodiscard]] std::string unusable_because(const Shot& shot);
 
+/// No histories, and why.
+[[nodiscard]] Reduction not_reducible(std::string reason);
+
+/// What is known of separated waves.
+struct SeparationJudgement {
+  std::string gauges;            ///< as "g1 and g2"
+  double noise_share = 0.0;      ///< of the front force's peak, one sigma, at the histories' end
+  std::vector<double> blind_Hz;  ///< of the input bar, within the band
+  bool assumes_equilibrium = false;  ///< front and back force are one
+  bool ends_in_loading = false;      ///< the record does, so nothing after it is known
+};
+
+/// Largest share of the striker's push that may be left where the reflection hides it.
+inline constexpr double kOverlapLimit = 0.02;
+
 /// What the checks need besides the histories.
 struct QualityInputs {
   double input_peak = 0.0;       ///< of the incident pulse at its gauge, strain
@@ -27,7 +43,9 @@ struct QualityInputs {
   double push_left_share = 0.0;
   /// Time, as in the histories, from which a gauge holds waves that came back from a far end too.
   double returns_from_s = 0.0;
-  bool may_shorten = true;        ///< nobody asked for a duration
+  bool may_shorten = true;  ///< nobody asked for a duration
+  /// Where the waves of both bars were separated: what there is to say of it.
+  std::optional<SeparationJudgement> separated{};
   std::size_t quiet_samples = 0;  ///< before the pulse
   /// Velocity of the front face over the specimen's length, as long as the histories.
   std::vector<double> front_rate_per_s;

@@ -22,9 +22,12 @@ struct ReductionOptions {
                                        ///< bars are known
   WaveTheory theory = WaveTheory::elementary;
   StressFrom stress = StressFrom::both_faces;
-  Corrections corrections;           ///< to the stress
+  Corrections corrections;  ///< to the stress
+  Separation separation = Separation::as_needed;
   std::optional<double> duration_s;  ///< of the histories; else until the first wave comes back to
-                                     ///< the specimen from a bar's far end, 2 length / front speed
+                                     ///< the specimen from a bar's far end, 2 length / front speed;
+                                     ///< where waves are separated at least to the end of the first
+                                     ///< loading
 };
 
 /// Reduces shots of one bench, keeping transform plans and propagation tables between shots of the

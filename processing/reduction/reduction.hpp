@@ -31,6 +31,17 @@ struct Quality {
   [[nodiscard]] Verdict verdict() const;
 };
 
+/// How the waves in a bar are told apart where they overlap.
+///   as_needed    by two or more places of gauges on the input bar, where there are as many and the
+///                striker still pushes when the specimen's answer is back at the gauge; else never
+///   never        by time: the incident pulse is over before the answer comes
+///   gauges       by all gauges of each bar, on the output bar also by what its far end does
+///   equilibrium  likewise, the output bar's force serving as the force at the input bar's end
+enum class Separation { as_needed, never, gauges, equilibrium };
+
+/// @throws InputError for any other name than auto, never, gauges, equilibrium
+[[nodiscard]] Separation separation_from(const std::string& name);
+
 /// A specimen's histories, engineering, compression positive, equally spaced; t = 0 when the pulse
 /// arrives at interface A (the input bar's end). All arrays have the same length.
 struct Reduction {
@@ -47,7 +58,8 @@ struct Reduction {
   double arrival_s = 0.0;  ///< of the incident pulse at interface A, from the shot's first sample
   double arrival_sigma_s = 0.0;
   double band_limit_Hz = 0.0;
-  std::string bar_model{};  ///< what the bars were taken to be, for people
+  Separation separation = Separation::never;  ///< how waves were separated, never as_needed
+  std::string bar_model{};                    ///< what the bars were taken to be, for people
   Quality quality;
   /// Of a ball on a bar: then everything from `time_s` to `transmitted` is empty.
   std::optional<BallImpact> ball{};

@@ -6,7 +6,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
-#include "processing/reduction/band_limit.hpp"
+#include "processing/waves/band_limit.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -20,7 +20,9 @@ struct Row {
 
 Row row_at(double x, double length_m, Complex gamma, const FreeEnds& ends) {
   Row row{std::exp(-gamma * x), std::exp(-gamma * (length_m - x))};
-  if (ends.end) {
+  if (ends.end_matched) {
+    row.left = 0.0;
+  } else if (ends.end) {
     row.right -= std::exp(-gamma * (2.0 * length_m - x));
     row.left = 0.0;
   } else if (ends.start) {
@@ -46,10 +48,10 @@ struct Normal {
 
 void require_gauges(const Bar& bar, const std::vector<SeparationGauge>& gauges,
                     const FreeEnds& ends) {
-  if (ends.start && ends.end) {
+  if (ends.start && (ends.end || ends.end_matched)) {
     throw InputError("ends", "are both free", "a bar that nothing drives has no waves to separate");
   }
-  const std::size_t needed = ends.start || ends.end ? 1 : 2;
+  const std::size_t needed = ends.start || ends.end || ends.end_matched ? 1 : 2;
   if (gauges.size() < needed) {
     throw InputError("gauges", "are too few to separate left- and right-going waves",
                      "give two gauges, or one on a bar with a free end");
@@ -97,18 +99,26 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
       density_kg_m3_(bar.density_kg_m3),
       period_s_(period_s),
       band_limit_Hz_(band_limit_Hz),
+      front_speed_m_per_s_(front_speed_m_per_s(bar, compliance)),
       samples_(gauges.empty() ? 0 : gauges.front().values.size()),
       lead_(0) {
   require_gauges(bar, gauges, ends);
   // Waves are looked for where they came from, before the gauges saw them: room for two passages.
-  const double passage_s = length_m_ / front_speed_m_per_s(bar, compliance);
+  const double passage_s = length_m_ / front_speed_m_per_s_;
   lead_ = static_cast<std::size_t>(std::ceil(2.5 * passage_s / period_s_)) + 16;
   const DampedTransform transform(samples_ + 2 * lead_, period_s_);
-  for (std::size_t k = 0; k < transform.bins(); ++k) {
+  const std::size_t bins = BandLimit::bins_within(transform, band_limit_Hz_);
+  for (std::size_t k = 0; k < bins; ++k) {
     path_.push_back(transform.s(k));
   }
   modes_ = bar_modes(theory, bar, compliance, path_);
-  solve(gauges, ends);
+  share_out(gauges, ends);
+  solve(gauges);
+  const std::size_t needed = ends.start || ends.end || ends.end_matched ? 1 : 2;
+  if (gauges.size() > needed) {
+    // exp(-2 eta t) = 1e-3
+    looks_ahead_ = static_cast<std::size_t>(3.45 / path_.front().real() / period_s_);
+  }
 
   // Blindness is that of the undamped waves.
   const std::vector<Complex> axis = axis_to(band_limit_Hz_, passage_s);
@@ -120,56 +130,63 @@ Complex WaveSeparation::stiffness(std::size_t k) const {
   return density_kg_m3_ / (slowness * slowness) * modes_[k].mean_over_surface;
 }
 
-std::vector<std::vector<Complex>> WaveSeparation::surface_strains(
-    const std::vector<SeparationGauge>& gauges) const {
-  DampedTransform transform(samples_ + 2 * lead_, period_s_);
-  BandLimit band(transform, 16);
-  std::vector<std::vector<Complex>> spectra;
-  std::vector<double> padded(transform.length());
+void WaveSeparation::share_out(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends) {
   for (const SeparationGauge& gauge : gauges) {
-    std::fill(padded.begin(), padded.end(), 0.0);
-    std::copy(gauge.values.begin(), gauge.values.end(),
-              padded.begin() + static_cast<std::ptrdiff_t>(lead_));
-    auto& spectrum = spectra.emplace_back(transform.bins());
-    transform.forward(padded, spectrum);
-    band.apply_half(band_limit_Hz_, spectrum);
-    band.apply_half(band_limit_Hz_, spectrum);
-    if (gauge.record == SeparationRecord::mean_stress_Pa) {
-      for (std::size_t k = 0; k < spectrum.size(); ++k) {
-        spectrum[k] /= stiffness(k);
-      }
-    }
+    shares_.push_back({gauge.position_m, gauge.noise_rms, {}, {}});
   }
-  return spectra;
-}
-
-void WaveSeparation::solve(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends) {
-  const auto spectra = surface_strains(gauges);
+  std::vector<Row> rows(gauges.size());
   for (std::size_t k = 0; k < path_.size(); ++k) {
     const Complex gamma = modes_[k].gamma;
+    const Complex across = std::exp(-gamma * length_m_);
     Normal normal;
-    Complex right = 0.0;
-    Complex left = 0.0;
     for (std::size_t j = 0; j < gauges.size(); ++j) {
-      const Row row = row_at(gauges[j].position_m, length_m_, gamma, ends);
-      const double weight = weight_of(gauges[j]);
-      normal.add(row, weight);
-      right += weight * std::conj(row.right) * spectra[j][k];
-      left += weight * std::conj(row.left) * spectra[j][k];
+      rows[j] = row_at(gauges[j].position_m, length_m_, gamma, ends);
+      normal.add(rows[j], weight_of(gauges[j]));
     }
-    if (ends.end) {
-      right /= normal.right;
-      left = -right * std::exp(-gamma * length_m_);
-    } else if (ends.start) {
-      left /= normal.left;
-      right = -left * std::exp(-gamma * length_m_);
-    } else {
-      const Complex P = (right * normal.left - left * normal.both) / normal.determinant();
-      left = (left * normal.right - right * std::conj(normal.both)) / normal.determinant();
-      right = P;
+    for (std::size_t j = 0; j < gauges.size(); ++j) {
+      // A stress tells the strain times the stiffness.
+      const Complex unit =
+          gauges[j].record == SeparationRecord::mean_stress_Pa ? 1.0 / stiffness(k) : 1.0;
+      const Complex to_right = unit * weight_of(gauges[j]) * std::conj(rows[j].right);
+      const Complex to_left = unit * weight_of(gauges[j]) * std::conj(rows[j].left);
+      Complex right = 0.0;
+      Complex left = 0.0;
+      if (ends.end || ends.end_matched) {
+        right = to_right / normal.right;
+        left = ends.end_matched ? 0.0 : -right * across;
+      } else if (ends.start) {
+        left = to_left / normal.left;
+        right = -left * across;
+      } else {
+        right = (to_right * normal.left - to_left * normal.both) / normal.determinant();
+        left = (to_left * normal.right - to_right * std::conj(normal.both)) / normal.determinant();
+      }
+      shares_[j].right.push_back(right);
+      shares_[j].left.push_back(left);
     }
-    right_.push_back(right);
-    left_.push_back(left);
+  }
+}
+
+void WaveSeparation::solve(const std::vector<SeparationGauge>& gauges) {
+  DampedTransform transform(samples_ + 2 * lead_, period_s_);
+  BandLimit band(transform, 16);
+  std::vector<double> padded(transform.length());
+  std::vector<Complex> spectrum(transform.bins());
+  right_.assign(path_.size(), 0.0);
+  left_.assign(path_.size(), 0.0);
+  for (std::size_t j = 0; j < gauges.size(); ++j) {
+    std::fill(padded.begin(), padded.end(), 0.0);
+    std::copy(gauges[j].values.begin(), gauges[j].values.end(),
+              padded.begin() + static_cast<std::ptrdiff_t>(lead_));
+    transform.forward(padded, spectrum);
+    for (std::size_t k = 0; k < path_.size(); ++k) {
+      right_[k] += shares_[j].right[k] * spectrum[k];
+      left_[k] += shares_[j].left[k] * spectrum[k];
+    }
+  }
+  for (auto* wave : {&right_, &left_}) {
+    band.apply_half(band_limit_Hz_, *wave);
+    band.apply_half(band_limit_Hz_, *wave);
   }
 }
 
@@ -187,8 +204,8 @@ void WaveSeparation::find_blind(const std::vector<SeparationGauge>& gauges, cons
     for (const SeparationGauge& gauge : gauges) {
       normal.add(row_at(gauge.position_m, length_m_, mode.gamma, ends), weight_of(gauge));
     }
-    const double known = ends.end     ? normal.right
-                         : ends.start ? normal.left
+    const double known = ends.end || ends.end_matched ? normal.right
+                         : ends.start                 ? normal.left
                                       : normal.determinant() / std::max(normal.right, normal.left);
     gain.push_back(std::sqrt(best / std::max(known, 1e-300)));
   }
@@ -201,19 +218,32 @@ void WaveSeparation::find_blind(const std::vector<SeparationGauge>& gauges, cons
   }
 }
 
-SeparatedWaves WaveSeparation::at(double position_m) const {
+std::size_t WaveSeparation::known(double position_m) const {
+  double nearest_m = length_m_;
+  for (const Share& share : shares_) {
+    nearest_m = std::min(nearest_m, std::abs(share.position_m - position_m));
+  }
+  const auto travel =
+      static_cast<std::size_t>(std::ceil(nearest_m / front_speed_m_per_s_ / period_s_));
+  return samples_ - std::min(samples_, travel + looks_ahead_);
+}
+
+SeparatedWaves WaveSeparation::at(double position_m, StrainOf strain) const {
   DampedTransform transform(samples_ + 2 * lead_, period_s_);
-  std::vector<Complex> right(path_.size());
-  std::vector<Complex> left(path_.size());
-  std::vector<Complex> stress(path_.size());
-  std::vector<Complex> velocity(path_.size());
+  std::vector<Complex> right(transform.bins());
+  std::vector<Complex> left(transform.bins());
+  std::vector<Complex> stress(transform.bins());
+  std::vector<Complex> velocity(transform.bins());
   for (std::size_t k = 0; k < path_.size(); ++k) {
-    const Complex s = path_[k];
     const Complex gamma = modes_[k].gamma;
-    right[k] = right_[k] * std::exp(-gamma * position_m);
-    left[k] = left_[k] * std::exp(-gamma * (length_m_ - position_m));
-    stress[k] = stiffness(k) * (right[k] + left[k]);
-    velocity[k] = s / gamma * modes_[k].mean_over_surface * (right[k] - left[k]);
+    const Complex to_right = right_[k] * std::exp(-gamma * position_m);
+    const Complex to_left = left_[k] * std::exp(-gamma * (length_m_ - position_m));
+    const Complex mean = modes_[k].mean_over_surface;
+    const Complex read = strain == StrainOf::section ? mean : 1.0;
+    right[k] = read * to_right;
+    left[k] = read * to_left;
+    stress[k] = stiffness(k) * (to_right + to_left);
+    velocity[k] = path_[k] / gamma * mean * (to_right - to_left);
   }
   const auto history = [&](const std::vector<Complex>& spectrum) {
     std::vector<double> record(transform.length());
@@ -222,6 +252,46 @@ SeparatedWaves WaveSeparation::at(double position_m) const {
     return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(samples_));
   };
   return {history(right), history(left), history(stress), history(velocity)};
+}
+
+std::vector<double> WaveSeparation::stress_noise_Pa(double position_m, std::size_t quiet) const {
+  DampedTransform transform(samples_ + 2 * lead_, period_s_);
+  BandLimit band(transform, 16);
+  std::vector<Complex> answer(transform.bins());
+  std::vector<double> record(transform.length());
+  std::vector<double> variance(samples_, 0.0);
+  for (const Share& share : shares_) {
+    const double white = share.noise_rms * share.noise_rms;
+    if (white <= 0.0) {
+      continue;
+    }
+    // The stress after one sample's unit error at the record's start.
+    for (std::size_t k = 0; k < path_.size(); ++k) {
+      const Complex gamma = modes_[k].gamma;
+      const double start_s = static_cast<double>(lead_) * period_s_;
+      answer[k] = stiffness(k) * std::exp(-path_[k] * start_s) *
+                  (share.right[k] * std::exp(-gamma * position_m) +
+                   share.left[k] * std::exp(-gamma * (length_m_ - position_m)));
+    }
+    band.apply_half(band_limit_Hz_, std::span(answer).first(path_.size()));
+    band.apply_half(band_limit_Hz_, std::span(answer).first(path_.size()));
+    transform.inverse(answer, record);
+    double squares = 0.0;
+    double sum = 0.0;
+    for (std::size_t n = 0; n < record.size(); ++n) {
+      squares += record[n] * record[n];
+      sum += record[n];
+      const std::size_t time = n + quiet;  // in the padded record
+      if (time >= lead_ && time - lead_ < samples_) {
+        variance[time - lead_] +=
+            white * (squares + (quiet > 0 ? sum * sum / static_cast<double>(quiet) : 0.0));
+      }
+    }
+  }
+  for (double& value : variance) {
+    value = std::sqrt(value);
+  }
+  return variance;
 }
 
 }  // namespace kolsky

@@ -23,16 +23,20 @@ struct SeparationGauge {
   SeparationRecord record = SeparationRecord::surface_strain;
 };
 
-/// What is known of a bar's ends: a free end returns every wave inverted, at all times of the
-/// record.
+/// What is known of a bar's ends, at all times of the record: a free end returns every wave
+/// inverted, a matched one none.
 struct FreeEnds {
   bool start = false;
   bool end = false;
+  bool end_matched = false;
 };
+
+/// Of which strain the waves are given: the surface's, as gauges read it, or the section's mean.
+enum class StrainOf { surface, section };
 
 /// A bar over time at one place. Compression positive; motion from start to end.
 struct SeparatedWaves {
-  std::vector<double> right_going;  ///< surface strain
+  std::vector<double> right_going;  ///< strain
   std::vector<double> left_going;
   std::vector<double> stress_Pa;         ///< mean over the section
   std::vector<double> velocity_m_per_s;  ///< mean over the section
@@ -48,10 +52,10 @@ struct BlindFrequency {
 /// maximum likelihood. With P the right-going wave at the start and Q the left-going one at the
 /// end,
 ///   e_j = P exp(-gamma x_j) + Q exp(-gamma (L - x_j)) + noise,
-/// and P = -Q exp(-gamma L) where the start is free, Q = -P exp(-gamma L) where the end is. Solved
-/// at each s = eta + i w by least squares weighted with the noise: with damping (see
-/// DampedTransform) overlapping passes and a record that is cut between them cost nothing, and
-/// blind frequencies amplify noise but never divide by zero.
+/// and P = -Q exp(-gamma L) where the start is free, Q = -P exp(-gamma L) where the end is, Q = 0
+/// where it is matched. Solved at each s = eta + i w by least squares weighted with the noise: with
+/// damping (see DampedTransform) overlapping passes and a record that is cut between them cost
+/// nothing, and blind frequencies amplify noise but never divide by zero.
 class WaveSeparation {
  public:
   /// @param compliance  of the bar
@@ -61,15 +65,27 @@ class WaveSeparation {
                  double band_limit_Hz);
 
   /// The waves at a place, over the records' time.
-  [[nodiscard]] SeparatedWaves at(double position_m) const;
+  [[nodiscard]] SeparatedWaves at(double position_m, StrainOf strain = StrainOf::surface) const;
+
+  /// Standard deviation [Pa] of the stress at a place from the gauges' noise, over the records'
+  /// time: white from the sample `quiet` on, before which the records are zero, and in the baseline
+  /// that so many samples gave. It grows with time, the faster the closer the gauges are together.
+  [[nodiscard]] std::vector<double> stress_noise_Pa(double position_m, std::size_t quiet) const;
+
+  /// Samples up to which the records tell what left a place at one of the bar's ends: what has not
+  /// reached the nearest gauge by their end is missing, and where more gauges than are needed
+  /// contradict each other there, for having been cut, that spoils the waves a fifth of the
+  /// transform's length before (least squares at s = eta + i w look ahead, damped by exp(-2 eta
+  /// t)).
+  [[nodiscard]] std::size_t known(double position_m) const;
 
   [[nodiscard]] const std::vector<BlindFrequency>& blind() const { return blind_; }
 
  private:
-  /// Spectra of the records as surface strains, filtered.
-  [[nodiscard]] std::vector<std::vector<Complex>> surface_strains(
-      const std::vector<SeparationGauge>& gauges) const;
-  void solve(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends);
+  /// Each gauge's share in the waves, by least squares.
+  void share_out(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends);
+  /// The waves from the records, filtered.
+  void solve(const std::vector<SeparationGauge>& gauges);
   void find_blind(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
                   const std::vector<BarMode>& undamped, const std::vector<Complex>& axis);
   /// Mean stress over surface strain.
@@ -79,10 +95,19 @@ class WaveSeparation {
   double density_kg_m3_;
   double period_s_;
   double band_limit_Hz_;
+  double front_speed_m_per_s_;
   std::size_t samples_;
   std::size_t lead_;
+  std::size_t looks_ahead_ = 0;
   std::vector<Complex> path_;
   std::vector<BarMode> modes_;
+  /// What one gauge's record has in the waves.
+  struct Share {
+    double position_m;
+    double noise_rms;
+    std::vector<Complex> right, left;
+  };
+  std::vector<Share> shares_;
   std::vector<Complex> right_;  ///< at the start
   std::vector<Complex> left_;   ///< at the end
   std::vector<BlindFrequency> blind_;

@@ -8,8 +8,8 @@
 
 #include "processing/base/error.hpp"
 #include "processing/identification/noise_spectrum.hpp"
-#include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/pulse.hpp"
+#include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
 

@@ -105,10 +105,11 @@ std::size_t quiet_samples(const Reduction& reduction) {
   return 0;
 }
 
-/// The band and the histories' length are the shot's.
+/// The band, the histories' length and how waves are separated are the shot's.
 ReductionOptions held(ReductionOptions options, const Reduction& nominal) {
   options.band_limit_Hz = nominal.band_limit_Hz;
   options.duration_s = nominal.time_s.back();
+  options.separation = nominal.separation;
   return options;
 }
 

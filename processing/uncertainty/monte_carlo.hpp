@@ -56,7 +56,8 @@ struct Uncertainty {
 /// Propagates what is filed with a deviation, and the gauges' noise as it is before the pulse,
 /// through the reduction itself (GUM supplement 1): each draw moves every source by a normal
 /// number, adds noise of the measured spectrum to the samples and is reduced like the shot, its own
-/// arrival found anew. The band limit and the histories' length are the shot's. The budget moves
+/// arrival found anew. The band limit, the histories' length and how waves are separated are the
+/// shot's. The budget moves
 /// one source at a time by one deviation to either side. The same seed gives the same numbers,
 /// however the workers share it.
 /// @param reduction  of this shot with these options; where it is not reducible nothing is drawn

@@ -57,6 +57,27 @@ void reduce_exact(benchmark::State& state) {
 }
 BENCHMARK(reduce_exact)->ArgName("anew")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
+/// A pulse that outlasts the window, told apart by two gauges on the input bar.
+void reduce_separated(benchmark::State& state, WaveTheory theory) {
+  testing::ElasticShpb model;
+  model.duration_s = static_cast<double>(kSamples) * 1e-6;
+  model.pulse_s = 500e-6;
+  model.second_to_A_m = 0.8;
+  const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 1);
+  ReductionOptions options;
+  options.theory = theory;
+  Reducer reducer(options);
+  if (reducer.reduce(shot).separation != Separation::gauges) {
+    state.SkipWithError("not separated");
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(reducer.reduce(shot));
+  }
+}
+BENCHMARK_CAPTURE(reduce_separated, elementary, WaveTheory::elementary)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(reduce_separated, exact, WaveTheory::exact)->Unit(benchmark::kMillisecond);
+
 /// 1000 draws on two threads, the budget included.
 void monte_carlo(benchmark::State& state) {
   testing::LinearShpb model;

@@ -80,11 +80,16 @@ ElasticShpb::Records ElasticShpb::solve() const {
   const auto samples = static_cast<std::size_t>(duration_s * sampling_frequency_Hz);
   for (std::size_t i = 0; i < samples; ++i) {
     const double t = static_cast<double>(i) / sampling_frequency_Hz - arrival;
-    const double in = interpolate(right_A, (t + gauge_to_A_m / c) / kStep_s) +
-                      interpolate(left_A, (t - gauge_to_A_m / c) / kStep_s);
+    const auto before_A = [&](double distance_m) {
+      return interpolate(right_A, (t + distance_m / c) / kStep_s) +
+             interpolate(left_A, (t - distance_m / c) / kStep_s);
+    };
     const double out = interpolate(right_B, (t - gauge_to_B_m / c) / kStep_s) +
                        interpolate(left_B, (t + gauge_to_B_m / c) / kStep_s);
-    records.input_strain.push_back(in / youngs_modulus_Pa);
+    records.input_strain.push_back(before_A(gauge_to_A_m) / youngs_modulus_Pa);
+    if (second_to_A_m) {
+      records.second_strain.push_back(before_A(*second_to_A_m) / youngs_modulus_Pa);
+    }
     records.output_strain.push_back(out / youngs_modulus_Pa);
   }
   records.truth = std::move(truth);
@@ -117,6 +122,11 @@ Bench ElasticShpb::bench() const {
                    .length_m = {},
                    .bridge = {},
                    .strain_per_V = {}}};
+  if (second_to_A_m) {
+    bench.gauges.push_back(bench.gauges.front());
+    bench.gauges.back().name = "g3";
+    bench.gauges.back().position_m = {length_in_m - *second_to_A_m};
+  }
   bench.specimen = Specimen{.length_m = {specimen_length_m},
                             .diameter_m = {specimen_diameter_m},
                             .density_kg_m3 = {},
@@ -126,8 +136,11 @@ Bench ElasticShpb::bench() const {
 
 Shot ElasticShpb::shot(const Records& records, double noise_rms, int bits, double range_strain,
                        unsigned seed) const {
-  return digitise(bench(), {records.input_strain, records.output_strain}, noise_rms, bits,
-                  range_strain, seed);
+  std::vector<std::vector<double>> strains{records.input_strain, records.output_strain};
+  if (second_to_A_m) {
+    strains.push_back(records.second_strain);
+  }
+  return digitise(bench(), strains, noise_rms, bits, range_strain, seed);
 }
 
 Shot digitise(const Bench& bench, const std::vector<std::vector<double>>& strains, double noise_rms,

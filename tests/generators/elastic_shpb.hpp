@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "processing/base/shot.hpp"
@@ -17,6 +18,7 @@ struct ElasticShpb {
   double density_kg_m3 = 7850.0;
   double gauge_to_A_m = 0.5;
   double gauge_to_B_m = 0.3;
+  std::optional<double> second_to_A_m{};  ///< another gauge on the input bar, filed last
   double specimen_length_m = 0.004;
   double specimen_diameter_m = 0.008;
   double specimen_modulus_Pa = 2e9;
@@ -35,6 +37,7 @@ struct ElasticShpb {
   };
   struct Records {
     std::vector<double> input_strain, output_strain;
+    std::vector<double> second_strain;  ///< empty where there is none
     Truth truth;
   };
   [[nodiscard]] Records solve() const;

@@ -27,6 +27,7 @@ struct Settings {
   std::optional<double> band_limit_Hz;
   std::optional<double> duration_s;
   std::optional<std::string> dispersion;
+  std::optional<std::string> separate;
   std::optional<std::string> stress;
   std::optional<std::string> inertia;
   std::optional<double> friction;
@@ -93,6 +94,9 @@ ReductionOptions reduction_options(const Settings& settings,
   if (settings.stress.has_value()) {
     options.stress = stress_from(*settings.stress);
   }
+  if (settings.separate.has_value()) {
+    options.separation = separation_from(*settings.separate);
+  }
   options.corrections = corrections_of(settings);
   refuse_not_positive(settings.band_limit_Hz, "--band-limit", "Hz");
   refuse_not_positive(settings.duration_s, "--duration", "s");
@@ -145,6 +149,7 @@ void refuse_for_ball(const Settings& settings) {
   const std::pair<bool, const char*> specimens[] = {
       {settings.bar_model.has_value(), "--bar-model"},
       {settings.with_true, "--true"},
+      {settings.separate.has_value(), "--separate"},
       {settings.stress.has_value(), "--stress"},
       {settings.inertia.has_value(), "--inertia"},
       {settings.friction.has_value(), "--friction"},
@@ -225,6 +230,7 @@ Command reduce_command() {
       "  kolsky reduce shot.h5 --json --true > shot.json\n"
       "  kolsky reduce shot.h5 --bar-model pmma.toml --svg shot.svg --csv shot.csv\n"
       "  kolsky reduce shot.h5 --bar-model pmma.toml --uncertainty\n"
+      "  kolsky reduce foam.h5 --separate gauges --duration 3e-3\n"
       "  kolsky reduce shot.h5 --bench corrected.toml --save corrected.h5\n"
       "  kolsky reduce ball1.h5 ball2.h5 ball3.h5\n";
   command.arguments = {
@@ -245,6 +251,12 @@ Command reduce_command() {
       option("--dispersion", "THEORY",
              "how waves travel in the bars: elementary (the paper, default), love or exact",
              &s.dispersion),
+      option(
+          "--separate", "BY",
+          "tell waves that overlap apart by gauges (two places on the input bar) or equilibrium\n"
+          "(one place and the output bar's force); never: by time; auto (default): by gauges\n"
+          "where the striker still pushes when the specimen answers at the gauge, if there are two",
+          &s.separate),
       option("--stress", "WAVES",
              "three-wave (mean of both faces, default), one-wave (back) or two-wave (front)",
              &s.stress),

@@ -123,6 +123,56 @@ TEST_F(Files, ReduceTakesAWaveTheoryAndRefusesWhatIsNone) {
   EXPECT_NE(refused.err.find("elementary, love or exact"), std::string::npos);
 }
 
+TEST_F(Files, ReduceTellsWavesApartByTwoGaugesWhereThePulseOutlastsTheWindow) {
+  testing::ElasticShpb model;
+  model.pulse_s = 500e-6;  // the specimen answers at g1 after 195 us
+  model.rise_s = 40e-6;
+  model.duration_s = 2e-3;
+  model.second_to_A_m = 0.8;
+  const scene::Bench bench(model);
+  const std::string capture = bench.capture();
+  const auto off = [&](const json& result) {
+    const auto& truth = bench.records().truth;
+    const auto time = result["time_s"].get<std::vector<double>>();
+    const auto strain = result["strain"].get<std::vector<double>>();
+    double worst = 0.0;
+    double largest = 0.0;
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      const double t = time[n] + result["arrival_s"].get<double>() - truth.arrival_s;
+      const double exact = truth.at(truth.strain, std::max(0.0, t));
+      worst = std::max(worst, std::abs(strain[n] - exact));
+      largest = std::max(largest, exact);
+    }
+    return worst / largest;
+  };
+  const json separated = json_of(scene::kolsky({"reduce", capture, "--json"}));
+  const json& checks = separated["quality"]["checks"];
+  EXPECT_EQ(checks["window_overlap"]["verdict"], "pass");
+  EXPECT_NE(checks["window_overlap"]["text"].get<std::string>().find("told apart by g1 and g3"),
+            std::string::npos);
+  EXPECT_NE(checks["separation_noise"]["text"].get<std::string>().find("blind at"),
+            std::string::npos);
+  EXPECT_LT(off(separated), 5e-3);
+  const json by_time = json_of(scene::kolsky({"reduce", capture, "--json", "--separate", "never"}));
+  EXPECT_EQ(by_time["quality"]["checks"]["window_overlap"]["verdict"], "fail");
+  EXPECT_GT(off(by_time), 0.1);
+  EXPECT_FALSE(by_time["quality"]["checks"].contains("separation_noise"));
+  EXPECT_EQ(json_of(scene::kolsky({"reduce", capture, "--json", "--separate", "gauges"}))["strain"],
+            separated["strain"]);
+}
+
+TEST_F(Files, ReduceRefusesToTellWavesApartByOneGauge) {
+  const std::string capture = bench_.capture();
+  EXPECT_TRUE(scene::refused(scene::kolsky({"reduce", capture, "--separate", "gauges"}),
+                             {"shot.h5", "gauges", "one place", "equilibrium"}));
+  EXPECT_TRUE(scene::refused(scene::kolsky({"reduce", capture, "--separate", "hope"}),
+                             {"\"hope\"", "auto, never, gauges or equilibrium"}));
+  const json assumed =
+      json_of(scene::kolsky({"reduce", capture, "--json", "--separate", "equilibrium"}));
+  EXPECT_EQ(assumed["force_front_N"], assumed["force_back_N"]);
+  EXPECT_EQ(assumed["quality"]["checks"]["equilibrium"]["verdict"], "warn");
+}
+
 TEST_F(Files, TheSameCaptureGivesTheSameBytes) {
   const std::string capture = bench_.capture();
   EXPECT_EQ(scene::kolsky({"reduce", capture, "--json"}).out,

@@ -41,16 +41,19 @@ std::string bench_toml_of(const testing::ElasticShpb& model) {
          bar_toml("output", model.length_out_m, model) +
          gauge_toml("g1", "input", model.length_in_m - model.gauge_to_A_m) +
          gauge_toml("g2", "output", model.gauge_to_B_m) +
+         (model.second_to_A_m ? gauge_toml("g3", "input", model.length_in_m - *model.second_to_A_m)
+                              : std::string()) +
          fmt::format("[specimen]\nlength_m = {}\ndiameter_m = {}\n", model.specimen_length_m,
                      model.specimen_diameter_m);
 }
 
 std::string table_of(const testing::ElasticShpb& model, const testing::ElasticShpb::Records& shot) {
-  std::string text = "time_s,g1,g2\n";
+  std::string text = shot.second_strain.empty() ? "time_s,g1,g2\n" : "time_s,g1,g2,g3\n";
   for (std::size_t i = 0; i < shot.input_strain.size(); ++i) {
     text +=
-        fmt::format("{:.9e},{:.9e},{:.9e}\n", static_cast<double>(i) / model.sampling_frequency_Hz,
+        fmt::format("{:.9e},{:.9e},{:.9e}", static_cast<double>(i) / model.sampling_frequency_Hz,
                     shot.input_strain[i], shot.output_strain[i]);
+    text += shot.second_strain.empty() ? "\n" : fmt::format(",{:.9e}\n", shot.second_strain[i]);
   }
   return text;
 }
@@ -101,7 +104,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-Bench::Bench() : records_(model_.solve()) {
+Bench::Bench(const testing::ElasticShpb& model) : model_(model), records_(model_.solve()) {
   write("bench.toml", bench_toml_of(model_));
   write("shot.csv", table_of(model_, records_));
 }
@@ -110,7 +113,8 @@ std::string Bench::table(double share, double noise_strain, unsigned seed) const
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, noise_strain);
   testing::ElasticShpb::Records scaled = records_;
-  for (std::vector<double>* strain : {&scaled.input_strain, &scaled.output_strain}) {
+  for (std::vector<double>* strain :
+       {&scaled.input_strain, &scaled.output_strain, &scaled.second_strain}) {
     for (double& value : *strain) {
       value = share * value + noise(random);
     }

@@ -35,7 +35,7 @@ struct Answer {
 /// A shot on elastic bars, with what really happened in the specimen, as the files a person has.
 class Bench {
  public:
-  Bench();
+  explicit Bench(const testing::ElasticShpb& model = {});
 
   [[nodiscard]] std::string file(const std::string& name) const { return folder_ / name; }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }

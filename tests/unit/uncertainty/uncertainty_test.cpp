@@ -72,6 +72,33 @@ TEST(Uncertainty, OfNoiseIsTheScatterOfRepeatedShots) {
   EXPECT_NEAR(rms(stated) / rms(scatter), 1.0, 0.2);
 }
 
+/// Waves told apart by two gauges: what the draws scatter by at the histories' end is what the
+/// reduction foretells by its own arithmetic.
+TEST(Uncertainty, OfSeparatedWavesIsWhatTheirCheckSays) {
+  ElasticShpb model;
+  model.pulse_s = 500e-6;
+  model.rise_s = 40e-6;
+  model.duration_s = 2e-3;
+  model.second_to_A_m = 0.8;
+  const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 5);
+  ReductionOptions options;
+  options.band_limit_Hz = 60e3;
+  options.arrival_s = model.foot_at_gauge_s;
+  const Reduction reduction = Reducer(options).reduce(shot);
+  ASSERT_EQ(reduction.separation, Separation::gauges);
+  UncertaintyOptions wanted;
+  wanted.draws = 200;
+  const Uncertainty u = propagate(shot, options, reduction, wanted, Workers{});
+  EXPECT_EQ(u.draws, 200U);
+  const auto& force = reduction.force_front_N;
+  const double peak = std::abs(*std::max_element(
+      force.begin(), force.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  const auto noise = std::find_if(reduction.quality.checks.begin(), reduction.quality.checks.end(),
+                                  [](const Check& c) { return c.name == "separation_noise"; });
+  ASSERT_NE(noise, reduction.quality.checks.end());
+  EXPECT_NEAR(u.force_front_N.sd.back() / peak / noise->value, 1.0, 0.2);
+}
+
 TEST(Uncertainty, OfOneGainIsThatShareOfItsForce) {
   const ElasticShpb model;
   Shot shot = model.shot(model.solve(), 0.2e-6, 24, 0.01, 1);

@@ -1,4 +1,4 @@
-#include "processing/reduction/band_limit.hpp"
+#include "processing/waves/band_limit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -121,6 +121,13 @@ double BandLimit::noise_share(double limit_Hz) const {
   const double bandwidth_Hz =
       kBandwidthOfCorner * corner_per_s(limit_Hz) / (2.0 * std::numbers::pi);
   return std::sqrt(std::min(1.0, 2.0 * bandwidth_Hz / sampling_frequency_Hz_));
+}
+
+std::size_t BandLimit::bins_within(const DampedTransform& transform, double limit_Hz) {
+  constexpr double kNothingFrom = 2.8;
+  const auto bins =
+      static_cast<std::size_t>(kNothingFrom * limit_Hz / transform.bin_width_Hz()) + 2;
+  return std::min(bins, transform.bins());
 }
 
 double BandLimit::smear_s(double limit_Hz) {

@@ -46,6 +46,9 @@ class BandLimit {
   /// Share of white noise's rms that the filter lets through.
   [[nodiscard]] double noise_share(double limit_Hz) const;
 
+  /// Bins in which a filter with this limit leaves more than 1e-18.
+  [[nodiscard]] static std::size_t bins_within(const DampedTransform& transform, double limit_Hz);
+
   /// How far the filter's kernel reaches to each side, in seconds (where it has fallen to a tenth).
   [[nodiscard]] static double smear_s(double limit_Hz);
 

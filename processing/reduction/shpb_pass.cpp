@@ -1,0 +1,421 @@
+#include "processing/reduction/shpb_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/quality.hpp"
+#include "processing/reduction/separated_faces.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// A run above the level shorter than this is a spike, not a pulse.
+constexpr double kShortestPulse_s = 5e-6;
+
+double largest(std::span<const double> values) {
+  double most = 0.0;
+  for (const double value : values) {
+    most = std::max(most, std::abs(value));
+  }
+  return most;
+}
+
+/// One reduction in progress: what is found on the way from the records to the histories.
+class Pass {
+ public:
+  Pass(const Shot& shot, const Station& in, const Station& out, const ReductionOptions& options,
+       Plans& plans, Tables& tables)
+      : shot_(shot),
+        in_(in),
+        out_(out),
+        options_(options),
+        t_(plans),
+        bars_(tables),
+        rate_Hz_(shot.rate.Hz()),
+        period_s_(shot.rate.period_s()) {}
+
+  Reduction run() {
+    if (!find_incident()) {
+      return not_reducible("no incident pulse stands out of the noise on " +
+                           shot_.channels[in_.channels.front()].gauge);
+    }
+    if (split_ >= shot_.samples()) {
+      return not_reducible("the record ends before the specimen's answer reaches " +
+                           shot_.channels[in_.channels.front()].gauge);
+    }
+    transform_records();
+    locate_arrival();
+    separate();
+    if (!choose_window()) {
+      return not_reducible("the record ends before the pulse has loaded the specimen");
+    }
+    if (faces_) {
+      take_separated();
+    } else {
+      fill_histories();
+    }
+    fill_strain();
+    judge_quality();
+    set_stress(options_.stress, options_.corrections, *shot_.bench.specimen,
+               std::span<const double>(front_rate_per_s_).first(reduction_.time_s.size()),
+               reduction_);
+    return std::move(reduction_);
+  }
+
+ private:
+  bool find_incident() {
+    const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
+    const double round_trip_s = 2.0 * bars_.input.front_time_s(in_.gauge_to_specimen_m);
+    const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
+    read_raw_station(shot_, in_, t_.input_strain);
+    const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
+    if (!rise) {
+      return false;
+    }
+    double foot = rough_foot(*rise, reach);
+    if (options_.arrival_s) {
+      foot = *options_.arrival_s * rate_Hz_;
+    }
+    const auto clearance = kFootClearance_s * rate_Hz_;
+    quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
+    // Only now is it known how long the gauges are unstrained, which the bridges' equations start
+    // from.
+    read_station(shot_, in_, quiet_, t_.input_strain);
+    read_station(shot_, out_, quiet_, t_.output_strain);
+    sense_ = t_.input_strain[rise->index + 1] < 0.0 ? -1.0 : 1.0;
+    input_noise_ = quiet_before(t_.input_strain, quiet_).noise_rms;
+    output_noise_ = quiet_before(t_.output_strain, quiet_).noise_rms;
+    gauge_foot_ = foot;
+    split_ = static_cast<std::size_t>(std::max(0.0, foot + round_trip_s * rate_Hz_));
+    return true;
+  }
+
+  /// Foot at the gauge itself, from the unfiltered record.
+  double rough_foot(const Rise& rise, std::size_t reach) {
+    const std::size_t half = rise.index;
+    const double baseline = quiet_before(t_.input_strain, std::min<std::size_t>(half, 32)).baseline;
+    const std::size_t end = std::min(t_.input_strain.size(), half + reach);
+    auto& shifted = t_.scratch;
+    for (std::size_t n = 0; n < end; ++n) {
+      shifted[n] = rise.sense * (t_.input_strain[n] - baseline);
+    }
+    const double peak = *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(half),
+                                          shifted.begin() + static_cast<std::ptrdiff_t>(end));
+    return foot_of(shifted, half, peak, 0.0).index;
+  }
+
+  void transform_records() {
+    std::copy_n(t_.input_strain.begin(), split_, t_.incident_strain.begin());
+    std::fill(t_.incident_strain.begin() + static_cast<std::ptrdiff_t>(split_),
+              t_.incident_strain.end(), 0.0);
+    t_.transform.forward(t_.incident_strain, t_.incident);
+    const auto pulse = std::span<const double>(t_.incident_strain).subspan(quiet_, split_ - quiet_);
+    choose_band(pulse);
+    t_.transform.forward(t_.input_strain, t_.rest);
+    t_.transform.forward(t_.output_strain, t_.output_spectrum);
+    for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
+      t_.band.apply_half(reduction_.band_limit_Hz, in_band(*spectrum));
+      t_.band.apply_half(reduction_.band_limit_Hz, in_band(*spectrum));
+    }
+    complete_incident();
+    for (std::size_t k = 0; k < bins_; ++k) {
+      t_.rest[k] -= t_.incident[k];
+    }
+  }
+
+  void choose_band(std::span<const double> pulse) {
+    double limit_Hz = options_.band_limit_Hz.value_or(0.0);
+    if (!options_.band_limit_Hz) {
+      limit_Hz = std::min(t_.band.from_noise(pulse, input_noise_),
+                          options_.most_band_Hz.value_or(limit_Hz_of_rate()));
+    }
+    bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
+    bars_.reach(t_, bins_);
+    if (!options_.band_limit_Hz) {
+      limit_Hz = std::min(limit_Hz, bars_.highest_Hz(t_, bins_));
+    }
+    reduction_.band_limit_Hz = limit_Hz;
+    band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);
+  }
+
+  /// All of a spectrum that the kernels go on to read.
+  [[nodiscard]] std::span<Complex> in_band(std::vector<Complex>& spectrum) const {
+    return std::span(spectrum).first(bins_);
+  }
+
+  double limit_Hz_of_rate() const { return rate_Hz_ / 2.0; }
+
+  /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
+  /// the striker's push, which is over before the hidden part would have started there.
+  void complete_incident() {
+    t_.band.apply_half(reduction_.band_limit_Hz, in_band(t_.incident));
+    bars_.kernels.push_from_incident(t_.incident, bins_);
+    t_.transform.inverse(t_.incident, t_.history);
+    const double known =
+        static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+    const auto end = static_cast<std::size_t>(std::max(0.0, known));
+    judge_push(end);
+    std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
+    t_.transform.forward(t_.history, t_.incident);
+    bars_.kernels.incident_from_push(t_.incident, bins_);
+    t_.band.apply_half(reduction_.band_limit_Hz, in_band(t_.incident));
+  }
+
+  /// How much of the push is left at the end of what is known of it, averaged over a few samples so
+  /// that it is the push that is judged and not the noise.
+  void judge_push(std::size_t end) {
+    const auto few = std::min(end, static_cast<std::size_t>(10e-6 * rate_Hz_) + 1);
+    double left = 0.0;
+    for (std::size_t n = end - few; n < end; ++n) {
+      left += t_.history[n] / static_cast<double>(few);
+    }
+    const double peak = largest(std::span<const double>(t_.history).first(end));
+    push_left_share_ = peak > 0.0 ? std::abs(left) / peak : 1.0;
+  }
+
+  /// t = 0: the foot of the incident pulse after it has been carried to interface A.
+  void locate_arrival() {
+    bars_.kernels.right_going_front(inputs(), t_.work);
+    t_.transform.inverse(t_.work, t_.history);
+    const double travel = bars_.input.front_time_s(in_.gauge_to_specimen_m) * rate_Hz_;
+    const double late = travel + static_cast<double>(t_.key.delay);
+    const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
+    const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
+    for (std::size_t n = 0; n < end; ++n) {
+      t_.scratch[n] = sense_ * t_.history[n];
+    }
+    const std::span<const double> pulse(t_.scratch.data(), end);
+    const auto peak =
+        std::max_element(pulse.begin() + static_cast<std::ptrdiff_t>(begin), pulse.end());
+    auto half = static_cast<std::size_t>(peak - pulse.begin());
+    while (half > 0 && pulse[half] > *peak / 2.0) {
+      --half;
+    }
+    const double noise = input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz);
+    Foot foot = foot_of(pulse, half, *peak, noise);
+    foot.index -= static_cast<double>(t_.key.delay);
+    if (options_.arrival_s) {
+      foot.index = gauge_foot_ + travel;
+      foot.sigma = 0.0;
+    }
+    reduction_.arrival_s = foot.index * period_s_;
+    reduction_.arrival_sigma_s = foot.sigma * period_s_;
+  }
+
+  /// Tells the waves apart by more than time, where that is asked for or needed and possible.
+  void separate() {
+    Separation how = options_.separation;
+    if (how == Separation::as_needed) {
+      how = push_left_share_ > kOverlapLimit && gauges_at_two_places(shot_.bench, "input")
+                ? Separation::gauges
+                : Separation::never;
+    }
+    reduction_.separation = how;
+    if (how != Separation::never) {
+      faces_ = separated_faces(shot_, bars_, how, quiet_, reduction_.band_limit_Hz);
+    }
+  }
+
+  /// From the arrival until the first wave is back from a far end, or where waves are separated
+  /// until the first loading is over if that is later; as far as the record allows: the waves at
+  /// the specimen are known up to a front's travel before the record's end.
+  bool choose_window() {
+    const Bench& bench = shot_.bench;
+    const double arrival = reduction_.arrival_s * rate_Hz_;
+    first_ = static_cast<std::size_t>(std::ceil(arrival));
+    const double first_return_s = 2.0 * std::min(bars_.input.front_time_s(bench.input.length_m),
+                                                 far_end_time_s(bench.output->length_m));
+    const double duration_s =
+        options_.duration_s.value_or(std::max(first_return_s, first_loading_s()));
+    const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+    // Separated waves still ring at the record's end: nothing of that may come back through the
+    // filter.
+    const double last =
+        std::min(arrival + duration_s * rate_Hz_, known_samples() - (faces_ ? 3.0 * smear : smear));
+    constexpr double kFewestSamples = 8.0;
+    if (last < arrival + kFewestSamples) {
+      return false;
+    }
+    count_ = static_cast<std::size_t>(last) - first_;
+    return true;
+  }
+
+  /// How far the record tells what happened at the specimen.
+  double known_samples() const {
+    return static_cast<double>(faces_ ? faces_->known
+                                      : shot_.samples() -
+                                            longest_travel(shot_, bars_.input, bars_.output));
+  }
+
+  /// From the arrival to the end of the first loading, where waves are separated.
+  double first_loading_s() const {
+    if (!faces_) {
+      return 0.0;
+    }
+    const auto end = static_cast<double>(first_loading_end(*faces_, first_));
+    return (end - static_cast<double>(first_)) * period_s_;
+  }
+
+  /// Seconds a front needs over a stretch of the output bar that ends at its far end, if anything
+  /// comes back from there.
+  double far_end_time_s(double distance_m) const {
+    return bars_.output.waves.far_end == FarEnd::free ? bars_.output.front_time_s(distance_m)
+                                                      : std::numeric_limits<double>::infinity();
+  }
+
+  CarryingKernels::Inputs inputs() const {
+    return {t_.incident, t_.rest, t_.output_spectrum, bins_};
+  }
+
+  using Kernel = void (CarryingKernels::*)(const CarryingKernels::Inputs&,
+                                           std::vector<Complex>&) const;
+
+  /// The history behind a kernel, cut to the window.
+  std::vector<double> history(Kernel kernel) {
+    (bars_.kernels.*kernel)(inputs(), t_.work);
+    t_.transform.inverse(t_.work, t_.history);
+    return window();
+  }
+
+  /// What t_.history holds, within the window.
+  std::vector<double> window() const {
+    const auto begin = t_.history.begin() + static_cast<std::ptrdiff_t>(first_ + t_.key.delay);
+    return {begin, begin + static_cast<std::ptrdiff_t>(count_)};
+  }
+
+  /// @pre t_.history still holds the right-going wave at interface A
+  void fill_histories() {
+    reduction_.incident = window();
+    reduction_.force_front_N = history(&CarryingKernels::force_front);
+    reduction_.force_back_N = history(&CarryingKernels::force_back);
+    reduction_.reflected = history(&CarryingKernels::left_going_front);
+    reduction_.transmitted = history(&CarryingKernels::right_going_back);
+    front_rate_per_s_ = history(&CarryingKernels::rate_of_front);
+    reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
+    strain_before_ = strain_before_window(
+        std::span<const double>(t_.history).subspan(t_.key.delay, shot_.samples()));
+  }
+
+  void take_separated() {
+    const auto window_of = [&](const std::vector<double>& whole) {
+      const auto begin = whole.begin() + static_cast<std::ptrdiff_t>(first_);
+      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count_));
+    };
+    reduction_.incident = window_of(faces_->incident);
+    reduction_.reflected = window_of(faces_->reflected);
+    reduction_.transmitted = window_of(faces_->transmitted);
+    reduction_.force_front_N = window_of(faces_->force_front_N);
+    reduction_.force_back_N = window_of(faces_->force_back_N);
+    front_rate_per_s_ = window_of(faces_->rate_of_front_per_s);
+    reduction_.strain_rate_per_s = window_of(faces_->strain_rate_per_s);
+    strain_before_ = strain_before_window(faces_->strain_rate_per_s);
+  }
+
+  void fill_strain() {
+    reduction_.time_s.resize(count_);
+    reduction_.stress_Pa.resize(count_);
+    reduction_.strain.resize(count_);
+    double strain = strain_before_;
+    for (std::size_t n = 0; n < count_; ++n) {
+      reduction_.time_s[n] = static_cast<double>(first_ + n) * period_s_ - reduction_.arrival_s;
+      reduction_.strain[n] = strain;
+      if (n + 1 < count_) {
+        strain += period_s_ *
+                  (reduction_.strain_rate_per_s[n] + reduction_.strain_rate_per_s[n + 1]) / 2.0;
+      }
+    }
+  }
+
+  /// The rate integrated over what the low-pass has smeared before the arrival.
+  /// @param rate  from the shot's first sample on
+  double strain_before_window(std::span<const double> rate) const {
+    const double lead = 2.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+    const auto begin = static_cast<std::size_t>(std::max(0.0, static_cast<double>(first_) - lead));
+    double strain = 0.0;
+    for (std::size_t n = begin; n < first_; ++n) {
+      strain += period_s_ * (rate[n] + rate[n + 1]) / 2.0;
+    }
+    return strain;
+  }
+
+  void judge_quality() {
+    QualityInputs q;
+    const auto incident = std::span<const double>(t_.incident_strain).first(split_);
+    q.input_peak = largest(incident);
+    q.input_noise_rms = input_noise_;
+    const auto travel =
+        static_cast<std::size_t>((bars_.input.front_time_s(in_.gauge_to_specimen_m) +
+                                  bars_.output.front_time_s(out_.gauge_to_specimen_m)) *
+                                 rate_Hz_);
+    const std::size_t begin =
+        std::min(static_cast<std::size_t>(gauge_foot_) + travel, shot_.samples());
+    const std::size_t end = std::min(begin + count_, shot_.samples());
+    q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
+    q.output_noise_rms = output_noise_;
+    q.push_left_share = push_left_share_;
+    q.returns_from_s = 2.0 * std::min(bars_.input.front_time_s(in_.gauge_to_far_end_m),
+                                      far_end_time_s(out_.gauge_to_far_end_m));
+    q.may_shorten = !options_.duration_s;
+    q.quiet_samples = faces_ ? faces_->quiet : quiet_;
+    const Specimen& specimen = *shot_.bench.specimen;
+    q.front_rate_per_s = front_rate_per_s_;
+    q.specimen_length_m = specimen.length_m;
+    if (specimen.density_kg_m3) {
+      q.specimen_mass_kg = *specimen.density_kg_m3 * specimen.area_m2() * specimen.length_m;
+    }
+    q.band_loss = band_loss_;
+    if (faces_) {
+      q.separated = separation_judgement();
+    }
+    reduction_.quality.reducible = true;
+    judge(q, reduction_);
+  }
+
+  SeparationJudgement separation_judgement() const {
+    SeparationJudgement judgement;
+    const std::size_t last = first_ + count_ - 1;
+    const double peak = largest(reduction_.force_front_N);
+    judgement.gauges = faces_->gauges;
+    judgement.noise_share = peak > 0.0 ? faces_->front_noise_N[last] / peak : 1.0;
+    judgement.blind_Hz = faces_->blind_Hz;
+    judgement.assumes_equilibrium = reduction_.separation == Separation::equilibrium;
+    judgement.ends_in_loading = first_loading_end(*faces_, first_) >= faces_->known;
+    return judgement;
+  }
+
+  const Shot& shot_;
+  const Station& in_;
+  const Station& out_;
+  const ReductionOptions& options_;
+  Plans& t_;
+  Tables& bars_;
+  std::size_t bins_ = 0;  ///< within the band
+  double rate_Hz_;
+  double period_s_;
+  double sense_ = 1.0;
+  double gauge_foot_ = 0.0;
+  double push_left_share_ = 0.0;
+  double band_loss_ = 0.0;
+  double strain_before_ = 0.0;
+  std::vector<double> front_rate_per_s_;
+  std::optional<SeparatedFaces> faces_;
+  double input_noise_ = 0.0;
+  double output_noise_ = 0.0;
+  std::size_t quiet_ = 0;
+  std::size_t split_ = 0;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  Reduction reduction_;
+};
+
+}  // namespace
+
+Reduction shpb_pass(const Shot& shot, const Station& in, const Station& out,
+                    const ReductionOptions& options, Plans& plans, Tables& tables) {
+  return Pass(shot, in, out, options, plans, tables).run();
+}
+
+}  // namespace kolsky

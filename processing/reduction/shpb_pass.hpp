@@ -1,0 +1,13 @@
+#pragma once
+
+#include "processing/reduction/reducer.hpp"
+#include "processing/reduction/shpb_tables.hpp"
+
+namespace kolsky {
+
+/// One reduction, from the records of a split Hopkinson bar to the histories and their quality.
+/// @pre the plans and tables are this shot's
+[[nodiscard]] Reduction shpb_pass(const Shot& shot, const Station& in, const Station& out,
+                                  const ReductionOptions& options, Plans& plans, Tables& tables);
+
+}  // namespace kolsky

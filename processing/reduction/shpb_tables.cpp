@@ -1,0 +1,123 @@
+#include "processing/reduction/shpb_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/reduction/pulse.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Samples from just before the incident pulse to the specimen's answer at the gauge.
+std::size_t pulse_room(const Shot& shot, const BarModel& bar) {
+  const double round_trip_s = 2.0 * bar.front_time_s(bar.waves.gauge_to_specimen_m);
+  return static_cast<std::size_t>((round_trip_s + kFootClearance_s) * shot.rate.Hz()) + 2;
+}
+
+std::size_t rounded_up(std::size_t samples) {
+  constexpr std::size_t kStep = 32;
+  return (samples + kStep - 1) / kStep * kStep;
+}
+
+}  // namespace
+
+BarModel::BarModel(const Bar& bar, const Station& station, const Material& viscoelastic)
+    : compliance(compliance_of(bar, viscoelastic)),
+      front_speed_m_per_s(kolsky::front_speed_m_per_s(bar, *compliance)),
+      waves{bar.area_m2(),
+            bar.density_kg_m3,
+            station.gauge_to_specimen_m,
+            station.gauge_to_far_end_m,
+            bar.far_end,
+            front_speed_m_per_s,
+            {}} {}
+
+double BarModel::front_time_s(double distance_m) const {
+  return distance_m / front_speed_m_per_s;
+}
+
+std::vector<double> shpb_numbers(const Bench& b, const Material& m, WaveTheory theory,
+                                 const Station& in, const Station& out) {
+  return {static_cast<double>(theory),
+          m.E1_Pa,
+          m.E2_Pa,
+          m.eta2_Pa_s,
+          b.input.area_m2(),
+          b.input.density_kg_m3,
+          b.input.youngs_modulus_Pa.value_or(Measured{}),
+          b.input.poisson_ratio,
+          b.input.dispersion_radius_m(),
+          b.output->poisson_ratio,
+          b.output->dispersion_radius_m(),
+          b.output->area_m2(),
+          b.output->density_kg_m3,
+          b.output->youngs_modulus_Pa.value_or(Measured{}),
+          in.gauge_to_specimen_m,
+          in.gauge_to_far_end_m,
+          out.gauge_to_specimen_m,
+          out.gauge_to_far_end_m,
+          static_cast<double>(b.output->far_end),
+          b.specimen->length_m};
+}
+
+std::size_t longest_travel(const Shot& shot, const BarModel& input, const BarModel& output) {
+  const double travel_s = std::max(input.front_time_s(input.waves.gauge_to_specimen_m),
+                                   output.front_time_s(output.waves.gauge_to_specimen_m));
+  return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
+}
+
+PlanKey PlanKey::of(const Shot& shot, const BarModel& input, const BarModel& output) {
+  return {shot.samples(), shot.rate, rounded_up(longest_travel(shot, input, output)),
+          rounded_up(pulse_room(shot, input))};
+}
+
+Plans::Plans(const PlanKey& k)
+    : key(k),
+      transform(k.samples + k.delay, k.rate.period_s()),
+      band(transform, k.longest_pulse),
+      path(transform.bins()),
+      input_strain(k.samples),
+      output_strain(k.samples),
+      incident_strain(k.samples),
+      history(k.samples + k.delay),
+      scratch(k.samples + k.delay),
+      incident(transform.bins()),
+      rest(transform.bins()),
+      output_spectrum(transform.bins()),
+      work(transform.bins()) {
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    path[n] = transform.s(n);
+  }
+}
+
+Tables::Tables(std::vector<double> n, const PlanKey& p, WaveTheory t, const Bench& bench,
+               const Material& m, const Station& in, const Station& out)
+    : numbers(std::move(n)),
+      plan(p),
+      theory(t),
+      input_bar(bench.input),
+      output_bar(*bench.output),
+      specimen_length_m(bench.specimen->length_m),
+      input(bench.input, in, m),
+      output(*bench.output, out, m) {}
+
+void Tables::reach(const Plans& plans, std::size_t bins) {
+  if (kernels.bins() >= bins) {
+    return;
+  }
+  const std::vector<Complex> path(plans.path.begin(),
+                                  plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
+  input.waves.modes = bar_modes(theory, input_bar, *input.compliance, path);
+  output.waves.modes = bar_modes(theory, output_bar, *output.compliance, path);
+  const double delay_s = static_cast<double>(plan.delay) * plan.rate.period_s();
+  kernels = CarryingKernels(path, input.waves, output.waves, specimen_length_m, delay_s);
+}
+
+double Tables::highest_Hz(const Plans& plans, std::size_t bins) const {
+  const auto path = std::span(plans.path).first(bins);
+  return std::min(blind_from_Hz(std::span(input.waves.modes).first(bins), path),
+                  blind_from_Hz(std::span(output.waves.modes).first(bins), path));
+}
+
+}  // namespace kolsky

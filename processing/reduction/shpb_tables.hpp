@@ -1,0 +1,78 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "processing/base/shot.hpp"
+#include "processing/reduction/carrying.hpp"
+#include "processing/reduction/stations.hpp"
+#include "processing/waves/band_limit.hpp"
+
+namespace kolsky {
+
+/// One bar with how waves travel in it.
+struct BarModel {
+  std::unique_ptr<const Compliance> compliance;
+  double front_speed_m_per_s;
+  BarWaves waves;
+
+  BarModel(const Bar& bar, const Station& station, const Material& viscoelastic);
+
+  /// Seconds a front needs over a distance.
+  [[nodiscard]] double front_time_s(double distance_m) const;
+};
+
+/// What decides the kernels: two shots that agree in it are reduced with the same ones.
+[[nodiscard]] std::vector<double> shpb_numbers(const Bench& bench, const Material& viscoelastic,
+                                               WaveTheory theory, const Station& in,
+                                               const Station& out);
+
+/// Samples that a front needs from a gauge to the specimen, on the bar where it needs more.
+[[nodiscard]] std::size_t longest_travel(const Shot& shot, const BarModel& input,
+                                         const BarModel& output);
+
+/// What decides the plans.
+struct PlanKey {
+  std::size_t samples;
+  SampleRate rate;
+  std::size_t delay;  ///< samples by which histories come out late, so that nothing looks ahead
+  std::size_t longest_pulse;
+  bool operator==(const PlanKey&) const = default;
+
+  /// Of a shot on these bars; rounded up, so that benches that differ a little share their plans.
+  static PlanKey of(const Shot& shot, const BarModel& input, const BarModel& output);
+};
+
+/// Plans and work space for shots of one length.
+struct Plans {
+  PlanKey key;
+  DampedTransform transform;
+  BandLimit band;
+  std::vector<Complex> path;
+  std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
+  std::vector<Complex> incident, rest, output_spectrum, work;
+
+  explicit Plans(const PlanKey& k);
+};
+
+/// The bars of one bench, with what carries their waves as far up in frequency as was asked for.
+struct Tables {
+  std::vector<double> numbers;
+  PlanKey plan;
+  WaveTheory theory;
+  Bar input_bar;
+  Bar output_bar;
+  double specimen_length_m;
+  BarModel input;
+  BarModel output;
+  CarryingKernels kernels;
+
+  Tables(std::vector<double> n, const PlanKey& p, WaveTheory t, const Bench& bench,
+         const Material& m, const Station& in, const Station& out);
+
+  void reach(const Plans& plans, std::size_t bins);
+  /// Where surface gauges go blind, if within so many bins.
+  [[nodiscard]] double highest_Hz(const Plans& plans, std::size_t bins) const;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,329 @@
+// Pulses that outlast the window: benches solved in the time domain on a staggered grid, with two
+// or more gauges on a bar, against the reduction by separated waves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/simulated/bench_model.hpp"
+#include "processing/base/error.hpp"
+#include "processing/reduction/reducer.hpp"
+#include "tests/generators/elastic_shpb.hpp"
+
+namespace kolsky {
+namespace {
+
+constexpr double kStep_s = 0.1e-6;
+constexpr std::size_t kStepsPerSample = 10;
+constexpr std::size_t kPreSamples = 400;
+constexpr RodMaterial kPmma{
+    .density_kg_m3 = 1180, .E1_Pa = 5.66e9, .E2_Pa = 37.0e9, .eta2_Pa_s = 1.81e6};
+constexpr RodMaterial kCore{
+    .density_kg_m3 = 1140, .E1_Pa = 121e6, .E2_Pa = 143e6, .eta2_Pa_s = 2860};
+constexpr RodMaterial kAluminium{.density_kg_m3 = 2700, .E1_Pa = 70e9};
+constexpr RodMaterial kFoam{.density_kg_m3 = 300, .E1_Pa = 60e6};
+
+double circle_m2(double diameter_m) {
+  return std::numbers::pi * diameter_m * diameter_m / 4.0;
+}
+
+struct LongShot {
+  RodMaterial bars = kPmma;
+  RodMaterial specimen = kCore;
+  double length_m = 0.7;
+  double peak_strain = 1e-3;
+  double pulse_s = 700e-6;
+  double ramp_s = 60e-6;
+  double record_s = 3e-3;
+  std::vector<double> input_m = {0.2, 0.45};
+  std::vector<double> output_m = {0.05};
+  double noise_rms = 0.0;
+};
+
+struct Solved {
+  Shot shot;
+  SpecimenHistory truth;
+  double front_arrival_s = 0.0;
+};
+
+Gauge gauge_at(const std::string& bar, double position_m, std::size_t number) {
+  Gauge gauge;
+  gauge.name = "g" + std::to_string(number);
+  gauge.bar = bar;
+  gauge.position_m = {position_m};
+  gauge.unit = "strain";
+  return gauge;
+}
+
+Bench bench_of(const LongShot& set) {
+  Bench bench = testing::ElasticShpb{}.bench();
+  bench.input.length_m = {set.length_m};
+  bench.input.diameter_m = {0.015};
+  bench.input.density_kg_m3 = {set.bars.density_kg_m3};
+  bench.input.youngs_modulus_Pa.reset();
+  if (set.bars.elastic()) {
+    bench.input.youngs_modulus_Pa = Measured{set.bars.E1_Pa};
+  }
+  bench.output = bench.input;
+  bench.gauges.clear();
+  for (const double x : set.input_m) {
+    bench.gauges.push_back(gauge_at("input", x, bench.gauges.size() + 1));
+  }
+  for (const double x : set.output_m) {
+    bench.gauges.push_back(gauge_at("output", x, bench.gauges.size() + 1));
+  }
+  bench.specimen = Specimen{.length_m = {0.004}, .diameter_m = {0.012}};
+  bench.specimen->density_kg_m3 = Measured{set.specimen.density_kg_m3};
+  return bench;
+}
+
+struct Records {
+  std::vector<std::vector<double>> strains;
+  SpecimenHistory truth;
+};
+
+Records records_of(const LongShot& set) {
+  BenchModel model;
+  model.input = {set.length_m, circle_m2(0.015), set.bars};
+  model.specimen = RodShape{0.004, circle_m2(0.012), set.specimen};
+  model.output = model.input;
+  model.pulse = {.peak_force_N = set.bars.E1_Pa * circle_m2(0.015) * set.peak_strain,
+                 .duration_s = set.pulse_s,
+                 .ramp_s = set.ramp_s};
+  for (const double x : set.input_m) {
+    model.gauges.push_back({RodId::input, x});
+  }
+  for (const double x : set.output_m) {
+    model.gauges.push_back({RodId::output, x});
+  }
+  const BenchHistory history =
+      run_bench(model, kStep_s, static_cast<std::size_t>(set.record_s / kStep_s));
+  Records records;
+  for (const auto& strain : history.gauge_strain) {
+    records.strains.emplace_back(kPreSamples, 0.0);
+    for (std::size_t n = 0; n < strain.size(); n += kStepsPerSample) {
+      records.strains.back().push_back(strain[n]);
+    }
+  }
+  records.truth = *history.specimen;
+  return records;
+}
+
+Solved solve(const LongShot& set, unsigned seed = 1) {
+  const Records records = records_of(set);
+  return {testing::digitise(bench_of(set), records.strains, set.noise_rms,
+                            set.noise_rms > 0.0 ? 16 : 24, 0.02, seed),
+          records.truth, kPreSamples * 1e-6 + set.length_m / set.bars.front_speed_m_per_s()};
+}
+
+/// The defaults, solved once.
+const Solved& plain_shot() {
+  static const Solved solved = solve({});
+  return solved;
+}
+
+/// Largest difference as a share of the truth's largest value.
+double worst(const Reduction& r, const std::vector<double>& reduced, const Solved& solved,
+             const std::vector<double>& exact) {
+  double largest = 0.0;
+  double difference = 0.0;
+  for (std::size_t n = 0; n < reduced.size(); ++n) {
+    const double t = r.time_s[n] + r.arrival_s - solved.front_arrival_s;
+    const double index = std::max(0.0, (t - solved.truth.time_s.front()) / kStep_s);
+    const auto i = std::min(static_cast<std::size_t>(index), exact.size() - 2);
+    const double share = index - static_cast<double>(i);
+    const double expected = exact[i] * (1.0 - share) + exact[i + 1] * share;
+    largest = std::max(largest, std::abs(expected));
+    difference = std::max(difference, std::abs(reduced[n] - expected));
+  }
+  return difference / largest;
+}
+
+const Check& check_of(const Reduction& r, const std::string& name) {
+  for (const Check& check : r.quality.checks) {
+    if (check.name == name) {
+      return check;
+    }
+  }
+  throw std::out_of_range(name);
+}
+
+Reduction reduced(const Shot& shot, Separation separation, double duration_s = 0.0) {
+  ReductionOptions options;
+  options.separation = separation;
+  if (duration_s > 0.0) {
+    options.duration_s = duration_s;
+  }
+  return Reducer(options).reduce(shot);
+}
+
+TEST(SeparatedReduction, APulseThatOutlastsTheWindowIsFollowedToTheEndOfTheFirstLoading) {
+  const Solved& solved = plain_shot();
+  const Reduction r = Reducer().reduce(solved.shot);
+  ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
+  EXPECT_EQ(r.separation, Separation::gauges);
+  // 700 us of push, then the specimen unloads; the first return is at the specimen after 640 us.
+  EXPECT_GT(r.time_s.back(), 750e-6);
+  EXPECT_LT(worst(r, r.force_front_N, solved, solved.truth.force_front_N), 5e-4);
+  EXPECT_LT(worst(r, r.force_back_N, solved, solved.truth.force_back_N), 5e-4);
+  EXPECT_LT(worst(r, r.strain, solved, solved.truth.strain), 5e-4);
+  EXPECT_LT(worst(r, r.strain_rate_per_s, solved, solved.truth.strain_rate_per_s), 2e-3);
+  const Check& overlap = check_of(r, "window_overlap");
+  EXPECT_EQ(overlap.verdict, Verdict::pass);
+  EXPECT_GT(overlap.value, 0.9);
+  EXPECT_NE(overlap.text.find("told apart by g1 and g2"), std::string::npos) << overlap.text;
+}
+
+TEST(SeparatedReduction, WithoutItTheSameShotIsFarOffAndSaysSo) {
+  const Solved& solved = plain_shot();
+  const Reduction r = reduced(solved.shot, Separation::never);
+  EXPECT_EQ(check_of(r, "window_overlap").verdict, Verdict::fail);
+  EXPECT_GT(worst(r, r.strain, solved, solved.truth.strain), 0.3);
+  LongShot one;
+  one.input_m = {0.45};
+  const Shot one_shot = solve(one).shot;
+  const Reduction alone = Reducer().reduce(one_shot);
+  EXPECT_EQ(alone.separation, Separation::never);
+  EXPECT_EQ(check_of(alone, "window_overlap").verdict, Verdict::fail);
+  EXPECT_THROW((void)reduced(one_shot, Separation::gauges), InputError);
+}
+
+TEST(SeparatedReduction, ElasticBarsWithMoreGaugesThanAreNeeded) {
+  LongShot set;
+  set.bars = kAluminium;
+  set.specimen = kFoam;
+  set.length_m = 1.0;
+  set.input_m = {0.2, 0.45, 0.6};
+  set.output_m = {0.05, 0.3};
+  const Solved solved = solve(set);
+  const Reduction r = Reducer().reduce(solved.shot);
+  EXPECT_EQ(r.separation, Separation::gauges);
+  EXPECT_GT(r.time_s.back(), 1.2e-3);  // three returns behind each other
+  EXPECT_LT(worst(r, r.force_front_N, solved, solved.truth.force_front_N), 5e-4);
+  EXPECT_LT(worst(r, r.strain, solved, solved.truth.strain), 5e-4);
+}
+
+/// One gauge a bar: the output bar's force at the input bar's end. What that costs is what the
+/// specimen is out of equilibrium: a force that is off by d moves the end by d / Z and, twice for
+/// each time that the waves have gone to the gauge and back, by 2 d / Z more.
+TEST(SeparatedReduction, OneGaugeAndEquilibriumFollowALongPulseToo) {
+  LongShot set;
+  set.input_m = {0.35};
+  const Solved solved = solve(set);
+  const Reduction r = reduced(solved.shot, Separation::equilibrium);
+  ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
+  EXPECT_GT(r.time_s.back(), 750e-6);
+  EXPECT_LT(worst(r, r.force_back_N, solved, solved.truth.force_back_N), 5e-4);
+  const double travel_s = 0.35 / kPmma.front_speed_m_per_s();
+  const double times = 1.0 + 2.0 * std::floor(r.time_s.back() / (2.0 * travel_s));
+  double impulse = 0.0;
+  double largest = 0.0;
+  for (std::size_t n = 0; static_cast<double>(n) * kStep_s < r.time_s.back(); ++n) {
+    impulse += kStep_s * std::abs(solved.truth.force_front_N[n] - solved.truth.force_back_N[n]);
+    largest = std::max(largest, solved.truth.strain[n]);
+  }
+  const double relaxed_Pa = 1.0 / (1.0 / kPmma.E1_Pa + 1.0 / kPmma.E2_Pa);
+  const double least_impedance = std::sqrt(kPmma.density_kg_m3 * relaxed_Pa) * circle_m2(0.015);
+  const double bound = times * impulse / least_impedance / 0.004 / largest;
+  EXPECT_LT(bound, 0.1);
+  EXPECT_LT(worst(r, r.strain, solved, solved.truth.strain), bound);
+  EXPECT_EQ(check_of(r, "equilibrium").verdict, Verdict::warn);
+  EXPECT_NE(check_of(r, "equilibrium").text.find("not tested"), std::string::npos);
+}
+
+TEST(SeparatedReduction, APulseThatIsOverInTimeNeedsNoneAndKeepsItsBits) {
+  LongShot set;
+  set.pulse_s = 170e-6;
+  set.ramp_s = 40e-6;
+  set.input_m = {0.4, 0.2};
+  set.noise_rms = 4e-6;
+  const Shot shot = solve(set).shot;
+  const Reduction r = Reducer().reduce(shot);
+  EXPECT_EQ(r.separation, Separation::never);
+  const Reduction plain = reduced(shot, Separation::never);
+  EXPECT_EQ(r.stress_Pa, plain.stress_Pa);
+  EXPECT_EQ(r.strain, plain.strain);
+  // Asked for, it finds the same specimen.
+  set.noise_rms = 0.0;
+  const Solved solved = solve(set);
+  const Reduction asked = reduced(solved.shot, Separation::gauges);
+  EXPECT_EQ(asked.separation, Separation::gauges);
+  EXPECT_LT(worst(asked, asked.strain, solved, solved.truth.strain), 1e-3);
+  EXPECT_LT(worst(asked, asked.force_front_N, solved, solved.truth.force_front_N), 5e-3);
+}
+
+/// Elastic bars and a spring that holds on to both, by d'Alembert: a push of 600 us on bars that it
+/// crosses in 195, then loading after loading.
+TEST(SeparatedReduction, LaterLoadingsAreFollowed) {
+  testing::ElasticShpb model;
+  model.sampling_frequency_Hz = 4e6;  // every return rounds the pulse's corners once more
+  model.pulse_s = 600e-6;
+  model.rise_s = 40e-6;
+  model.duration_s = 2.6e-3;
+  model.second_to_A_m = 0.75;
+  const auto records = model.solve();
+  const Shot shot = model.shot(records, 0.0, 24, 0.01, 1);
+  const Reduction r = reduced(shot, Separation::as_needed, 1.8e-3);
+  EXPECT_EQ(r.separation, Separation::gauges);
+  EXPECT_GT(r.time_s.back(), 1.79e-3);
+  const auto off = [&](const std::vector<double>& history, const std::vector<double>& exact) {
+    double largest = 0.0;
+    double difference = 0.0;
+    for (std::size_t n = 0; n < history.size(); ++n) {
+      const double t = std::max(0.0, r.time_s[n] + r.arrival_s - records.truth.arrival_s);
+      const double expected = records.truth.at(exact, t);
+      largest = std::max(largest, std::abs(expected));
+      difference = std::max(difference, std::abs(history[n] - expected));
+    }
+    return difference / largest;
+  };
+  EXPECT_LT(off(r.force_front_N, records.truth.force_N), 2e-3);
+  EXPECT_LT(off(r.force_back_N, records.truth.force_N), 2e-3);
+  EXPECT_LT(off(r.strain, records.truth.strain), 2e-3);
+}
+
+TEST(SeparatedReduction, NoiseIsWhatItsCheckSaysAndBlindFrequenciesAreNamed) {
+  LongShot set;
+  set.record_s = 1.5e-3;
+  const Records records = records_of(set);
+  const Bench bench = bench_of(set);
+  ReductionOptions options;
+  options.band_limit_Hz = 60e3;
+  options.duration_s = 800e-6;
+  options.arrival_s = kPreSamples * 1e-6 + set.input_m[0] / kPmma.front_speed_m_per_s();
+  Reducer reducer(options);
+  const Reduction truth =
+      reducer.reduce(testing::digitise(bench, records.strains, 0.0, 24, 0.02, 1));
+  double peak = 0.0;
+  for (const double force : truth.force_front_N) {
+    peak = std::max(peak, std::abs(force));
+  }
+  double squares = 0.0;
+  double stated = 0.0;
+  constexpr unsigned kShots = 100;
+  for (unsigned seed = 1; seed <= kShots; ++seed) {
+    const Reduction r =
+        reducer.reduce(testing::digitise(bench, records.strains, 4e-6, 16, 0.02, seed));
+    ASSERT_EQ(r.time_s.size(), truth.time_s.size());
+    squares += std::pow((r.force_front_N.back() - truth.force_front_N.back()) / peak, 2);
+    stated += check_of(r, "separation_noise").value / kShots;
+  }
+  EXPECT_NEAR(std::sqrt(squares / kShots), stated, 0.25 * stated);  // 7 % is one sigma of this
+  // Half a wave between the gauges: c / (2 x 0.25 m), the wave at some 2170 m/s.
+  const std::string text = check_of(truth, "separation_noise").text;
+  EXPECT_NE(text.find("blind at 0.0"), std::string::npos) << text;
+  EXPECT_NE(text.find(", 4.2"), std::string::npos) << text;
+}
+
+TEST(SeparatedReduction, ARecordThatEndsInTheLoadingIsNamed) {
+  LongShot set;
+  set.record_s = 0.8e-3;
+  const Reduction r = Reducer().reduce(solve(set).shot);
+  ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
+  EXPECT_EQ(check_of(r, "window_overlap").verdict, Verdict::warn);
+  EXPECT_NE(check_of(r, "window_overlap").text.find("record ends before"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kolsky
