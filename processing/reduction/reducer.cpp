@@ -40,8 +40,8 @@ void require_reducible_bench(const Shot& shot) {
 
 struct Reducer::State {
   ReductionOptions options;
-  std::unique_ptr<Plans> plans;
-  std::unique_ptr<Tables> tables;
+  std::unique_ptr<ShpbPlans> plans;
+  std::unique_ptr<ShpbTables> tables;
   BallReducer ball{};
 };
 
@@ -73,15 +73,15 @@ Reduction Reducer::reduce(const Shot& shot) {
   const Station in = station_on(shot.bench, "input");
   const Station out = station_on(shot.bench, "output");
   std::vector<double> numbers = shpb_numbers(shot.bench, material, options.theory, in, out);
-  const BarModel input(shot.bench.input, in, material);
-  const BarModel output(*shot.bench.output, out, material);
-  const PlanKey plan = PlanKey::of(shot, input, output);
+  const ShpbBar input(shot.bench.input, in, material);
+  const ShpbBar output(*shot.bench.output, out, material);
+  const ShpbPlanKey plan = ShpbPlanKey::of(shot, input, output);
   if (!state_->plans || !(state_->plans->key == plan)) {
-    state_->plans = std::make_unique<Plans>(plan);
+    state_->plans = std::make_unique<ShpbPlans>(plan);
   }
   if (!state_->tables || state_->tables->numbers != numbers || !(state_->tables->plan == plan)) {
-    state_->tables = std::make_unique<Tables>(std::move(numbers), plan, options.theory, shot.bench,
-                                              material, in, out);
+    state_->tables = std::make_unique<ShpbTables>(std::move(numbers), plan, options.theory,
+                                                  shot.bench, material, in, out);
   }
   Reduction reduction = shpb_pass(shot, in, out, options, *state_->plans, *state_->tables);
   reduction.bar_model = describe(shot.bench, material, assumed);

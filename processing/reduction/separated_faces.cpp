@@ -18,7 +18,7 @@ struct BarRecords {
   std::string names;        ///< as "g1 and g2"
   std::size_t least_quiet;  ///< samples before the pulse at all of them
 
-  BarRecords(const Shot& shot, const BarModel& model, const std::string& bar, std::size_t quiet)
+  BarRecords(const Shot& shot, const ShpbBar& model, const std::string& bar, std::size_t quiet)
       : least_quiet(quiet) {
     const Bench& bench = shot.bench;
     std::vector<double> noise;
@@ -47,7 +47,7 @@ struct BarRecords {
 
  private:
   /// Samples before the pulse at a gauge: fewer where it stands before the one that gave `quiet`.
-  static std::size_t quiet_of(const Shot& shot, const BarModel& model, const Gauge& gauge,
+  static std::size_t quiet_of(const Shot& shot, const ShpbBar& model, const Gauge& gauge,
                               std::size_t quiet) {
     const double ahead_m = gauge.bar == "input" ? shot.bench.distance_to_specimen_m(gauge) -
                                                       model.waves.gauge_to_specimen_m
@@ -104,7 +104,7 @@ bool gauges_at_two_places(const Bench& bench, const std::string& bar) {
   return most - least > diameter;
 }
 
-SeparatedFaces separated_faces(const Shot& shot, const Tables& bars, Separation how,
+SeparatedFaces separated_faces(const Shot& shot, const ShpbTables& bars, Separation how,
                                std::size_t quiet, double band_limit_Hz) {
   if (how == Separation::gauges) {
     require_two_places(shot.bench);
@@ -144,7 +144,7 @@ SeparatedFaces separated_faces(const Shot& shot, const Tables& bars, Separation 
   faces.reflected = std::move(at_front.left_going);
   faces.transmitted = std::move(at_back.right_going);
   const WaveSeparation& noisier = how == Separation::equilibrium ? back : front;
-  const BarModel& noisy_bar = how == Separation::equilibrium ? bars.output : bars.input;
+  const ShpbBar& noisy_bar = how == Separation::equilibrium ? bars.output : bars.input;
   const double noisy_at_m = how == Separation::equilibrium ? 0.0 : bars.input_bar.length_m.value;
   faces.front_noise_N = times(noisier.stress_noise_Pa(noisy_at_m, quiet), noisy_bar.waves.area_m2);
   for (const BlindFrequency& blind : front.blind()) {

@@ -28,8 +28,9 @@ struct SeparatedFaces {
 /// @param how    gauges or equilibrium
 /// @param quiet  samples before the pulse: baselines are theirs, and they count as zero
 /// @throws InputError where the gauges do not suffice
-[[nodiscard]] SeparatedFaces separated_faces(const Shot& shot, const Tables& bars, Separation how,
-                                             std::size_t quiet, double band_limit_Hz);
+[[nodiscard]] SeparatedFaces separated_faces(const Shot& shot, const ShpbTables& bars,
+                                             Separation how, std::size_t quiet,
+                                             double band_limit_Hz);
 
 /// Samples to the end of the first loading: where the force, having risen, first falls below a
 /// tenth of what it was at most until then; the record's length where it does not.

@@ -27,7 +27,7 @@ double largest(std::span<const double> values) {
 class Pass {
  public:
   Pass(const Shot& shot, const Station& in, const Station& out, const ReductionOptions& options,
-       Plans& plans, Tables& tables)
+       ShpbPlans& plans, ShpbTables& tables)
       : shot_(shot),
         in_(in),
         out_(out),
@@ -390,8 +390,8 @@ class Pass {
   const Station& in_;
   const Station& out_;
   const ReductionOptions& options_;
-  Plans& t_;
-  Tables& bars_;
+  ShpbPlans& t_;
+  ShpbTables& bars_;
   std::size_t bins_ = 0;  ///< within the band
   double rate_Hz_;
   double period_s_;
@@ -414,7 +414,7 @@ class Pass {
 }  // namespace
 
 Reduction shpb_pass(const Shot& shot, const Station& in, const Station& out,
-                    const ReductionOptions& options, Plans& plans, Tables& tables) {
+                    const ReductionOptions& options, ShpbPlans& plans, ShpbTables& tables) {
   return Pass(shot, in, out, options, plans, tables).run();
 }
 

@@ -10,7 +10,7 @@ namespace kolsky {
 namespace {
 
 /// Samples from just before the incident pulse to the specimen's answer at the gauge.
-std::size_t pulse_room(const Shot& shot, const BarModel& bar) {
+std::size_t pulse_room(const Shot& shot, const ShpbBar& bar) {
   const double round_trip_s = 2.0 * bar.front_time_s(bar.waves.gauge_to_specimen_m);
   return static_cast<std::size_t>((round_trip_s + kFootClearance_s) * shot.rate.Hz()) + 2;
 }
@@ -22,7 +22,7 @@ std::size_t rounded_up(std::size_t samples) {
 
 }  // namespace
 
-BarModel::BarModel(const Bar& bar, const Station& station, const Material& viscoelastic)
+ShpbBar::ShpbBar(const Bar& bar, const Station& station, const Material& viscoelastic)
     : compliance(compliance_of(bar, viscoelastic)),
       front_speed_m_per_s(kolsky::front_speed_m_per_s(bar, *compliance)),
       waves{bar.area_m2(),
@@ -33,7 +33,7 @@ BarModel::BarModel(const Bar& bar, const Station& station, const Material& visco
             front_speed_m_per_s,
             {}} {}
 
-double BarModel::front_time_s(double distance_m) const {
+double ShpbBar::front_time_s(double distance_m) const {
   return distance_m / front_speed_m_per_s;
 }
 
@@ -61,18 +61,18 @@ std::vector<double> shpb_numbers(const Bench& b, const Material& m, WaveTheory t
           b.specimen->length_m};
 }
 
-std::size_t longest_travel(const Shot& shot, const BarModel& input, const BarModel& output) {
+std::size_t longest_travel(const Shot& shot, const ShpbBar& input, const ShpbBar& output) {
   const double travel_s = std::max(input.front_time_s(input.waves.gauge_to_specimen_m),
                                    output.front_time_s(output.waves.gauge_to_specimen_m));
   return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
 }
 
-PlanKey PlanKey::of(const Shot& shot, const BarModel& input, const BarModel& output) {
+ShpbPlanKey ShpbPlanKey::of(const Shot& shot, const ShpbBar& input, const ShpbBar& output) {
   return {shot.samples(), shot.rate, rounded_up(longest_travel(shot, input, output)),
           rounded_up(pulse_room(shot, input))};
 }
 
-Plans::Plans(const PlanKey& k)
+ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
     : key(k),
       transform(k.samples + k.delay, k.rate.period_s()),
       band(transform, k.longest_pulse),
@@ -91,8 +91,8 @@ Plans::Plans(const PlanKey& k)
   }
 }
 
-Tables::Tables(std::vector<double> n, const PlanKey& p, WaveTheory t, const Bench& bench,
-               const Material& m, const Station& in, const Station& out)
+ShpbTables::ShpbTables(std::vector<double> n, const ShpbPlanKey& p, WaveTheory t,
+                       const Bench& bench, const Material& m, const Station& in, const Station& out)
     : numbers(std::move(n)),
       plan(p),
       theory(t),
@@ -102,7 +102,7 @@ Tables::Tables(std::vector<double> n, const PlanKey& p, WaveTheory t, const Benc
       input(bench.input, in, m),
       output(*bench.output, out, m) {}
 
-void Tables::reach(const Plans& plans, std::size_t bins) {
+void ShpbTables::reach(const ShpbPlans& plans, std::size_t bins) {
   if (kernels.bins() >= bins) {
     return;
   }
@@ -114,7 +114,7 @@ void Tables::reach(const Plans& plans, std::size_t bins) {
   kernels = CarryingKernels(path, input.waves, output.waves, specimen_length_m, delay_s);
 }
 
-double Tables::highest_Hz(const Plans& plans, std::size_t bins) const {
+double ShpbTables::highest_Hz(const ShpbPlans& plans, std::size_t bins) const {
   const auto path = std::span(plans.path).first(bins);
   return std::min(blind_from_Hz(std::span(input.waves.modes).first(bins), path),
                   blind_from_Hz(std::span(output.waves.modes).first(bins), path));

@@ -11,12 +11,12 @@
 namespace kolsky {
 
 /// One bar with how waves travel in it.
-struct BarModel {
+struct ShpbBar {
   std::unique_ptr<const Compliance> compliance;
   double front_speed_m_per_s;
   BarWaves waves;
 
-  BarModel(const Bar& bar, const Station& station, const Material& viscoelastic);
+  ShpbBar(const Bar& bar, const Station& station, const Material& viscoelastic);
 
   /// Seconds a front needs over a distance.
   [[nodiscard]] double front_time_s(double distance_m) const;
@@ -28,51 +28,51 @@ struct BarModel {
                                                const Station& out);
 
 /// Samples that a front needs from a gauge to the specimen, on the bar where it needs more.
-[[nodiscard]] std::size_t longest_travel(const Shot& shot, const BarModel& input,
-                                         const BarModel& output);
+[[nodiscard]] std::size_t longest_travel(const Shot& shot, const ShpbBar& input,
+                                         const ShpbBar& output);
 
 /// What decides the plans.
-struct PlanKey {
+struct ShpbPlanKey {
   std::size_t samples;
   SampleRate rate;
   std::size_t delay;  ///< samples by which histories come out late, so that nothing looks ahead
   std::size_t longest_pulse;
-  bool operator==(const PlanKey&) const = default;
+  bool operator==(const ShpbPlanKey&) const = default;
 
   /// Of a shot on these bars; rounded up, so that benches that differ a little share their plans.
-  static PlanKey of(const Shot& shot, const BarModel& input, const BarModel& output);
+  static ShpbPlanKey of(const Shot& shot, const ShpbBar& input, const ShpbBar& output);
 };
 
-/// Plans and work space for shots of one length.
-struct Plans {
-  PlanKey key;
+/// ShpbPlans and work space for shots of one length.
+struct ShpbPlans {
+  ShpbPlanKey key;
   DampedTransform transform;
   BandLimit band;
   std::vector<Complex> path;
   std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
-  explicit Plans(const PlanKey& k);
+  explicit ShpbPlans(const ShpbPlanKey& k);
 };
 
 /// The bars of one bench, with what carries their waves as far up in frequency as was asked for.
-struct Tables {
+struct ShpbTables {
   std::vector<double> numbers;
-  PlanKey plan;
+  ShpbPlanKey plan;
   WaveTheory theory;
   Bar input_bar;
   Bar output_bar;
   double specimen_length_m;
-  BarModel input;
-  BarModel output;
+  ShpbBar input;
+  ShpbBar output;
   CarryingKernels kernels;
 
-  Tables(std::vector<double> n, const PlanKey& p, WaveTheory t, const Bench& bench,
-         const Material& m, const Station& in, const Station& out);
+  ShpbTables(std::vector<double> n, const ShpbPlanKey& p, WaveTheory t, const Bench& bench,
+             const Material& m, const Station& in, const Station& out);
 
-  void reach(const Plans& plans, std::size_t bins);
+  void reach(const ShpbPlans& plans, std::size_t bins);
   /// Where surface gauges go blind, if within so many bins.
-  [[nodiscard]] double highest_Hz(const Plans& plans, std::size_t bins) const;
+  [[nodiscard]] double highest_Hz(const ShpbPlans& plans, std::size_t bins) const;
 };
 
 }  // namespace kolsky
