@@ -20,7 +20,7 @@ namespace {
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
 constexpr double kAllowedRest = 0.01;        ///< of a misfit that one certified effect explains
-constexpr double kUnexplained = -6.9;        ///< ln of the chance that noise leaves as much
+constexpr double kUnexplained = -6.2;        ///< ln of the chance that noise leaves as much
 constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
