@@ -19,9 +19,7 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
-constexpr double kAllowedRest = 0.01;        ///< of a misfit that one certified effect explains
-constexpr double kUnexplained = -6.2;        ///< ln of the chance that noise leaves as much
-constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
+constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
   const auto mean = [&](const Studied& studied) {
@@ -261,11 +259,9 @@ class Diagnostician {
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
-    // That something is there is certain once an effect is certified.
-    const double threshold = diagnosis_.effects.empty() ? kUnexplained : kUnexplainedBeside;
     // Smooth distortions show that something is left; how much, all that repeats.
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
-    const bool rest = (diagnosis_.unexplained_log_p < threshold &&
+    const bool rest = (diagnosis_.unexplained_log_p < options_.log_alpha &&
                        excess > allowed_rest() * std::max(0.0, explained)) ||
                       at_all_gauges_but_one();
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
