@@ -43,7 +43,7 @@ struct ShpbPlanKey {
   static ShpbPlanKey of(const Shot& shot, const ShpbBar& input, const ShpbBar& output);
 };
 
-/// ShpbPlans and work space for shots of one length.
+/// Plans and work space for shots of one length.
 struct ShpbPlans {
   ShpbPlanKey key;
   DampedTransform transform;
