@@ -122,8 +122,8 @@ std::string blind_text(const std::vector<double>& blind_Hz) {
 
 /// What the gauges' noise becomes where they tell the waves apart: little at first, more with time,
 /// most of it at the frequencies at which they are blind.
-Check separation_noise(const SeparationJudgement& separated) {
-  Check check{.name = "separation_noise", .limit = kSeparationNoiseLimit, .unit = "1", .text = {}};
+Check separated_noise(const SeparationJudgement& separated) {
+  Check check{.name = "separated_noise", .limit = kSeparationNoiseLimit, .unit = "1", .text = {}};
   check.value = separated.noise_share;
   check.verdict = check.value <= kSeparationNoiseLimit ? Verdict::pass : Verdict::warn;
   check.text = formatted(
@@ -364,7 +364,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
                               band(inputs, reduction),
                               quiet_start(inputs)};
   if (inputs.separated) {
-    reduction.quality.checks.push_back(separation_noise(*inputs.separated));
+    reduction.quality.checks.push_back(separated_noise(*inputs.separated));
   }
 }
 

@@ -150,13 +150,13 @@ TEST_F(Files, ReduceTellsWavesApartByTwoGaugesWhereThePulseOutlastsTheWindow) {
   EXPECT_EQ(checks["window_overlap"]["verdict"], "pass");
   EXPECT_NE(checks["window_overlap"]["text"].get<std::string>().find("told apart by g1 and g3"),
             std::string::npos);
-  EXPECT_NE(checks["separation_noise"]["text"].get<std::string>().find("blind at"),
+  EXPECT_NE(checks["separated_noise"]["text"].get<std::string>().find("blind at"),
             std::string::npos);
   EXPECT_LT(off(separated), 5e-3);
   const json by_time = json_of(scene::kolsky({"reduce", capture, "--json", "--separate", "never"}));
   EXPECT_EQ(by_time["quality"]["checks"]["window_overlap"]["verdict"], "fail");
   EXPECT_GT(off(by_time), 0.1);
-  EXPECT_FALSE(by_time["quality"]["checks"].contains("separation_noise"));
+  EXPECT_FALSE(by_time["quality"]["checks"].contains("separated_noise"));
   EXPECT_EQ(json_of(scene::kolsky({"reduce", capture, "--json", "--separate", "gauges"}))["strain"],
             separated["strain"]);
 }

@@ -307,11 +307,11 @@ TEST(SeparatedReduction, NoiseIsWhatItsCheckSaysAndBlindFrequenciesAreNamed) {
         reducer.reduce(testing::digitise(bench, records.strains, 4e-6, 16, 0.02, seed));
     ASSERT_EQ(r.time_s.size(), truth.time_s.size());
     squares += std::pow((r.force_front_N.back() - truth.force_front_N.back()) / peak, 2);
-    stated += check_of(r, "separation_noise").value / kShots;
+    stated += check_of(r, "separated_noise").value / kShots;
   }
   EXPECT_NEAR(std::sqrt(squares / kShots), stated, 0.25 * stated);  // 7 % is one sigma of this
   // Half a wave between the gauges: c / (2 x 0.25 m), the wave at some 2170 m/s.
-  const std::string text = check_of(truth, "separation_noise").text;
+  const std::string text = check_of(truth, "separated_noise").text;
   EXPECT_NE(text.find("blind at 0.0"), std::string::npos) << text;
   EXPECT_NE(text.find(", 4.2"), std::string::npos) << text;
 }

@@ -94,7 +94,7 @@ TEST(Uncertainty, OfSeparatedWavesIsWhatTheirCheckSays) {
   const double peak = std::abs(*std::max_element(
       force.begin(), force.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
   const auto noise = std::find_if(reduction.quality.checks.begin(), reduction.quality.checks.end(),
-                                  [](const Check& c) { return c.name == "separation_noise"; });
+                                  [](const Check& c) { return c.name == "separated_noise"; });
   ASSERT_NE(noise, reduction.quality.checks.end());
   EXPECT_NEAR(u.force_front_N.sd.back() / peak / noise->value, 1.0, 0.2);
 }
