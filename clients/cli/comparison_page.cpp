@@ -160,7 +160,7 @@ std::vector<Panel> panels_of(Comparer& comparer, const Study& study, WhiteResidu
                     {"time", "s"},
                     {"strain", "strain"},
                     {{"deviation", time, record.deviation}}};
-    deviation.shaded = 2.0 * std::sqrt(residuals.noise_power(j));
+    deviation.shaded = 2.0 * std::sqrt(residuals.noise().quiet_power(j));
     panels.push_back(std::move(deviation));
   }
   return panels;

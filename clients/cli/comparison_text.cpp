@@ -128,7 +128,7 @@ std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& 
   const std::span<const double> own(white.data() + shot * residuals.per_shot(),
                                     residuals.per_shot());
   const ComparedRecord record = comparer.record(own, shot, gauge);
-  const double noise = 2.0 * std::sqrt(residuals.noise_power(gauge));
+  const double noise = 2.0 * std::sqrt(residuals.noise().quiet_power(gauge));
   Panel panel{fmt::format("{} in {}: deviation", campaign.bench.gauges[gauge].name,
                           campaign.shots[shot].id),
               {"time", "s"},

@@ -1,6 +1,7 @@
 #include "processing/criticism/carried_noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -31,29 +32,64 @@ std::size_t end_of(const std::vector<double>& response, double peak) {
 
 }  // namespace
 
-/// A bin's partial sums of the filters' transforms, by what of a record's sample v comes to stand
-/// in the window. From `same_from` to `same_to` all of every response does.
+/// Bins go through the sums four at a time.
+using Four = Eigen::Array4d;
+constexpr std::size_t kTogether = 4;
+
+/// A complex number for each of four bins.
+struct CarriedNoise::Turned {
+  Four re = Four::Zero();
+  Four im = Four::Zero();
+
+  [[nodiscard]] Complex at(std::size_t lane) const {
+    const auto i = static_cast<Eigen::Index>(lane);
+    return {re[i], im[i]};
+  }
+  void add(double weight, const Turned& turn) {
+    re += weight * turn.re;
+    im += weight * turn.im;
+  }
+  void add_product(const Turned& a, const Turned& b) {
+    re += a.re * b.re - a.im * b.im;
+    im += a.re * b.im + a.im * b.re;
+  }
+  void add_product_with_conjugate(const Turned& a, const Turned& b) {
+    re += a.re * b.re + a.im * b.im;
+    im += a.im * b.re - a.re * b.im;
+  }
+  void add_square(const Turned& a) { re += a.re * a.re + a.im * a.im; }
+};
+
+struct CarriedNoise::FourBins {
+  Four white = Four::Zero();   ///< power per sample of the sums
+  std::vector<Turned> turn;    ///< exp(-i w t), t from the record's start on
+  std::vector<Turned> blocks;  ///< its sums over blocks
+};
+
+/// Four bins' partial sums of the filters' transforms, by what of a record's sample v comes to
+/// stand in the window. From `same_from` to `same_to` all of every response does.
 struct CarriedNoise::Sums {
-  std::vector<Eigen::VectorXd> real, imaginary;
+  std::vector<std::vector<Turned>> of;  ///< by filter and v
   std::size_t same_from = 0;
   std::size_t same_to = 0;
 
   /// Sum over v of filter i times the conjugate of filter j.
-  [[nodiscard]] Complex product(std::size_t i, std::size_t j) const {
+  [[nodiscard]] Turned product(std::size_t i, std::size_t j) const {
     const auto part = [&](std::size_t from, std::size_t to) {
-      const auto at = static_cast<Eigen::Index>(from);
-      const auto count = static_cast<Eigen::Index>(to - from);
-      const auto ar = real[i].segment(at, count);
-      const auto ai = imaginary[i].segment(at, count);
-      const auto br = real[j].segment(at, count);
-      const auto bi = imaginary[j].segment(at, count);
-      return i == j ? Complex(ar.squaredNorm() + ai.squaredNorm())
-                    : Complex(ar.dot(br) + ai.dot(bi), ai.dot(br) - ar.dot(bi));
+      Turned sum;
+      for (std::size_t v = from; v < to; ++v) {
+        if (i == j) {
+          sum.add_square(of[i][v]);
+        } else {
+          sum.add_product_with_conjugate(of[i][v], of[j][v]);
+        }
+      }
+      return sum;
     };
-    const auto whole = static_cast<std::size_t>(real[i].size());
-    Complex sum = part(0, same_from) + part(same_to, whole);
+    Turned sum = part(0, same_from);
+    sum.add(1.0, part(same_to, of[i].size()));
     if (same_to > same_from) {
-      sum += static_cast<double>(same_to - same_from) * part(same_from, same_from + 1);
+      sum.add(static_cast<double>(same_to - same_from), part(same_from, same_from + 1));
     }
     return sum;
   }
@@ -97,29 +133,37 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
     slow_.push_back({part.variance, within / (block * block), ahead * behind / (block * block),
                      std::pow(keep, block)});
   }
+  bins_ = bins;
+  four_.resize((bins + kTogether - 1) / kTogether);
+  for (FourBins& four : four_) {
+    four.turn.resize(whole_);
+    four.blocks.resize((whole_ + block_ - 1) / block_);
+  }
   for (std::size_t k = 0; k < bins; ++k) {
+    FourBins& four = four_[k / kTogether];
+    const auto lane = static_cast<Eigen::Index>(k % kTogether);
     const double per_judged = static_cast<double>(k + 1) / static_cast<double>(window.judged);
     const double cycles = per_judged / static_cast<double>(window.decimation);
     double power = spectrum.power(cycles);
     for (const NoiseSpectrum::SlowPart& part : slow) {
       power -= part.power(cycles);
     }
-    Turn turn;
-    turn.white = std::max(power, least_power) / coarse;
-    const auto samples = static_cast<Eigen::Index>(whole_);
+    four.white[lane] = std::max(power, least_power) / coarse;
     const double step = -2.0 * std::numbers::pi * per_judged * static_cast<double>(stride_);
-    turn.cosine.resize(samples);
-    turn.sine.resize(samples);
-    turn.blocks.setZero(static_cast<Eigen::Index>((whole_ + block_ - 1) / block_));
-    for (Eigen::Index n = 0; n < samples; ++n) {
+    for (std::size_t n = 0; n < whole_; ++n) {
       const double phase = step * (static_cast<double>(n) - static_cast<double>(before_));
-      turn.cosine[n] = std::cos(phase);
-      turn.sine[n] = std::sin(phase);
-      turn.blocks[n / static_cast<Eigen::Index>(block_)] += Complex(turn.cosine[n], turn.sine[n]);
+      four.turn[n].re[lane] = std::cos(phase);
+      four.turn[n].im[lane] = std::sin(phase);
     }
-    turns_.push_back(std::move(turn));
+  }
+  for (FourBins& four : four_) {
+    for (std::size_t n = 0; n < whole_; ++n) {
+      four.blocks[n / block_].add(1.0, four.turn[n]);
+    }
   }
 }
+
+CarriedNoise::~CarriedNoise() = default;
 
 std::vector<CarriedBin> CarriedNoise::through(
     std::span<const std::vector<double>> responses) const {
@@ -138,91 +182,114 @@ std::vector<CarriedBin> CarriedNoise::through(
     end = std::max(end, end_of(coarse[i], peak));
   }
   Sums sums;
-  sums.real.assign(filters, Eigen::VectorXd(static_cast<Eigen::Index>(whole_)));
-  sums.imaginary = sums.real;
+  sums.of.assign(filters, std::vector<Turned>(whole_));
   sums.same_from = std::min(2 * before_, whole_);
   sums.same_to = std::max(sums.same_from, whole_ - std::min(end, whole_) + 1);
-  std::vector<CarriedBin> bins(turns_.size());
-  for (std::size_t k = 0; k < bins.size(); ++k) {
-    const Turn& turn = turns_[k];
-    CarriedBin& bin = bins[k];
-    bin.ratio.resize(static_cast<Eigen::Index>(filters));
+  std::vector<CarriedBin> bins(four_.size() * kTogether);
+  for (std::size_t g = 0; g < four_.size(); ++g) {
     for (std::size_t i = 0; i < filters; ++i) {
-      double* real = sums.real[i].data();
-      double* imaginary = sums.imaginary[i].data();
-      double re = 0.0;
-      double im = 0.0;
-      for (std::size_t n = 0; n < whole_; ++n) {
-        re += coarse[i][n] * turn.cosine[static_cast<Eigen::Index>(n)];
-        im += coarse[i][n] * turn.sine[static_cast<Eigen::Index>(n)];
-        real[whole_ - 1 - n] = re;
-        imaginary[whole_ - 1 - n] = im;
-      }
-      // What arrives before the window begins never stands in it.
-      double early_re = 0.0;
-      double early_im = 0.0;
-      for (std::size_t n = 0; n < 2 * before_; ++n) {
-        early_re += coarse[i][n] * turn.cosine[static_cast<Eigen::Index>(n)];
-        early_im += coarse[i][n] * turn.sine[static_cast<Eigen::Index>(n)];
-        real[2 * before_ - 1 - n] -= early_re;
-        imaginary[2 * before_ - 1 - n] -= early_im;
-      }
-      const auto from = static_cast<Eigen::Index>(before_);
-      const auto count = static_cast<Eigen::Index>(judged_);
-      bin.ratio[static_cast<Eigen::Index>(i)] = {sums.real[i].segment(from, count).mean(),
-                                                 sums.imaginary[i].segment(from, count).mean()};
+      add_up(coarse[i], four_[g], sums.of[i]);
     }
-    add_to(bin, turn, sums);
-    bin.power *= scale * scale;
+    take(sums, four_[g], std::span(bins).subspan(g * kTogether, kTogether));
   }
+  bins.resize(bins_);
   return bins;
 }
 
-void CarriedNoise::add_to(CarriedBin& bin, const Turn& turn, const Sums& sums) const {
-  const auto filters = static_cast<Eigen::Index>(sums.real.size());
-  Eigen::MatrixXcd square(filters, filters);
-  for (Eigen::Index i = 0; i < filters; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      square(i, j) = sums.product(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-      square(j, i) = std::conj(square(i, j));
+void CarriedNoise::add_up(const std::vector<double>& response, const FourBins& four,
+                          std::vector<Turned>& sums) const {
+  Turned sum;
+  for (std::size_t n = 0; n < whole_; ++n) {
+    sum.add(response[n], four.turn[n]);
+    sums[whole_ - 1 - n] = sum;
+  }
+  // What arrives before the window begins never stands in it.
+  Turned early;
+  for (std::size_t n = 0; n < 2 * before_; ++n) {
+    early.add(response[n], four.turn[n]);
+    sums[2 * before_ - 1 - n].add(-1.0, early);
+  }
+}
+
+/// Sums over blocks of what is carried, turned back to the sample's own time.
+std::vector<CarriedNoise::Turned> CarriedNoise::in_blocks(const std::vector<Turned>& sums,
+                                                          std::size_t same_from,
+                                                          std::size_t same_to,
+                                                          const FourBins& four) const {
+  std::vector<Turned> blocks(four.blocks.size());
+  for (std::size_t m = 0; m < blocks.size(); ++m) {
+    const std::size_t first = m * block_;
+    const std::size_t last = std::min(first + block_, whole_);
+    if (first >= same_from && last <= same_to) {
+      blocks[m].add_product(sums[first], four.blocks[m]);
+      continue;
+    }
+    for (std::size_t v = first; v < last; ++v) {
+      blocks[m].add_product(sums[v], four.turn[v]);
     }
   }
-  // Sums over blocks of what is carried, turned back to the sample's own time.
-  Eigen::MatrixXcd blocks(filters, turn.blocks.size());
-  for (Eigen::Index i = 0; i < filters; ++i) {
-    const Eigen::VectorXd& re = sums.real[static_cast<std::size_t>(i)];
-    const Eigen::VectorXd& im = sums.imaginary[static_cast<std::size_t>(i)];
-    for (Eigen::Index m = 0; m < blocks.cols(); ++m) {
-      const auto first = static_cast<std::size_t>(m) * block_;
-      const std::size_t last = std::min(first + block_, whole_);
-      if (first >= sums.same_from && last <= sums.same_to) {
-        const auto at = static_cast<Eigen::Index>(first);
-        blocks(i, m) = Complex(re[at], im[at]) * turn.blocks[m];
-        continue;
+  return blocks;
+}
+
+void CarriedNoise::take(const Sums& sums, const FourBins& four, std::span<CarriedBin> bins) const {
+  const std::size_t filters = sums.of.size();
+  const auto rows = static_cast<Eigen::Index>(filters);
+  std::array<Eigen::MatrixXcd, kTogether> square;
+  std::array<Eigen::MatrixXcd, kTogether> blocks;
+  square.fill(Eigen::MatrixXcd(rows, rows));
+  blocks.fill(Eigen::MatrixXcd(rows, static_cast<Eigen::Index>(four.blocks.size())));
+  for (CarriedBin& bin : bins) {
+    bin.ratio.resize(rows);
+  }
+  for (std::size_t i = 0; i < filters; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    Turned whole;
+    for (std::size_t v = before_; v < before_ + judged_; ++v) {
+      whole.add(1.0, sums.of[i][v]);
+    }
+    const std::vector<Turned> own = in_blocks(sums.of[i], sums.same_from, sums.same_to, four);
+    for (std::size_t lane = 0; lane < kTogether; ++lane) {
+      bins[lane].ratio[row] = whole.at(lane) / static_cast<double>(judged_);
+      for (std::size_t m = 0; m < own.size(); ++m) {
+        blocks[lane](row, static_cast<Eigen::Index>(m)) = own[m].at(lane);
       }
-      double sum_re = 0.0;
-      double sum_im = 0.0;
-      for (auto v = static_cast<Eigen::Index>(first); v < static_cast<Eigen::Index>(last); ++v) {
-        sum_re += re[v] * turn.cosine[v] - im[v] * turn.sine[v];
-        sum_im += re[v] * turn.sine[v] + im[v] * turn.cosine[v];
+    }
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Turned product = sums.product(i, j);
+      const auto column = static_cast<Eigen::Index>(j);
+      for (std::size_t lane = 0; lane < kTogether; ++lane) {
+        square[lane](row, column) = product.at(lane);
+        square[lane](column, row) = std::conj(product.at(lane));
       }
-      blocks(i, m) = {sum_re, sum_im};
     }
   }
+  const auto scale = static_cast<double>(stride_);
+  for (std::size_t lane = 0; lane < kTogether; ++lane) {
+    bins[lane].power =
+        scale * scale *
+        power_of(square[lane], blocks[lane], four.white[static_cast<Eigen::Index>(lane)]);
+  }
+}
+
+/// @param square  sum over samples of what is carried times its conjugate
+/// @param blocks  its sums over blocks, filters x blocks
+Eigen::MatrixXcd CarriedNoise::power_of(const Eigen::MatrixXcd& square, Eigen::MatrixXcd& blocks,
+                                        double white) const {
   const auto quiet = static_cast<Eigen::Index>(quiet_blocks_);
   const auto quiet_samples = static_cast<double>(quiet_blocks_ * block_);
   const Eigen::VectorXcd offset = blocks.rowwise().sum() / quiet_samples;
   const Eigen::VectorXcd of_quiet = blocks.leftCols(quiet).rowwise().sum();
-  bin.power = turn.white * (square - of_quiet * offset.adjoint() - offset * of_quiet.adjoint() +
-                            quiet_samples * offset * offset.adjoint());
+  Eigen::MatrixXcd power =
+      white * (square - of_quiet * offset.adjoint() - offset * of_quiet.adjoint() +
+               quiet_samples * offset * offset.adjoint());
   if (slow_.empty()) {
-    return;
+    return power;
   }
   blocks.leftCols(quiet).colwise() -= static_cast<double>(block_) * offset;
   const Eigen::MatrixXcd itself = blocks * blocks.adjoint();
-  Eigen::MatrixXcd earlier(filters, blocks.cols());
+  Eigen::MatrixXcd earlier(blocks.rows(), blocks.cols());
   for (const Part& part : slow_) {
-    for (Eigen::Index i = 0; i < filters; ++i) {
+    for (Eigen::Index i = 0; i < blocks.rows(); ++i) {
       Complex sum = 0.0;
       for (Eigen::Index m = 0; m < blocks.cols(); ++m) {
         earlier(i, m) = part.keep * sum;
@@ -230,8 +297,9 @@ void CarriedNoise::add_to(CarriedBin& bin, const Turn& turn, const Sums& sums) c
       }
     }
     const Eigen::MatrixXcd cross = blocks * earlier.adjoint();
-    bin.power += part.variance * (part.within * itself + part.between * (cross + cross.adjoint()));
+    power += part.variance * (part.within * itself + part.between * (cross + cross.adjoint()));
   }
+  return power;
 }
 
 }  // namespace kolsky

@@ -39,6 +39,9 @@ class CarriedNoise {
   /// @param least_power  of white noise beside what the spectrum says (steps of a converter)
   CarriedNoise(const NoiseSpectrum& spectrum, double least_power, const WindowInRecord& window,
                std::size_t bins);
+  ~CarriedNoise();
+  CarriedNoise(const CarriedNoise&) = delete;
+  CarriedNoise& operator=(const CarriedNoise&) = delete;
 
   /// @param responses  k by filter, from lag -before on, judged + 2 before samples
   [[nodiscard]] std::vector<CarriedBin> through(
@@ -52,15 +55,18 @@ class CarriedNoise {
     double between = 0.0;  ///< with the next, over keep
     double keep = 0.0;     ///< from one block to the next
   };
-  /// By bin.
-  struct Turn {
-    double white = 0.0;            ///< power per sample of the sums
-    Eigen::VectorXd cosine, sine;  ///< of exp(-i w t), t from the record's start on
-    Eigen::VectorXcd blocks;       ///< its sums over blocks
-  };
+  struct Turned;
+  struct FourBins;
   struct Sums;
 
-  void add_to(CarriedBin& bin, const Turn& turn, const Sums& sums) const;
+  void add_up(const std::vector<double>& response, const FourBins& four,
+              std::vector<Turned>& sums) const;
+  [[nodiscard]] std::vector<Turned> in_blocks(const std::vector<Turned>& sums,
+                                              std::size_t same_from, std::size_t same_to,
+                                              const FourBins& four) const;
+  void take(const Sums& sums, const FourBins& four, std::span<CarriedBin> bins) const;
+  [[nodiscard]] Eigen::MatrixXcd power_of(const Eigen::MatrixXcd& square, Eigen::MatrixXcd& blocks,
+                                          double white) const;
 
   WindowInRecord window_;
   std::size_t stride_ = 1;  ///< the sums are formed at every so many samples
@@ -70,7 +76,8 @@ class CarriedNoise {
   std::size_t block_ = 1;  ///< slow noise is looked at in blocks of so many
   std::size_t quiet_blocks_ = 1;
   std::vector<Part> slow_;
-  std::vector<Turn> turns_;
+  std::size_t bins_ = 0;
+  std::vector<FourBins> four_;
 };
 
 }  // namespace kolsky

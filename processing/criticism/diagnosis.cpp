@@ -19,9 +19,7 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
-constexpr double kAllowedRest = 0.01;        ///< of a misfit that certified effects explain
-constexpr double kUnexplained = -6.9;        ///< ln of the chance that noise leaves as much
-constexpr double kUnexplainedBeside = -4.6;  ///< the same beside certified effects
+constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
   const auto mean = [&](const Studied& studied) {
@@ -69,8 +67,10 @@ class Diagnostician {
     while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
     }
     if (diagnosis_.effects.size() > 1) {
-      drop_unneeded(current);
-      reconsider(current);
+      drop_unneeded(current, 1);  // the last was certified beside all others
+      if (reconsider(current)) {
+        drop_unneeded(current, 0);
+      }
     }
     conclude(first, current);
     return std::move(diagnosis_);
@@ -179,8 +179,9 @@ class Diagnostician {
   }
 
   /// What was found first was chosen beside what was not known yet: each but the last is sought
-  /// again beside all others.
-  void reconsider(Studied& current) {
+  /// again beside all others. @return whether anything else took its place
+  bool reconsider(Studied& current) {
+    bool changed = false;
     for (std::size_t i = 0; i + 1 < diagnosis_.effects.size(); ++i) {
       const std::string id = diagnosis_.effects[i];
       options_.progress("seeking " + id + " again beside the others");
@@ -202,10 +203,12 @@ class Diagnostician {
         set_verdict(id, "not needed");
         diagnosis_.tied_with.erase(id);
         diagnosis_.effects[i] = choice->id;
+        changed = true;
       }
       start_ = with(start, search.candidates()[choice->candidate], true);
       take(*choice, current);
     }
+    return changed;
   }
 
   Studied without(const Studied& current, const std::string& id) {
@@ -224,9 +227,9 @@ class Diagnostician {
     return held_out_squares(studied, study_.residuals(), study_.executor());
   }
 
-  /// Backward: what later effects have made superfluous goes.
-  void drop_unneeded(Studied& current) {
-    for (std::size_t i = 0; i + 1 < diagnosis_.effects.size();) {
+  /// Backward: what others have made superfluous goes, but for so many of the last.
+  void drop_unneeded(Studied& current, std::size_t spared) {
+    for (std::size_t i = 0; i + spared < diagnosis_.effects.size();) {
       const std::string id = diagnosis_.effects[i];
       Studied left = without(current, id);
       const double noise = noise_of(current.misfit, study_.campaign().shots.size());
@@ -256,10 +259,10 @@ class Diagnostician {
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
-    // That something is there is certain once an effect is certified.
-    const double threshold = diagnosis_.effects.empty() ? kUnexplained : kUnexplainedBeside;
-    const bool rest = (diagnosis_.unexplained_log_p < threshold &&
-                       left.excess > kAllowedRest * std::max(0.0, explained)) ||
+    // Smooth distortions show that something is left; how much, all that repeats.
+    const double excess = std::max(left.excess, repeated_excess(current.misfit));
+    const bool rest = (diagnosis_.unexplained_log_p < options_.log_alpha &&
+                       excess > allowed_rest() * std::max(0.0, explained)) ||
                       at_all_gauges_but_one();
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
@@ -298,6 +301,17 @@ class Diagnostician {
       diagnosis_.notes.emplace_back(
           "one shot: nothing was held out over shots; repeat the shot to certify");
     }
+  }
+
+  [[nodiscard]] double repeated_excess(const Misfit& misfit) const {
+    const double noise = noise_of(misfit, study_.campaign().shots.size());
+    return (misfit.chi2_reduced / noise - 1.0) * misfit.degrees_of_freedom;
+  }
+
+  /// Effects together fit what is not in the library better than one does, so less may remain.
+  [[nodiscard]] double allowed_rest() const {
+    const auto effects = static_cast<double>(std::max<std::size_t>(diagnosis_.effects.size(), 1));
+    return kAllowedRest / (effects * effects);
   }
 
   /// What all gauges but one need alike is something of that one which the library does not have.

@@ -41,7 +41,7 @@ struct Diagnosis {
 
 struct DiagnosisOptions {
   std::size_t most_effects = 3;
-  double log_alpha = -6.9;  ///< ln of the chance of a false claim on clean data: 0.1 %
+  double log_alpha = -5.8;  ///< ln of the chance of a false claim, or a false "unknown": 0.3 %
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 

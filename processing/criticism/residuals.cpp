@@ -5,78 +5,11 @@
 #include <numbers>
 #include <optional>
 
-#include "processing/base/error.hpp"
 #include "processing/criticism/carried_noise.hpp"
-#include "processing/criticism/smooth_power.hpp"
 #include "processing/criticism/specimen_response.hpp"
-#include "processing/identification/noise_spectrum.hpp"
-#include "processing/reduction/band_limit.hpp"
 #include "processing/reduction/pulse.hpp"
 
 namespace kolsky {
-
-namespace {
-
-/// Zeros before and after each record, in time: the filter reaches to both sides, and what it
-/// smears before the first sample would come round to the end, where undamping raises it.
-constexpr double kLead_s = 100e-6;
-/// The filter passes half at this multiple of the highest frequency that is judged.
-constexpr double kFilterOverBand = 1.6;
-/// Beyond this multiple of the filter's limit it has left nothing.
-constexpr double kFilteredFrom = 2.2;
-/// Sums over squares of responses may be sampled as if they ended here: a fortieth is left.
-constexpr double kCarriedFrom = 1.4;
-/// What the filter smears over the cut ends of a record reaches this many of its widths into it.
-constexpr double kEdge = 8.0;
-constexpr double kWrapDamping = 1e-8;
-constexpr std::size_t kFewestJudged = 64;
-/// Power over noise at the highest frequency judged. Where the source is as much noise as signal,
-/// an effect's test rests on how well the noise of each gauge is known, and says little of the
-/// effect.
-constexpr double kPowerOverNoise = 30.0;
-/// What a single shot leaves may be noise of up to so many times the power that was measured before
-/// its pulse: that stretch is too short to show what is slow.
-constexpr double kMostUnrepeated = 4.0;
-
-std::size_t small_factors(std::size_t n) {
-  for (;; ++n) {
-    std::size_t left = n;
-    for (const std::size_t factor : {2U, 3U, 5U}) {
-      while (left % factor == 0) {
-        left /= factor;
-      }
-    }
-    if (left == 1) {
-      return n;
-    }
-  }
-}
-
-std::size_t shortest(const Campaign& campaign) {
-  std::size_t samples = campaign.shots.front().strain.front().size();
-  for (const CampaignShot& shot : campaign.shots) {
-    samples = std::min(samples, shot.strain.front().size());
-  }
-  return samples;
-}
-
-std::size_t longest(const Campaign& campaign) {
-  std::size_t samples = 0;
-  for (const CampaignShot& shot : campaign.shots) {
-    samples = std::max(samples, shot.strain.front().size());
-  }
-  return samples;
-}
-
-constexpr std::size_t kMostDecimation = 8;
-
-/// A length that stays even with small factors however far it is decimated.
-std::size_t transform_length(std::size_t samples) {
-  return 2 * kMostDecimation *
-         small_factors((samples + 2 * kMostDecimation - 1) / (2 * kMostDecimation));
-}
-
-}  // namespace
 
 struct WhiteResiduals::Workspace {
   DampedTransform whole;      ///< of records, at their rate
@@ -98,14 +31,14 @@ struct WhiteResiduals::Workspace {
   std::vector<Eigen::MatrixXcd> whitener;  ///< by bin, of the evaluation under way
   Eigen::MatrixXcd cross;
 
-  Workspace(std::size_t length, const JudgedBand& band, double period_s)
-      : whole(length, period_s, kWrapDamping),
-        decimated(length / band.decimation, period_s * static_cast<double>(band.decimation),
-                  kWrapDamping),
+  Workspace(const JudgedBand& band, double period_s)
+      : whole(band.transformed, period_s, kWrapDamping),
+        decimated(band.transformed / band.decimation,
+                  period_s * static_cast<double>(band.decimation), kWrapDamping),
         plain(band.judged, period_s * static_cast<double>(band.decimation), 1.0),
         fine(band.judged * band.decimation, period_s, 1.0),
-        record(length),
-        residual(length / band.decimation),
+        record(whole.length()),
+        residual(decimated.length()),
         full(whole.bins()),
         carried(decimated.bins()),
         judged(plain.bins()),
@@ -116,16 +49,14 @@ struct WhiteResiduals::Workspace {
 WhiteResiduals::~WhiteResiduals() = default;
 
 WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers)
-    : campaign_(campaign) {
+    : campaign_(campaign), band_(judged_band(campaign, band_limit_Hz)), noise_(campaign, band_) {
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
     if (j != campaign.reference) {
       others_.push_back(j);
     }
   }
-  choose_band(band_limit_Hz);
-  const std::size_t length = transform_length(longest(campaign) + 2 * band_.lead);
   for (std::size_t w = 0; w < workers; ++w) {
-    work_.push_back(std::make_unique<Workspace>(length, band_, campaign.period_s));
+    work_.push_back(std::make_unique<Workspace>(band_, campaign.period_s));
   }
   const Workspace& work = *work_.front();
   for (std::size_t k = 0; k < band_.bins_carried; ++k) {
@@ -137,84 +68,12 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
   for (const CampaignShot& shot : campaign.shots) {
     own_noise_.emplace_back(campaign.gauges(), std::vector<double>(shot.strain.front().size()));
   }
-  prepare_noise();
-  noise_scale_.assign(campaign.gauges(), std::vector<double>(band_.bins_judged, 1.0));
   prepare_spectra();
   measure_signal();
 }
 
-void WhiteResiduals::choose_band(double asked_Hz) {
-  const double rate_Hz = 1.0 / campaign_.period_s;
-  const std::size_t reference = campaign_.reference;
-  DampedTransform transform(longest(campaign_), campaign_.period_s, kWrapDamping);
-  BandLimit limit(transform, transform.length());
-  band_.limit_Hz = asked_Hz;
-  if (asked_Hz <= 0.0) {
-    std::vector<double> limits_Hz;
-    for (const CampaignShot& shot : campaign_.shots) {
-      const auto& record = shot.strain[reference];
-      const double step = campaign_.step[reference];
-      const double noise =
-          std::hypot(quiet_before(record, shot.quiet_samples).noise_rms, step / std::sqrt(12.0));
-      limits_Hz.push_back(limit.from_noise(record, noise, kPowerOverNoise));
-    }
-    const auto middle = limits_Hz.begin() + static_cast<std::ptrdiff_t>(limits_Hz.size() / 2);
-    std::nth_element(limits_Hz.begin(), middle, limits_Hz.end());
-    band_.limit_Hz = *middle;
-    // Surface gauges see little of waves as short as the bar is thick.
-    constexpr double kBlind = 0.25;
-    for (const Bar* bar :
-         {&campaign_.bench.input, campaign_.bench.output ? &*campaign_.bench.output : nullptr}) {
-      if (bar != nullptr) {
-        const double speed = bar->youngs_modulus_Pa
-                                 ? std::sqrt(*bar->youngs_modulus_Pa / bar->density_kg_m3)
-                                 : 2200.0;
-        band_.limit_Hz = std::min(band_.limit_Hz, kBlind * speed / bar->dispersion_radius_m());
-      }
-    }
-    band_.limit_Hz = std::min(band_.limit_Hz, rate_Hz / 2.0 / (kFilterOverBand * kFilteredFrom));
-  }
-  band_.filter_Hz = kFilterOverBand * band_.limit_Hz;
-  band_.decimation = 1;
-  while (2 * band_.decimation <= kMostDecimation &&
-         rate_Hz / static_cast<double>(2 * band_.decimation) / 2.0 >
-             kFilteredFrom * band_.filter_Hz) {
-    band_.decimation *= 2;
-  }
-  const std::size_t d = band_.decimation;
-  band_.lead = d * static_cast<std::size_t>(std::ceil(kLead_s * rate_Hz / static_cast<double>(d)));
-  band_.edge = d * static_cast<std::size_t>(std::ceil(kEdge * BandLimit::smear_s(band_.filter_Hz) *
-                                                      rate_Hz / static_cast<double>(d)));
-  const std::size_t samples = shortest(campaign_);
-  if (samples < 2 * band_.edge + kFewestJudged * d) {
-    throw InputError("samples", "are too few for the band", "give longer records");
-  }
-  // The longest window with a length the transform likes.
-  std::size_t judged = (samples - 2 * band_.edge) / d;
-  judged -= judged % 2;
-  while (small_factors(judged) != judged || judged % 2 != 0) {
-    --judged;
-  }
-  band_.judged = judged;
-  const double bin_Hz = rate_Hz / static_cast<double>(d * judged);
-  band_.bins_judged = std::min(judged / 2 - 1, static_cast<std::size_t>(band_.limit_Hz / bin_Hz));
-  if (band_.bins_judged < 4) {
-    throw InputError("band limit", "leaves no frequency to judge",
-                     "give a wider band or a longer record");
-  }
-  const std::size_t length = transform_length(longest(campaign_) + 2 * band_.lead);
-  const double carried_Hz = rate_Hz / static_cast<double>(length);
-  band_.bins_carried =
-      std::min(length / d / 2 + 1,
-               static_cast<std::size_t>(kFilteredFrom * band_.filter_Hz / carried_Hz) + 1);
-}
-
 std::size_t WhiteResiduals::per_shot() const {
   return 2 * band_.bins_judged * others_.size();
-}
-
-double WhiteResiduals::frequency_Hz(std::size_t bin) const {
-  return static_cast<double>(bin + 1) * work_.front()->plain.bin_width_Hz();
 }
 
 double WhiteResiduals::judged_period_s() const {
@@ -223,67 +82,6 @@ double WhiteResiduals::judged_period_s() const {
 
 double WhiteResiduals::judged_start_s(std::size_t shot) const {
   return static_cast<double>(band_.edge) * campaign_.period_s - campaign_.shots[shot].foot_s;
-}
-
-/// Each gauge's spectrum from the quiet parts of all shots, and how far gauges share their noise.
-void WhiteResiduals::prepare_noise() {
-  const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
-  std::vector<NoiseSpectrum> spectra;
-  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(gauges, gauges);
-  double samples = 0.0;
-  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-    std::vector<std::span<const double>> quiet;
-    for (const CampaignShot& shot : campaign_.shots) {
-      quiet.emplace_back(shot.strain[j].data(), shot.quiet_samples);
-    }
-    spectra.emplace_back(quiet);
-  }
-  for (const CampaignShot& shot : campaign_.shots) {
-    samples += static_cast<double>(shot.quiet_samples);
-    for (Eigen::Index a = 0; a < gauges; ++a) {
-      for (Eigen::Index b = 0; b <= a; ++b) {
-        const auto& of_a = shot.strain[static_cast<std::size_t>(a)];
-        const auto& of_b = shot.strain[static_cast<std::size_t>(b)];
-        for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
-          shared(a, b) += of_a[n] * of_b[n];
-        }
-      }
-    }
-  }
-  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(gauges, gauges);
-  for (Eigen::Index a = 0; a < gauges; ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) {
-      const double scale = std::sqrt(shared(a, a) * shared(b, b));
-      const double rho = scale > 0.0 ? shared(a, b) / scale : 0.0;
-      constexpr double kSignificant = 5.0;
-      if (std::abs(rho) > kSignificant / std::sqrt(samples)) {
-        correlation(a, b) = correlation(b, a) = std::clamp(rho, -0.95, 0.95);
-      }
-    }
-  }
-  const double d = static_cast<double>(band_.decimation);
-  // Sums over the decimated window: its samples are the noise's, its power d times less of them.
-  const double window = static_cast<double>(band_.judged) / d;
-  const auto samples_judged = static_cast<double>(band_.judged * band_.decimation);
-  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    const double cycles = frequency_Hz(k) * campaign_.period_s;
-    Eigen::VectorXd amplitude(gauges);
-    for (Eigen::Index j = 0; j < gauges; ++j) {
-      const double step = campaign_.step[static_cast<std::size_t>(j)];
-      const double least = std::max(step * step / 12.0, 1e-24);
-      amplitude[j] = std::sqrt(window * std::max(spectra[static_cast<std::size_t>(j)].power_within(
-                                                     cycles, samples_judged),
-                                                 least));
-    }
-    noise_.emplace_back(amplitude.asDiagonal() * correlation * amplitude.asDiagonal());
-  }
-  const double step = campaign_.step[campaign_.reference];
-  const WindowInRecord place{band_.judged, band_.edge / band_.decimation,
-                             campaign_.shots.front().quiet_samples / band_.decimation,
-                             band_.decimation,
-                             kCarriedFrom * band_.filter_Hz * campaign_.period_s * d};
-  carried_ = std::make_unique<CarriedNoise>(
-      spectra[campaign_.reference], std::max(step * step / 12.0, 1e-24), place, band_.bins_judged);
 }
 
 void WhiteResiduals::transform_record(Workspace& work, std::span<const double> record,
@@ -394,7 +192,7 @@ std::vector<CarriedBin> WhiteResiduals::carried_by(Workspace& work, const Transf
     const auto begin = work.residual.begin() + static_cast<std::ptrdiff_t>(first);
     work.responses[i].assign(begin, begin + static_cast<std::ptrdiff_t>(band_.judged + 2 * before));
   }
-  std::vector<CarriedBin> bins = carried_->through(work.responses);
+  std::vector<CarriedBin> bins = noise_.carried(work.responses);
   for (std::size_t k = 0; k < bins.size(); ++k) {
     bins[k].power /= filter_[k] * filter_[k];
     bins[k].ratio /= filter_[k];
@@ -413,16 +211,12 @@ Eigen::MatrixXcd WhiteResiduals::whitener(const CarriedBin& carried, std::size_t
     G(i, static_cast<Eigen::Index>(others_[other])) = 1.0;
     G(i, static_cast<Eigen::Index>(campaign_.reference)) = -carried.ratio[i];
   }
-  Eigen::VectorXd scale(gauges);
-  for (Eigen::Index j = 0; j < gauges; ++j) {
-    scale[j] = std::sqrt(noise_scale_[static_cast<std::size_t>(j)][bin]);
-  }
-  const Eigen::MatrixXd noise = scale.asDiagonal() * noise_[bin] * scale.asDiagonal();
+  const Eigen::MatrixXd noise = noise_.covariance(bin);
   cross.noalias() = noise * G.adjoint();
   const auto reference = static_cast<Eigen::Index>(campaign_.reference);
   const Eigen::MatrixXcd own =
       G * cross - noise(reference, reference) * carried.ratio * carried.ratio.adjoint() +
-      noise_scale_[campaign_.reference][bin] * carried.power;
+      noise_.scale(campaign_.reference, bin) * carried.power;
   Eigen::LLT<Eigen::MatrixXcd> factor(own);
   if (factor.info() != Eigen::Success) {
     // What gauges share is known as if it were stationary: among long echoes it can contradict.
@@ -468,7 +262,7 @@ void WhiteResiduals::calibrate(const Composition& composition, const std::vector
   // all as known so far. The slowest part halves its error at each step.
   constexpr int kSteps = 6;
   // From below, for too much of it goes slowly.
-  noise_scale_.assign(campaign_.gauges(), std::vector<double>(band_.bins_judged, 1.0));
+  noise_.forget();
   for (int step = 0; step < kSteps; ++step) {
     freeze(composition, theta);
     share_out_noise(evaluate(composition, theta));
@@ -489,14 +283,9 @@ void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white) {
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     std::vector<double> power(bins);
     for (std::size_t k = 0; k < bins; ++k) {
-      power[k] = noise_scale_[j][k] * power_over_known(j, k, noise, sources);
+      power[k] = noise_.scale(j, k) * power_over_known(j, k, noise, sources);
     }
-    noise_scale_[j] = smooth_power(power);
-    if (shots == 1) {
-      for (double& scale : noise_scale_[j]) {
-        scale = std::clamp(scale, 1.0, kMostUnrepeated);
-      }
-    }
+    noise_.learn(j, power);
   }
 }
 
@@ -519,7 +308,7 @@ double WhiteResiduals::power_over_known(std::size_t gauge, std::size_t bin,
   const double shown =
       shots > 1 ? (all - std::norm(followed) / source_power) / static_cast<double>(shots - 1) : all;
   const auto j = static_cast<Eigen::Index>(gauge);
-  const double known = noise_scale_[gauge][bin] * noise_[bin](j, j);
+  const double known = noise_.power(gauge, bin);
   const double open = known - 2.0 * spread_[bin].row(j).squaredNorm();
   return (shown + std::max(0.0, open)) / known;
 }
@@ -669,22 +458,12 @@ void WhiteResiduals::measure_signal() {
       for (const double value : judged_record(n, j)) {
         energy += value * value;
       }
-      sum += energy / noise_power(j);
+      sum += energy / noise_.quiet_power(j);
     }
   }
   // Noise of unit power has as many whitened residuals as its band has bins, twice.
   signal_energy_ =
       sum * 2.0 * static_cast<double>(band_.bins_judged) / static_cast<double>(band_.judged);
-}
-
-double WhiteResiduals::noise_power(std::size_t gauge) const {
-  const auto j = static_cast<Eigen::Index>(gauge);
-  double sum = 0.0;
-  for (const Eigen::MatrixXd& power : noise_) {
-    sum += power(j, j);
-  }
-  const double n = static_cast<double>(band_.judged);
-  return 2.0 * sum / (n * n);
 }
 
 std::vector<Complex> WhiteResiduals::source_spectrum(std::size_t shot, const Eigen::VectorXd& white,

@@ -6,26 +6,13 @@
 
 #include "processing/criticism/campaign.hpp"
 #include "processing/criticism/composition.hpp"
+#include "processing/criticism/gauge_noise.hpp"
+#include "processing/criticism/judged_band.hpp"
 #include "processing/criticism/shot_residuals.hpp"
 #include "processing/models/transfers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
-
-class CarriedNoise;
-struct CarriedBin;
-
-/// The part of the records that is judged and how.
-struct JudgedBand {
-  double limit_Hz = 0.0;       ///< highest frequency judged
-  double filter_Hz = 0.0;      ///< the filter passes half here
-  std::size_t decimation = 1;  ///< residuals are formed at 1/decimation of the rate
-  std::size_t lead = 0;        ///< zeros before a record [samples]
-  std::size_t edge = 0;        ///< samples at either end that are not judged
-  std::size_t judged = 0;      ///< samples of the judged window, decimated
-  std::size_t bins_judged = 0;
-  std::size_t bins_carried = 0;
-};
 
 /// Whitened residuals of a campaign under compositions of effects.
 ///
@@ -77,7 +64,7 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] std::size_t index(std::size_t bin, std::size_t other) const {
     return 2 * (bin * others_.size() + other);
   }
-  [[nodiscard]] double frequency_Hz(std::size_t bin) const;
+  [[nodiscard]] const GaugeNoise& noise() const { return noise_; }
 
   /// What whitened residuals of one shot are at every gauge, the reference included: the best
   /// estimate of each gauge's deviation from a wave common to all, in strain.
@@ -92,8 +79,6 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] double signal_energy() const { return signal_energy_; }
   [[nodiscard]] double judged_period_s() const;
   [[nodiscard]] double judged_start_s(std::size_t shot) const;
-  /// Power of a gauge's noise in the judged band, strain^2 per judged sample.
-  [[nodiscard]] double noise_power(std::size_t gauge) const;
   /// Spectrum over the judged bins of a shot's source at the reference gauge, as all gauges
   /// together have it: unlike the record there, its error is independent of the residuals.
   [[nodiscard]] std::vector<Complex> source_spectrum(std::size_t shot, const Eigen::VectorXd& white,
@@ -109,8 +94,6 @@ class WhiteResiduals : public ShotResiduals {
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
                       std::size_t first, std::size_t end, std::size_t worker, double* out);
-  void choose_band(double asked_Hz);
-  void prepare_noise();
   void prepare_spectra();
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
@@ -125,16 +108,14 @@ class WhiteResiduals : public ShotResiduals {
 
   const Campaign& campaign_;
   JudgedBand band_;
+  GaugeNoise noise_;
   std::vector<std::size_t> others_;
   std::vector<Complex> damped_path_;
   std::vector<Complex> plain_path_;
   std::vector<double> filter_;                  ///< at the judged bins
   std::vector<Complex> damped_filter_;          ///< at the carried bins
-  std::vector<Eigen::MatrixXd> noise_;          ///< covariance of the gauges per judged bin (power)
-  std::unique_ptr<CarriedNoise> carried_;       ///< of the reference gauge
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
-  std::vector<std::vector<double>> noise_scale_;  ///< of that power, by gauge and bin
-  std::vector<Eigen::MatrixXcd> spread_;          ///< whitened residual to deviations of all gauges
+  std::vector<Eigen::MatrixXcd> spread_;        ///< whitened residual to deviations of all gauges
   /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
   std::vector<std::vector<std::vector<double>>> own_noise_;
   double signal_energy_ = 0.0;

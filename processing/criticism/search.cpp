@@ -272,7 +272,8 @@ double Search::chance_of(const Refit& refit) const {
     return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
   }
   const double freedom = std::max(refit.freedom, 1.0);
-  const double known = belief_in(*use.effect) + static_cast<double>(shots - 1);
+  const double known =
+      belief_in(*use.effect, study_.residuals().noise(), shots) + static_cast<double>(shots - 1);
   const double log_p = log_f_tail(refit.gain / freedom, freedom, known);
   return refit.one_sided ? log_p - std::log(2.0) : log_p;
 }

@@ -40,6 +40,17 @@ double belief_in(const Effect& effect) {
   return is_addition(effect) ? 3.0 : 20.0;
 }
 
+double belief_in(const Effect& effect, const GaugeNoise& noise, std::size_t shots) {
+  constexpr double kSteep = 0.5;  // slow noise is most of it
+  constexpr double kMost = 100.0;
+  const double least = belief_in(effect);
+  if (shots < 3 || is_addition(effect)) {
+    return least;
+  }
+  const double flat = std::clamp((noise.flatness() - kSteep) / (1.0 - kSteep), 0.0, 1.0);
+  return least + flat * (kMost - least);
+}
+
 double scatter_over_noise(const Studied& studied, const std::string& id, std::size_t per_shot) {
   const Effect& effect = *studied.model.find(id)->effect;
   const double belief = belief_in(effect);

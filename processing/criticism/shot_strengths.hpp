@@ -26,6 +26,10 @@ struct ShotStrengths {
 /// which additions to a record are sought, little is known.
 [[nodiscard]] double belief_in(const Effect& effect);
 
+/// With what the residuals of three shots or more say: the flatter the noise, the more frequencies
+/// tell of its power in any direction.
+[[nodiscard]] double belief_in(const Effect& effect, const GaugeNoise& noise, std::size_t shots);
+
 /// How much more than noise the shots differ in the direction of an effect's strength: noise
 /// whose frequencies hang together scatters more there than its spectrum says. At least 1.
 [[nodiscard]] double scatter_over_noise(const Studied& studied, const std::string& id,

@@ -13,7 +13,7 @@ struct PublishedPmma {
   double poisson_ratio;
 };
 
-inline constexpr std::array<PublishedPmma, 4> kTable4{{
+inline const std::array<PublishedPmma, 4> kTable4{{
     {"present work", {1180.0, 5.66e9, 37.0e9, 1.81e6}, 0.360},
     {"Sogabe and Tsuzuki", {1183.0, 5.25e9, 16.9e9, 2.13e6}, 0.365},
     {"Bussac et al.", {1183.0, 5.78e9, 72.3e9, 4.75e6}, 0.360},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <span>
 
@@ -136,6 +137,45 @@ TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
 TEST(Diagnosis, CallsUnknownWhatTheLibraryDoesNotHold) {
   const Made made = make(79, {"x-gauge-creep:g2=0.05"});
   const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(diagnosis.effects.empty());
+}
+
+/// What an amplifier that rings makes of a record: y'' + (w/q) y' + w^2 y = w^2 x, in small steps.
+void ring(std::vector<double>& record, double frequency_Hz, double period_s) {
+  constexpr int kSteps = 50;
+  constexpr double kQuality = 3.0;
+  const double w = 2.0 * std::numbers::pi * frequency_Hz;
+  const double step_s = period_s / kSteps;
+  double y = record.front();
+  double rate = 0.0;
+  double before = record.front();
+  for (double& x : record) {
+    for (int i = 1; i <= kSteps; ++i) {
+      const double now = before + (x - before) * i / kSteps;
+      rate += step_s * (w * w * (now - y) - w / kQuality * rate);
+      y += step_s * rate;
+    }
+    before = x;
+    x = y;
+  }
+}
+
+// A position and lengths of other gauges take up half of it.
+TEST(Diagnosis, CallsUnknownWhatTheOtherGaugesWouldHaveToMakeUpFor) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 79;
+  wishes.shots = 4;
+  wishes.samples = 2048;
+  wishes.elastic = true;
+  const testing::Campaign truth = testing::draw_campaign(wishes);
+  const std::vector<Shot> shots = testing::shots_of(truth);
+  Campaign campaign = read_campaign(shots);
+  for (CampaignShot& shot : campaign.shots) {
+    ring(shot.strain[1], 40e3, campaign.period_s);
+  }
+  Study study(campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, true), {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
   EXPECT_TRUE(diagnosis.effects.empty());
 }

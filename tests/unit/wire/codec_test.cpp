@@ -70,8 +70,10 @@ TEST(BallCodec, ComesBackExact) {
 }
 
 TEST(BallCodec, HistoriesOfUnequalLengthAreRefused) {
+  BallImpact ball;
+  ball.time_s = {0.0, 1e-6};
   Reduction reduction;
-  reduction.ball.emplace().time_s = {0.0, 1e-6};
+  reduction.ball = ball;
   EXPECT_THROW((void)wire::decode(encoded(reduction)), InputError);
 }
 

@@ -1,0 +1,160 @@
+#include "processing/criticism/gauge_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/criticism/carried_noise.hpp"
+#include "processing/criticism/smooth_power.hpp"
+#include "processing/identification/noise_spectrum.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Sums over squares of responses may be sampled as if they ended at this multiple of the filter's
+/// limit: a fortieth is left.
+constexpr double kCarriedFrom = 1.4;
+/// What a single shot leaves may be noise of up to so many times the power that was measured before
+/// its pulse: that stretch is too short to show what is slow.
+constexpr double kMostUnrepeated = 4.0;
+
+std::vector<NoiseSpectrum> quiet_spectra(const Campaign& campaign) {
+  std::vector<NoiseSpectrum> spectra;
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    std::vector<std::span<const double>> quiet;
+    for (const CampaignShot& shot : campaign.shots) {
+      quiet.emplace_back(shot.strain[j].data(), shot.quiet_samples);
+    }
+    spectra.emplace_back(quiet);
+  }
+  return spectra;
+}
+
+/// How far gauges share their noise; nothing where chance does as much.
+Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
+  const auto gauges = static_cast<Eigen::Index>(campaign.gauges());
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(gauges, gauges);
+  double samples = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    samples += static_cast<double>(shot.quiet_samples);
+    for (Eigen::Index a = 0; a < gauges; ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        const auto& of_a = shot.strain[static_cast<std::size_t>(a)];
+        const auto& of_b = shot.strain[static_cast<std::size_t>(b)];
+        for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
+          shared(a, b) += of_a[n] * of_b[n];
+        }
+      }
+    }
+  }
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(gauges, gauges);
+  for (Eigen::Index a = 0; a < gauges; ++a) {
+    for (Eigen::Index b = 0; b < a; ++b) {
+      const double scale = std::sqrt(shared(a, a) * shared(b, b));
+      const double rho = scale > 0.0 ? shared(a, b) / scale : 0.0;
+      constexpr double kSignificant = 5.0;
+      if (std::abs(rho) > kSignificant / std::sqrt(samples)) {
+        correlation(a, b) = correlation(b, a) = std::clamp(rho, -0.95, 0.95);
+      }
+    }
+  }
+  return correlation;
+}
+
+/// Of a converter whose steps are all the noise there is.
+double least_power(const Campaign& campaign, std::size_t gauge) {
+  return std::max(campaign.step[gauge] * campaign.step[gauge] / 12.0, 1e-24);
+}
+
+}  // namespace
+
+GaugeNoise::GaugeNoise(const Campaign& campaign, const JudgedBand& band)
+    : campaign_(campaign), band_(band) {
+  const std::vector<NoiseSpectrum> spectra = quiet_spectra(campaign);
+  measure(spectra, quiet_correlation(campaign));
+  const auto decimation = static_cast<double>(band.decimation);
+  const WindowInRecord place{band.judged, band.edge / band.decimation,
+                             campaign.shots.front().quiet_samples / band.decimation,
+                             band.decimation,
+                             kCarriedFrom * band.filter_Hz * campaign.period_s * decimation};
+  carried_ = std::make_unique<CarriedNoise>(spectra[campaign.reference],
+                                            least_power(campaign, campaign.reference), place,
+                                            band.bins_judged);
+  forget();
+}
+
+GaugeNoise::~GaugeNoise() = default;
+
+void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
+                         const Eigen::MatrixXd& correlation) {
+  // Sums over the decimated window: its samples are the noise's, its power d times less of them.
+  const double window = static_cast<double>(band_.judged) / static_cast<double>(band_.decimation);
+  const auto samples_judged = static_cast<double>(band_.judged * band_.decimation);
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    const double cycles = band_.frequency_Hz(k) * campaign_.period_s;
+    Eigen::VectorXd amplitude(static_cast<Eigen::Index>(spectra.size()));
+    for (std::size_t j = 0; j < spectra.size(); ++j) {
+      amplitude[static_cast<Eigen::Index>(j)] =
+          std::sqrt(window * std::max(spectra[j].power_within(cycles, samples_judged),
+                                      least_power(campaign_, j)));
+    }
+    quiet_.emplace_back(amplitude.asDiagonal() * correlation * amplitude.asDiagonal());
+  }
+}
+
+Eigen::MatrixXd GaugeNoise::covariance(std::size_t bin) const {
+  Eigen::VectorXd amplitude(static_cast<Eigen::Index>(scale_.size()));
+  for (std::size_t j = 0; j < scale_.size(); ++j) {
+    amplitude[static_cast<Eigen::Index>(j)] = std::sqrt(scale_[j][bin]);
+  }
+  return amplitude.asDiagonal() * quiet_[bin] * amplitude.asDiagonal();
+}
+
+double GaugeNoise::power(std::size_t gauge, std::size_t bin) const {
+  const auto j = static_cast<Eigen::Index>(gauge);
+  return scale_[gauge][bin] * quiet_[bin](j, j);
+}
+
+double GaugeNoise::quiet_power(std::size_t gauge) const {
+  const auto j = static_cast<Eigen::Index>(gauge);
+  double sum = 0.0;
+  for (const Eigen::MatrixXd& power : quiet_) {
+    sum += power(j, j);
+  }
+  const auto n = static_cast<double>(band_.judged);
+  return 2.0 * sum / (n * n);
+}
+
+std::vector<CarriedBin> GaugeNoise::carried(std::span<const std::vector<double>> responses) const {
+  return carried_->through(responses);
+}
+
+void GaugeNoise::forget() {
+  scale_.assign(campaign_.gauges(), std::vector<double>(band_.bins_judged, 1.0));
+}
+
+void GaugeNoise::learn(std::size_t gauge, const std::vector<double>& power_over_quiet) {
+  scale_[gauge] = smooth_power(power_over_quiet);
+  if (campaign_.shots.size() == 1) {
+    for (double& scale : scale_[gauge]) {
+      scale = std::clamp(scale, 1.0, kMostUnrepeated);
+    }
+  }
+}
+
+double GaugeNoise::flatness() const {
+  double least = 1.0;
+  for (std::size_t j = 0; j < scale_.size(); ++j) {
+    double sum = 0.0;
+    double logs = 0.0;
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      sum += power(j, k);
+      logs += std::log(power(j, k));
+    }
+    const auto bins = static_cast<double>(band_.bins_judged);
+    least = std::min(least, std::exp(logs / bins) / (sum / bins));
+  }
+  return least;
+}
+
+}  // namespace kolsky

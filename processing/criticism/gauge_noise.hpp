@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "processing/criticism/campaign.hpp"
+#include "processing/criticism/judged_band.hpp"
+
+namespace kolsky {
+
+class CarriedNoise;
+class NoiseSpectrum;
+struct CarriedBin;
+
+/// The noise of all gauges at the judged bins: its spectrum and how far gauges share it from the
+/// quiet parts of all shots, times what residuals have shown of it since.
+class GaugeNoise {
+ public:
+  GaugeNoise(const Campaign& campaign, const JudgedBand& band);
+  ~GaugeNoise();
+  GaugeNoise(const GaugeNoise&) = delete;
+  GaugeNoise& operator=(const GaugeNoise&) = delete;
+
+  /// Covariance of the gauges at a bin, in power of the judged window's transform.
+  [[nodiscard]] Eigen::MatrixXd covariance(std::size_t bin) const;
+  /// That of one gauge.
+  [[nodiscard]] double power(std::size_t gauge, std::size_t bin) const;
+  /// That over what the quiet parts say.
+  [[nodiscard]] double scale(std::size_t gauge, std::size_t bin) const {
+    return scale_[gauge][bin];
+  }
+  /// Of a gauge before residuals said anything, strain^2 per judged sample.
+  [[nodiscard]] double quiet_power(std::size_t gauge) const;
+
+  /// What the other gauges' residuals hold of the reference gauge's noise, as the quiet parts have
+  /// it. @param responses  as CarriedNoise::through
+  [[nodiscard]] std::vector<CarriedBin> carried(
+      std::span<const std::vector<double>> responses) const;
+
+  /// Takes the quiet parts at their word again.
+  void forget();
+  /// @param power_over_quiet  of a gauge at each bin, as residuals show it; made smooth
+  void learn(std::size_t gauge, const std::vector<double>& power_over_quiet);
+
+  /// How near the least white gauge's noise is to white: the geometric over the arithmetic mean of
+  /// its power over the judged bins. Where it is 1, all frequencies tell of the noise at each.
+  [[nodiscard]] double flatness() const;
+
+ private:
+  void measure(const std::vector<NoiseSpectrum>& spectra, const Eigen::MatrixXd& correlation);
+
+  const Campaign& campaign_;
+  JudgedBand band_;
+  std::vector<Eigen::MatrixXd> quiet_;      ///< by bin
+  std::vector<std::vector<double>> scale_;  ///< by gauge and bin
+  std::unique_ptr<CarriedNoise> carried_;
+};
+
+}  // namespace kolsky
