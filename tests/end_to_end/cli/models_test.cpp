@@ -123,7 +123,7 @@ TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
             0);
   EXPECT_TRUE(refused(kolsky({"compare", file("shots/shot01.h5"), file("later/shot01.h5"),
                               "--model", file("m.toml")}),
-                      {"later/shot01.h5 is of another bench", "than " + file("shots/shot01.h5")}));
+                      {"later/shot01.h5: is of another bench", "than " + file("shots/shot01.h5")}));
   EXPECT_TRUE(refused(kolsky({"tour", "--truth-only"}), {"--seed"}));
   EXPECT_TRUE(refused(kolsky({"tour", "--seed", "1", "--shots-only"}), {"--folder"}));
   EXPECT_TRUE(refused(kolsky({"tour", "--folder", file("shots")}), {"empty folder"}));
