@@ -58,6 +58,8 @@ JsonValue describe(const ChainSpeed& speed) {
       {"impulse_N_s", describe(speed.impulse_N_s)},
       {"restitution", JsonObject{{"by_speed", describe(speed.restitution_by_speed)},
                                  {"by_impulse", describe(speed.restitution_by_impulse)}}},
+      {"agrees",
+       speed.furthest() ? JsonValue(std::abs(speed.furthest()->z) < kFarOff) : JsonValue(nullptr)},
       {"force_rms_share", speed.force_rms_share},
       {"force_sd_share", speed.force_sd_share},
       {"low_pass_Hz", foretold.asked.low_pass_Hz},
@@ -124,6 +126,52 @@ std::string speed_text(const ChainSpeed& speed) {
   return text;
 }
 
+/// The speed whose measurement is furthest from what was foretold; null where none is compared.
+const ChainSpeed* furthest_of(const ChainRun& run) {
+  const ChainSpeed* worst = nullptr;
+  for (const ChainSpeed& speed : run.speeds) {
+    if (speed.furthest() &&
+        (worst == nullptr || std::abs(speed.furthest()->z) > std::abs(worst->furthest()->z))) {
+      worst = &speed;
+    }
+  }
+  return worst;
+}
+
+std::string verdict_text(const ChainRun& run) {
+  const ChainSpeed* worst = furthest_of(run);
+  if (worst == nullptr) {
+    return {};
+  }
+  const ChainSpeed::Furthest furthest = *worst->furthest();
+  const std::string where =
+      fmt::format("{} at {:.1f} m/s is {:.1f} deviations off", furthest.name,
+                  worst->foretold.asked.speed_m_per_s.value, std::abs(furthest.z));
+  return std::abs(furthest.z) < kFarOff
+             ? fmt::format("agrees: {}, and nothing further\n", where)
+             : fmt::format(
+                   "does not agree: {}, where chance alone stays within {:g}. A law, the "
+                   "reading, friction or the geometry is another: `kolsky diagnose` on "
+                   "the ball's captures tells which\n",
+                   where, kFarOff);
+}
+
+JsonValue agreement_of(const ChainRun& run) {
+  const ChainSpeed* worst = furthest_of(run);
+  if (worst == nullptr) {
+    return nullptr;
+  }
+  return std::abs(worst->furthest()->z) < kFarOff;
+}
+
+JsonValue describe_between(const ChainRun& run) {
+  JsonList rows;
+  for (const auto& row : run.between) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
 Panel panel_of(const ChainSpeed& speed) {
   const BallPrediction& f = speed.foretold;
   Panel panel{
@@ -136,6 +184,21 @@ Panel panel_of(const ChainSpeed& speed) {
 }
 
 }  // namespace
+
+std::optional<ChainSpeed::Furthest> ChainSpeed::furthest() const {
+  std::optional<Furthest> worst;
+  const auto look = [&](const char* name, const std::optional<Compared>& pair) {
+    if (pair && (!worst || std::abs(pair->z()) > std::abs(worst->z))) {
+      worst = Furthest{name, pair->z()};
+    }
+  };
+  look("peak force", peak_force_N);
+  look("contact time", contact_time_s);
+  look("impulse", impulse_N_s);
+  look("restitution by speed", restitution_by_speed);
+  look("restitution by impulse", restitution_by_impulse);
+  return worst;
+}
 
 double Compared::sd() const {
   return std::max(std::hypot(std::hypot(measured.sd, foretold.sd), foretold.mesh),
@@ -157,6 +220,8 @@ JsonValue describe(const ChainRun& run) {
       {"bar", std::move(bar)},
       {"core", describe(run.core.parameters, run.core.covariance, run.core.chi2_reduced)},
       {"cover", describe(run.cover.parameters, run.cover.covariance, run.cover.chi2_reduced)},
+      {"core_cover_covariance", describe_between(run)},
+      {"agrees", agreement_of(run)},
       {"reading", impact::name_of(run.options.reading)},
       {"friction", run.options.friction},
       {"draws", static_cast<std::uint64_t>(run.options.draws)},
@@ -181,6 +246,7 @@ std::string report(const ChainRun& run, const Terminal& terminal) {
   for (const ChainSpeed& speed : run.speeds) {
     text += speed_text(speed);
   }
+  text += verdict_text(run);
   for (const std::string& remark : run.remarks) {
     for (const std::string& line : wrapped(remark, 96)) {
       text += "  " + line + "\n";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +36,18 @@ struct ChainSpeed {
       force_N;  ///< mean of the shots, at the foretold times; NaN beyond the shortest
   double force_rms_share = 0.0;  ///< rms of measured less foretold over the contact, of the peak
   double force_sd_share = 0.0;   ///< rms of what is foretold to be uncertain there
+
+  /// The compared number that is furthest off, in deviations; nothing where none is compared.
+  struct Furthest {
+    const char* name = "";
+    double z = 0.0;
+  };
+  [[nodiscard]] std::optional<Furthest> furthest() const;
 };
+
+/// Of the numbers of a chain, some fifteen, one is further off than this by chance once in a
+/// thousand chains.
+constexpr double kFarOff = 4.0;
 
 /// The chain from bar to ball.
 struct ChainRun {
@@ -43,6 +55,8 @@ struct ChainRun {
   std::string bars;                      ///< what the specimens' bars were taken to be
   SpecimenFit core;
   SpecimenFit cover;
+  /// Covariance of the core's numbers with the cover's.
+  std::array<std::array<double, 3>, 3> between{};
   PredictionOptions options;
   std::vector<BallImpact> impacts;
   std::vector<ChainSpeed> speeds;

@@ -3,7 +3,9 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
+#include <map>
 
 #include "drivers/files/capture.hpp"
 #include "drivers/files/model_file.hpp"
@@ -38,10 +40,18 @@ std::string name_of_parameter(const Model& model, const EffectUse& use,
 }  // namespace
 
 std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
+  const auto files = files_of(captures);
+  std::map<std::string, std::size_t> called;
+  for (const auto& file : files) {
+    ++called[file.filename().string()];
+  }
+  const bool ambiguous =
+      std::any_of(called.begin(), called.end(), [](const auto& name) { return name.second > 1; });
   std::vector<Shot> shots;
-  for (const auto& file : files_of(captures)) {
+  for (const auto& file : files) {
     shots.push_back(read_capture(file));
-    shots.back().id = file.filename().string();
+    // Of two folders one name may stand for two captures: then as they were given.
+    shots.back().id = ambiguous ? file.string() : file.filename().string();
   }
   return shots;
 }

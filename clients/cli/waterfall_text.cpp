@@ -36,6 +36,21 @@ JsonValue describe_numbers(const std::vector<MovedNumber>& numbers) {
   return object;
 }
 
+JsonValue describe_speeds(const std::vector<SpeedMisfit>& speeds) {
+  JsonList list;
+  for (const SpeedMisfit& speed : speeds) {
+    JsonObject own{{"speed_m_per_s", speed.speed_m_per_s},
+                   {"rms_percent_of_peak", speed.rms_percent},
+                   {"noise_percent_of_peak", speed.noise_percent}};
+    if (speed.restitution_measured > 0.0) {
+      own.push_back({"restitution", JsonObject{{"measured", speed.restitution_measured},
+                                               {"foretold", speed.restitution_foretold}}});
+    }
+    list.push_back(std::move(own));
+  }
+  return list;
+}
+
 /// Bars from a little below the floor, one block a step of the logarithm.
 class Bars {
  public:
@@ -110,9 +125,9 @@ std::string drops_text(const Waterfall& fall) {
       strengths += fmt::format("{}{} = {:.4g} ± {:.1g} {}", strengths.empty() ? "" : ", ",
                                number.name, number.value, number.sd, number.unit);
     }
-    text += fmt::format("  {}: {} {:.1f} of chi2 on held-out shots, better in {} of {}",
-                        name_of(step), step.gain >= 0.0 ? "takes off" : "adds", std::abs(step.gain),
-                        step.better_shots, fall.shots);
+    text += fmt::format("  {}: {} {:.1f} of chi2 on held-out {}, better in {} of {}", name_of(step),
+                        step.gain >= 0.0 ? "takes off" : "adds", std::abs(step.gain), fall.fold,
+                        step.better, fall.folds);
     text += step.relief > kRelieved ? fmt::format("; filed numbers pull {:.1f} less\n", step.relief)
                                     : "\n";
     text += strengths.empty() ? "" : "      " + strengths + "\n";
@@ -194,6 +209,44 @@ std::string table_text(const std::vector<std::string>& header,
   return text;
 }
 
+/// Rows of models, a column of every speed, and what noise leaves.
+std::vector<std::vector<std::string>> speed_rows(const Waterfall& fall) {
+  std::vector<std::vector<std::string>> rows;
+  const auto restitutions = [](const SpeedMisfit& speed) {
+    return speed.restitution_measured > 0.0
+               ? fmt::format("{:+.4f}", speed.restitution_measured - speed.restitution_foretold)
+               : std::string();
+  };
+  for (const WaterfallStep& step : fall.steps) {
+    std::vector<std::string> row{name_of(step)};
+    for (const SpeedMisfit& speed : step.speeds) {
+      row.push_back(fmt::format("{:.2f}", speed.rms_percent));
+      row.push_back(restitutions(speed));
+    }
+    rows.push_back(std::move(row));
+  }
+  std::vector<std::string> noise{"noise alone"};
+  for (const SpeedMisfit& speed : fall.steps.back().speeds) {
+    noise.push_back(fmt::format("{:.2f}", speed.noise_percent));
+    noise.emplace_back();
+  }
+  rows.push_back(std::move(noise));
+  return rows;
+}
+
+std::vector<std::string> speed_header(const Waterfall& fall) {
+  std::vector<std::string> header{"model"};
+  for (const SpeedMisfit& speed : fall.steps.front().speeds) {
+    header.push_back(fmt::format("{:.1f} m/s", speed.speed_m_per_s));
+    header.emplace_back("restitution");
+  }
+  return header;
+}
+
+constexpr const char* kSpeedWords =
+    "Deviation of the mean force from the fitted one, rms in % of the peak, and measured less "
+    "foretold restitution:";
+
 Panel curves_panel(const Waterfall& fall) {
   Panel panel{fmt::format("the specimen at {:.3g} 1/s", fall.strain_rate_per_s),
               {"strain", "strain"},
@@ -253,7 +306,7 @@ JsonValue describe(const Waterfall& fall) {
                    {"held_out", step.held_out},
                    {"gain", step.gain},
                    {"prior_relief", step.relief},
-                   {"better_shots", static_cast<std::int64_t>(step.better_shots)},
+                   {"better_" + fall.fold, static_cast<std::int64_t>(step.better)},
                    {"misfit", describe(step.misfit)},
                    {"parameters", describe_numbers(step.numbers)},
                    {"strengths", describe_numbers(step.strengths)}};
@@ -261,6 +314,9 @@ JsonValue describe(const Waterfall& fall) {
       own.push_back({"curve", JsonObject{{"strain", step.curve.strain},
                                          {"stress_Pa", step.curve.stress_Pa},
                                          {"stress_sd_Pa", step.curve.sd_Pa}}});
+    }
+    if (!step.speeds.empty()) {
+      own.push_back({"speeds", describe_speeds(step.speeds)});
     }
     steps.push_back(std::move(own));
   }
@@ -270,17 +326,23 @@ JsonValue describe(const Waterfall& fall) {
                     {"signal", fall.signal},
                     {"closed", fall.closed()},
                     {"strain_rate_per_s", fall.strain_rate_per_s},
-                    {"shots", static_cast<std::int64_t>(fall.shots)}};
+                    {"shots", static_cast<std::int64_t>(fall.shots)},
+                    {"held_out_by", fall.fold},
+                    {"held_out_parts", static_cast<std::int64_t>(fall.folds)}};
 }
 
 std::string waterfall_text(const Waterfall& fall, const Terminal& terminal) {
   std::string text =
-      "misfit on shots the fits did not see, chi2 per residual, logarithmic; ░ is what the effect "
-      "took off\n\n" +
+      "misfit on " + fall.fold +
+      " the fits did not see, chi2 per residual, logarithmic; ░ is what the effect took off\n\n" +
       bars_text(fall, terminal) + "\n" + drops_text(fall) + "\n";
   for (const std::string& line :
        wrapped(left_words(fall), static_cast<std::size_t>(std::max(40, terminal.columns - 2)))) {
     text += "  " + line + "\n";
+  }
+  if (!fall.steps.front().speeds.empty()) {
+    text +=
+        std::string("\n  ") + kSpeedWords + "\n" + table_text(speed_header(fall), speed_rows(fall));
   }
   if (!fall.steps.front().numbers.empty()) {
     text += "\n" + table_text(number_header(fall), number_rows(fall));
@@ -296,11 +358,12 @@ std::string waterfall_text(const Waterfall& fall, const Terminal& terminal) {
 }
 
 Cascade cascade_of(const Waterfall& fall, const std::string& title) {
-  Cascade cascade{title, "chi-square per residual, held-out shots", "noise alone", {}, fall.floor};
+  Cascade cascade{
+      title, "chi-square per residual, held-out " + fall.fold, "noise alone", {}, fall.floor};
   for (const WaterfallStep& step : fall.steps) {
     const std::string note = step.effect.empty() ? ""
-                                                 : fmt::format("better in {} of {} shots",
-                                                               step.better_shots, fall.shots);
+                                                 : fmt::format("better in {} of {} {}", step.better,
+                                                               fall.folds, fall.fold);
     cascade.steps.push_back({name_of(step), note, step.held_out});
   }
   return cascade;
@@ -316,7 +379,8 @@ Page waterfall_page(const Waterfall& fall, const std::string& title,
   PageSection picture{"From the first model to the noise", {}};
   picture.pictures = {cascade_svg(cascade_of(fall, "What each effect took off the misfit"))};
   PageTable drops{
-      {"step", "held-out misfit", "chi-square taken off", "better in shots", "strength"}, {}};
+      {"step", "held-out misfit", "chi-square taken off", "better in " + fall.fold, "strength"},
+      {}};
   for (const WaterfallStep& step : fall.steps) {
     std::string strengths;
     for (const MovedNumber& number : step.strengths) {
@@ -326,11 +390,16 @@ Page waterfall_page(const Waterfall& fall, const std::string& title,
     const bool first = step.effect.empty();
     drops.rows.push_back({name_of(step), fmt::format("{:.4g}", step.held_out),
                           first ? "" : fmt::format("{:.1f}", step.gain),
-                          first ? "" : fmt::format("{} of {}", step.better_shots, fall.shots),
+                          first ? "" : fmt::format("{} of {}", step.better, fall.folds),
                           strengths});
   }
   picture.tables.push_back(std::move(drops));
   page.sections.push_back(std::move(picture));
+  if (!fall.steps.front().speeds.empty()) {
+    PageSection speeds{"The error at every speed", {kSpeedWords}};
+    speeds.tables.push_back({speed_header(fall), speed_rows(fall)});
+    page.sections.push_back(std::move(speeds));
+  }
   if (!fall.steps.front().numbers.empty()) {
     PageSection numbers{"How the numbers moved", {}};
     numbers.tables.push_back({number_header(fall), number_rows(fall)});

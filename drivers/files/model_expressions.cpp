@@ -143,6 +143,12 @@ std::shared_ptr<const ExpressionEffect> read_expression(const TomlTable& table,
   } catch (const InputError& error) {
     throw located(table, error);
   }
+  if (model.kind == BenchKind::impact) {
+    throw table.error("formula",
+                      "acts on bars, and a ball's force is calculated by finite elements, which "
+                      "take no formula",
+                      "remove it; `kolsky effects` lists what a ball can have");
+  }
   const auto& kinds = effect->about().kinds;
   if (std::find(kinds.begin(), kinds.end(), model.kind) == kinds.end()) {
     throw table.error("stage", "does not belong to this kind of bench", "choose another stage");

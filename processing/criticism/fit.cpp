@@ -302,7 +302,9 @@ Model fitted(const Model& model, const Composition& composition, const ModelFit&
           sum += value;
           square += value * value;
           const auto at = static_cast<Eigen::Index>(i);
-          const double sd = number.sd_at(fit.theta[i], std::sqrt(fit.covariance(at, at)));
+          const double theta_variance =
+              fit.covariance(at, at) + (fit.doubt.size() > 0 ? fit.doubt(at, at) : 0.0);
+          const double sd = number.sd_at(fit.theta[i], std::sqrt(theta_variance));
           variance += sd * sd;
           ++count;
         }

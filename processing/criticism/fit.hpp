@@ -16,6 +16,7 @@ struct ModelFit {
   Eigen::MatrixXd jacobian;     ///< d residual / d theta
   Eigen::MatrixXd information;  ///< J^T J + priors
   Eigen::MatrixXd covariance;   ///< of theta, its inverse
+  Eigen::MatrixXd doubt;        ///< what a model that is calculated adds to that; empty: nothing
   double chi2 = 0.0;            ///< of the residuals
   double penalty = 0.0;         ///< of the priors
   bool converged = false;

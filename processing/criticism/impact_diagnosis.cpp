@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "processing/criticism/held_out.hpp"
 #include "processing/criticism/impact_search.hpp"
@@ -79,6 +81,7 @@ class Diagnostician {
     options_.progress(fmt::format("impacts at {} speeds on {} and {} elements, then the fit",
                                   records().groups.size(), kFineBall, kMiddleBall));
     const Studied first = study_.fit(model);
+    first_anchor_ = study_.residuals().anchored_at();
     Studied current = first;
     while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
     }
@@ -142,8 +145,10 @@ class Diagnostician {
       }
       diagnosis_.effects.push_back(id);
       diagnosis_.tied_with[id] = ties;
-      // Refits borrow their derivatives.
-      current = study_.refit(refit.studied.model, study_.executor());
+      searched_ = refit.studied.fit.objective();
+      // Refits borrow their derivatives, and their fine forces from a ball without the effect.
+      current = study_.settled(refit.studied);
+      anchor_.emplace(refit.studied.composition, refit.studied.fit.theta);
       return true;
     }
     return false;
@@ -161,6 +166,10 @@ class Diagnostician {
     options_.progress("weighing the other readings of the law in three dimensions");
     const auto now = static_cast<std::size_t>(own->values[0].value + 0.5);
     std::array<double, kReadingNames.size()> objective{};
+    // All around the same fine forces, as the search itself.
+    if (anchor_) {
+      study_.residuals().anchor(first.composition, first_anchor_);
+    }
     study_.executor().run(kReadingNames.size(), [&](std::size_t r, std::size_t worker) {
       if (r != now) {
         Model model = first.model;
@@ -168,6 +177,9 @@ class Diagnostician {
         objective[r] = study_.refit(model, serial_on(worker)).fit.objective();
       }
     });
+    if (anchor_) {
+      study_.residuals().anchor(anchor_->first, anchor_->second);
+    }
     std::size_t best = now;
     for (std::size_t r = 0; r < kReadingNames.size(); ++r) {
       if (r != now && std::isfinite(objective[r]) &&
@@ -175,7 +187,8 @@ class Diagnostician {
         best = r;
       }
     }
-    const double ahead = (objective[best] - current.fit.objective()) / scale_;
+    const double ahead =
+        (objective[best] - (anchor_ ? searched_ : current.fit.objective())) / scale_;
     if (best == now || ahead > kTie) {
       return;
     }
@@ -299,6 +312,7 @@ class Diagnostician {
           "(1)",
           law->values[0].value, law->values[0].sd));
     }
+    note_friction(current);
     if (residuals.speed_sd() > 0.0) {
       diagnosis_.notes.push_back(
           fmt::format("speeds scatter by {:.2g} % beyond what is filed or "
@@ -315,6 +329,29 @@ class Diagnostician {
             speed.restitution_foretold, speed.restitution_measured));
       }
     }
+  }
+
+  /// Friction that is filed within a deviation is fitted, and so it is never missing.
+  void note_friction(const Studied& current) {
+    const EffectUse* friction = current.model.find("contact-friction");
+    if (friction == nullptr || !(friction->values[0].prior_sd > 0.0)) {
+      return;
+    }
+    const ModelValue& mu = friction->values[0];
+    std::string note = fmt::format("friction reads {:.2f} ± {:.2f} where {:.2g} ± {:.2g} is filed",
+                                   mu.value, mu.sd, mu.prior_mean, mu.prior_sd);
+    const double pull = std::abs(mu.value - mu.prior_mean) / mu.prior_sd;
+    const auto own = std::find_if(
+        diagnosis_.candidates.begin(), diagnosis_.candidates.end(),
+        [](const CandidateResult& candidate) { return candidate.effect == "contact-friction"; });
+    constexpr double kFar = 2.0;
+    if (pull > kFar && own != diagnosis_.candidates.end()) {
+      note += fmt::format(
+          ", {:.1f} filed deviations off: fitted, and not missing, as what is filed so widely is "
+          "claimed only from {:.2g} off on. File what it reads, or a narrower deviation",
+          pull, own->detectable);
+    }
+    diagnosis_.notes.push_back(std::move(note));
   }
 
   void set_verdict(const std::string& id, const std::string& verdict) {
@@ -345,7 +382,11 @@ class Diagnostician {
   const DiagnosisOptions& options_;
   Diagnosis diagnosis_;
   double scale_ = kSolverDoubt;  ///< of the last search
-  bool overruled_ = false;       ///< by another reading of the law
+  double searched_ = 0.0;        ///< objective with what was added last, as the search had it
+  std::vector<double> first_anchor_;
+  /// Where the fine forces were taken for what was added last.
+  std::optional<std::pair<Composition, std::vector<double>>> anchor_;
+  bool overruled_ = false;  ///< by another reading of the law
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "processing/base/error.hpp"
+#include "processing/criticism/fine_grid.hpp"
 #include "processing/impact/filter.hpp"
 #include "processing/models/physics.hpp"
 
@@ -14,7 +15,6 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kBefore_s = 150e-6;    ///< of the fine grid, before the first touch
 constexpr double kSolverFloor = 0.005;  ///< of the force: no mesh study sees all of it
 constexpr double kSettled_s = 1e-11;
 constexpr double kFinestRebound = 1e-4;  ///< relative: no two beams tell speeds better
@@ -32,28 +32,6 @@ double filed_rebound_sd(const ImpactRecords& records) {
   return std::max(kFinestRebound, std::sqrt(squares / std::max(1.0, count)));
 }
 
-/// Third-order interpolation on the fine grid and its derivative by time.
-struct Interpolated {
-  double value = 0.0;
-  double slope_per_s = 0.0;
-};
-
-Interpolated at(const std::vector<double>& grid, double time_s) {
-  const double place = (time_s + kBefore_s) / kRunStep_s;
-  const auto last = static_cast<double>(grid.size()) - 3.0;
-  const double held = std::clamp(place, 1.0, last);
-  const auto n = static_cast<std::size_t>(held);
-  const double u = held - static_cast<double>(n);
-  const double a = grid[n - 1];
-  const double b = grid[n];
-  const double c = grid[n + 1];
-  const double d = grid[n + 2];
-  const double c1 = c - a / 3.0 - b / 2.0 - d / 6.0;
-  const double c2 = (a + c) / 2.0 - b;
-  const double c3 = (d - a) / 6.0 + (b - c) / 2.0;
-  return {b + u * (c1 + u * (c2 + u * c3)), (c1 + u * (2.0 * c2 + 3.0 * u * c3)) / kRunStep_s};
-}
-
 }  // namespace
 
 ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz,
@@ -64,7 +42,8 @@ ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cu
       runs_(campaign.bench) {
   const ImpactWindow& window = records_.window;
   const double judged_s = window.period_s * static_cast<double>(window.samples);
-  const auto samples = static_cast<std::size_t>((judged_s + 3.0 * kBefore_s + 300e-6) / kRunStep_s);
+  const auto samples =
+      static_cast<std::size_t>((judged_s + 3.0 * kFineGridLead_s + 300e-6) / kRunStep_s);
   for (std::size_t worker = 0; worker < executor.workers; ++worker) {
     transforms_.push_back(std::make_unique<DampedTransform>(samples, kRunStep_s));
   }
@@ -125,7 +104,7 @@ std::vector<std::vector<double>> ImpactResiduals::read(
     const BallRun& run, const std::vector<std::vector<Complex>>& transfer,
     std::size_t worker) const {
   DampedTransform& transform = *transforms_[worker];
-  const auto before = static_cast<std::size_t>(std::lround(kBefore_s / kRunStep_s));
+  const auto before = static_cast<std::size_t>(std::lround(kFineGridLead_s / kRunStep_s));
   std::vector<double> force(before, 0.0);
   force.insert(force.end(), run.force_N.begin(), run.force_N.end());
   force.resize(std::min(force.size(), transform.length()));
@@ -156,6 +135,20 @@ std::vector<std::vector<double>> ImpactResiduals::recorded(std::vector<std::vect
   return strain;
 }
 
+/// Memoryless maps and additions of a shot; nothing travels here.
+RecordScene ImpactResiduals::record_of(const Composition& composition,
+                                       const std::vector<double>& theta, std::size_t shot) const {
+  Scene scene(campaign_.bench, campaign_.shots[shot].facts, {});
+  if (composition.changes_records()) {
+    for (const AppliedEffect& use : composition.applied(theta, shot)) {
+      if (use.effect->about().stage == Stage::record) {
+        use.effect->apply(scene, use.values, use.gauge);
+      }
+    }
+  }
+  return scene.record;
+}
+
 ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& composition,
                                                     const std::vector<double>& theta,
                                                     std::size_t worker) {
@@ -180,22 +173,14 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
         transfer = transfers(composition, theta, n, ball);
         shaped = n;
       }
-      // Memoryless maps and additions of this shot; nothing travels here.
-      Scene record(campaign_.bench, campaign_.shots[n].facts, {});
-      if (composition.changes_records()) {
-        for (const AppliedEffect& use : composition.applied(theta, n)) {
-          if (use.effect->about().stage == Stage::record) {
-            use.effect->apply(record, use.values, use.gauge);
-          }
-        }
-      }
+      const RecordScene record = record_of(composition, theta, n);
       if (readings.low.empty() || composition.differs_by_shot()) {
         try {
           const BallRun low = force(ball, g, false);
           const BallRun high = force(ball, g, true);
-          readings = {recorded(read(low, transfer, worker), record.record.bridge_b),
-                      recorded(read(high, transfer, worker), record.record.bridge_b),
-                      low.rebound_m_per_s, high.rebound_m_per_s};
+          readings = {recorded(read(low, transfer, worker), record.bridge_b),
+                      recorded(read(high, transfer, worker), record.bridge_b), low.rebound_m_per_s,
+                      high.rebound_m_per_s};
         } catch (const InputError&) {
           out.sound = false;
           return out;
@@ -211,7 +196,7 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
         }
       }
       // The arrival where it fits best, by the noise alone.
-      const Eigen::VectorXd record_n = measured(n, record.record);
+      const Eigen::VectorXd record_n = measured(n, record);
       double touch_s = touch_s_[n];
       Eigen::VectorXd reading(size);
       Eigen::VectorXd slope(size);
@@ -220,7 +205,7 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
           for (std::size_t k = 0; k < samples; ++k) {
             const double time_s =
                 records_.first_s[n] + static_cast<double>(k) * records_.window.period_s - touch_s;
-            const Interpolated own = at(strain[j], time_s);
+            const Interpolated own = on_fine_grid(strain[j], time_s);
             reading[static_cast<Eigen::Index>(j * samples + k)] = own.value;
             slope[static_cast<Eigen::Index>(j * samples + k)] = own.slope_per_s;
           }
@@ -325,7 +310,7 @@ Eigen::MatrixXd ImpactResiduals::noise_matrix() const {
   return noise;
 }
 
-void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {
+void ImpactResiduals::anchor(const Composition& composition, const std::vector<double>& theta) {
   BallScene ball;
   static_cast<void>(transfers(composition, theta, 0, ball));
   struct Task {
@@ -352,23 +337,46 @@ void ImpactResiduals::prepare(const Composition& composition, const std::vector<
   };
   executor_.run(tasks.size(),
                 [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
+  anchored_at_ = theta;
   anchors_.assign(records_.groups.size(), {});
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     for (const bool high : {false, true}) {
       const BallRun fine = *run({g, high, kFineBall, false});
       const BallRun middle = *run({g, high, kMiddleBall, false});
-      Anchor& anchor = anchors_[g][high ? 1 : 0];
-      anchor.fine_less_coarse = sum_of(fine, -1.0, *run({g, high, kCoarseBall, false}));
-      anchor.law = sum_of(*run({g, high, kMiddleBall, true}), -1.0, middle);
-      anchor.mesh = sum_of(fine, -1.0, middle);
+      Anchor& own = anchors_[g][high ? 1 : 0];
+      own.fine_less_coarse = sum_of(fine, -1.0, *run({g, high, kCoarseBall, false}));
+      own.law = sum_of(*run({g, high, kMiddleBall, true}), -1.0, middle);
+      own.mesh = sum_of(fine, -1.0, middle);
     }
   }
+}
+
+void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {
+  anchor(composition, theta);
   const Foretold foretold = foretell(composition, theta, executor_.first);
   if (!foretold.sound) {
     throw InputError("model", "has a ball that the solver refuses", "bring its numbers nearer");
   }
   touch_s_ = foretold.arrival_s;
   set_whitening(foretold, composition, theta);
+}
+
+/// Low-passed readings of a group at the judged samples of the shot in its middle; no rebound.
+Eigen::VectorXd ImpactResiduals::at_judged(std::size_t g, const Foretold& foretold,
+                                           const std::vector<std::vector<double>>& fine) const {
+  const SpeedGroup& group = records_.groups[g];
+  const std::size_t n = group.shots[group.shots.size() / 2];
+  Eigen::VectorXd judged = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(per_shot()));
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    for (std::size_t k = 0; k < records_.window.samples; ++k) {
+      const double time_s = records_.first_s[n] +
+                            static_cast<double>(k) * records_.window.period_s -
+                            foretold.arrival_s[n];
+      judged[static_cast<Eigen::Index>(j * records_.window.samples + k)] =
+          on_fine_grid(fine[j], time_s).value;
+    }
+  }
+  return judged;
 }
 
 /// What one shot in the middle of a group foretells, from the group's two calculated impacts.
@@ -387,8 +395,8 @@ ImpactShape ImpactResiduals::shape_of(std::size_t g, const Foretold& foretold,
       const double time_s = records_.first_s[n] +
                             static_cast<double>(k) * records_.window.period_s -
                             foretold.arrival_s[n];
-      const Interpolated a = at(low[j], time_s);
-      shape.by_speed[i] = (at(high[j], time_s).value - a.value) * per_speed;
+      const Interpolated a = on_fine_grid(low[j], time_s);
+      shape.by_speed[i] = (on_fine_grid(high[j], time_s).value - a.value) * per_speed;
       shape.by_time[i] = a.slope_per_s;
     }
   }
@@ -402,8 +410,10 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
   // Twice what the mesh is seen to do, over all groups.
   std::vector<ImpactShape> shapes;
   const double judged_s =
-      kBefore_s + records_.window.period_s * static_cast<double>(records_.window.samples);
+      kFineGridLead_s + records_.window.period_s * static_cast<double>(records_.window.samples);
   const auto last = static_cast<std::size_t>(judged_s / kRunStep_s);
+  const auto size = static_cast<Eigen::Index>(per_shot());
+  mesh_ = Eigen::VectorXd::Zero(size * static_cast<Eigen::Index>(records_.groups.size()));
   double mesh_square = 0.0;
   double reading_square = 0.0;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
@@ -413,6 +423,9 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
     const auto low = recorded(read(slower, transfer, executor_.first), 0.0);
     const auto high = recorded(read(faster, transfer, executor_.first), 0.0);
     const auto mesh = recorded(read(anchors_[g][0].mesh, transfer, executor_.first), 0.0);
+    auto judged = mesh_.segment(static_cast<Eigen::Index>(g) * size, size);
+    judged = at_judged(g, foretold, mesh);
+    judged[size - 1] = anchors_[g][0].mesh.rebound_m_per_s / records_.wave_speed_m_per_s;
     shapes.push_back(shape_of(g, foretold, low, high));
     shapes.back().by_speed.tail(1).setConstant((faster.rebound_m_per_s - slower.rebound_m_per_s) /
                                                records_.wave_speed_m_per_s * group.speed_m_per_s /
@@ -437,6 +450,14 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
     const Eigen::Map<const Eigen::VectorXd> y(judged.data(), noise.rows());
     signal_energy_ += y.dot(noise_inverse_ * y);
   }
+}
+
+Eigen::MatrixXd ImpactResiduals::doubt_of(const Eigen::MatrixXd& jacobian,
+                                          const Eigen::MatrixXd& covariance) const {
+  const Eigen::MatrixXd moves = covariance * whitening_->pulls(jacobian);
+  const Eigen::VectorXd by_mesh = moves * mesh_;
+  return (kSolverDoubt - 1.0) * moves * whitening_->solver() * moves.transpose() +
+         by_mesh * by_mesh.transpose();
 }
 
 void ImpactResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {

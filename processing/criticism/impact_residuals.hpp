@@ -14,6 +14,13 @@
 
 namespace kolsky {
 
+/// Another code of the same ball departs from this one smoothly, as effects do, and so mimics them
+/// more than what is allowed for its size says: on campaigns without any effect, made by another
+/// code on meshes of its own, the largest gains among all candidates were five times those of noise
+/// (docs/impact.md). A square of a normal deviate counts over this, at least, and the solver's
+/// share of a number's variance is this many times what was allowed for.
+inline constexpr double kSolverDoubt = 6.0;
+
 /// Whitened residuals of impacts: the records and the rebound speeds less what the ball's solver
 /// and the bar foretell, at every shot's own speed. Nothing of the source is free but its arrival.
 ///
@@ -31,6 +38,11 @@ class ImpactResiduals : public ShotResiduals {
   /// Takes from this model the fine forces, the arrivals and the whitener.
   /// @throws InputError what the solver refuses there
   void prepare(const Composition& composition, const std::vector<double>& theta);
+  /// Takes the fine forces from here and leaves the whitener as it is: far from where they were
+  /// taken, what the coarse mesh does is not what the fine one does.
+  void anchor(const Composition& composition, const std::vector<double>& theta);
+  /// Where the fine forces were taken last.
+  [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
   /// Corrects noise and speeds' deviation by how shots of one speed scatter about their mean.
   void calibrate(const Composition& composition, const std::vector<double>& theta);
 
@@ -54,6 +66,19 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] Foretold foretell(const Composition& composition, const std::vector<double>& theta,
                                   std::size_t worker);
 
+  /// What gauges would say of one shot, at its record's samples, smoothed well above the judged
+  /// band: strain, with what effects do to records, on the middle mesh, which no fit stands on.
+  struct Sensed {
+    std::vector<std::vector<double>> strain;  ///< by gauge
+    double rebound_m_per_s = 0.0;
+  };
+  /// @param arrival_s  of the first touch, from the record's start
+  /// @param faster     than filed, relative
+  /// @throws InputError what the solver refuses
+  [[nodiscard]] Sensed sensed(const Composition& composition, const std::vector<double>& theta,
+                              std::size_t shot, double arrival_s, double faster,
+                              std::size_t worker);
+
   [[nodiscard]] const ImpactRecords& records() const { return records_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
   /// Covariance of one shot by itself, and what all shots of a group share of the solver's error.
@@ -76,14 +101,21 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] double solver_sd() const { return solver_sd_; }
   /// Rms of the middle mesh's difference from the fine one over the rms of the record.
   [[nodiscard]] double mesh_difference() const { return mesh_difference_; }
+  /// What the calculation may be off by moves the numbers of a fit by so much: a covariance, in
+  /// scales. kSolverDoubt times what is allowed for it less the once that the fit counts already,
+  /// and what the middle mesh's difference from the fine one would do, whole.
+  /// @param jacobian    of white residuals
+  /// @param covariance  of the fit
+  [[nodiscard]] Eigen::MatrixXd doubt_of(const Eigen::MatrixXd& jacobian,
+                                         const Eigen::MatrixXd& covariance) const;
   /// Times of a gauge's judged samples from the arrival at the reference gauge.
   [[nodiscard]] std::vector<double> times_s() const;
   /// Strain at a gauge times this is the force there, at low frequencies.
   [[nodiscard]] double force_per_strain_N() const;
 
  private:
-  /// What gauges read of a group's two calculated impacts, on a fine grid from `kBefore_s` before
-  /// the first touch on.
+  /// What gauges read of a group's two calculated impacts, on a fine grid from `kFineGridLead_s`
+  /// before the first touch on.
   struct Readings {
     std::vector<std::vector<double>> low, high;  ///< by gauge
     double rebound_low = 0.0;
@@ -95,6 +127,8 @@ class ImpactResiduals : public ShotResiduals {
     BallRun mesh;              ///< fine less middle
   };
 
+  [[nodiscard]] RecordScene record_of(const Composition& composition,
+                                      const std::vector<double>& theta, std::size_t shot) const;
   [[nodiscard]] BallRun force(const BallScene& ball, std::size_t group, bool high);
   [[nodiscard]] std::vector<std::vector<Complex>> transfers(const Composition& composition,
                                                             const std::vector<double>& theta,
@@ -107,6 +141,8 @@ class ImpactResiduals : public ShotResiduals {
                                                           double bridge_b) const;
   void set_whitening(const Foretold& foretold, const Composition& composition,
                      const std::vector<double>& theta);
+  [[nodiscard]] Eigen::VectorXd at_judged(std::size_t group, const Foretold& foretold,
+                                          const std::vector<std::vector<double>>& fine) const;
   [[nodiscard]] ImpactShape shape_of(std::size_t group, const Foretold& foretold,
                                      const std::vector<std::vector<double>>& low,
                                      const std::vector<std::vector<double>>& high) const;
@@ -119,7 +155,9 @@ class ImpactResiduals : public ShotResiduals {
   ImpactRecords records_;
   BallRuns runs_;
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
+  std::vector<double> anchored_at_;
   std::unique_ptr<ImpactWhitening> whitening_;
+  Eigen::VectorXd mesh_;  ///< fine less middle, as residuals of the groups' means
   Eigen::MatrixXd noise_inverse_;
   std::vector<Complex> path_;
   std::vector<double> touch_s_;  ///< by shot: where the search for the arrival begins

@@ -185,18 +185,15 @@ std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, std::size_t wo
   if (!std::isfinite(fit.objective()) || !fit.covariance.allFinite()) {
     return std::nullopt;
   }
-  const double used =
-      static_cast<double>(fit.residual.size()) - fit.degrees_of_freedom(composition);
-  const Misfit misfit = study_.misfit_of(fit.residual, used);
-  ImpactRefit out{index, {fitted(model, composition, fit), composition, std::move(fit), misfit}};
+  ImpactRefit out{index, study_.finish(model, composition, std::move(fit))};
   if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign())) {
     return std::nullopt;
   }
   const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                          out.studied.fit.degrees_of_freedom(out.studied.composition);
   out.freedom = candidate.frees_prior ? 1.0 : std::max(1.0, std::round(freedom));
-  out.gain =
-      (base_.fit.objective() - out.studied.fit.objective()) / std::max(1.0, misfit.noise_scale);
+  out.gain = (base_.fit.objective() - out.studied.fit.objective()) /
+             std::max(1.0, out.studied.misfit.noise_scale);
   return out;
 }
 

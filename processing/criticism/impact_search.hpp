@@ -18,12 +18,6 @@ struct ImpactRefit {
   double log_p = 0.0;
 };
 
-/// Another code of the same ball departs from this one smoothly, as effects do, and so mimics them
-/// more than what is allowed for its size says: on campaigns without any effect, made by another
-/// code on meshes of its own, the largest gains among all candidates were five times those of noise
-/// (docs/impact.md). A square of a normal deviate counts over this, at least.
-inline constexpr double kSolverDoubt = 6.0;
-
 /// One search for what a fitted model of impacts lacks.
 ///
 /// A gain counts against what the best of the refits leaves of the means per degree of freedom

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/criticism/candidates.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
@@ -99,6 +100,9 @@ Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFi
   const double used =
       static_cast<double>(fit.residual.size()) - fit.degrees_of_freedom(composition);
   const Misfit misfit = misfit_of(fit.residual, used);
+  if (fit.covariance.size() > 0) {
+    fit.doubt = residuals_.doubt_of(fit.jacobian, fit.covariance);
+  }
   Model after = fitted(model, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};
 }
@@ -113,13 +117,51 @@ Studied ImpactStudy::fit(const Model& model) {
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.calibrate(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
-  return finish(model, std::move(composition), std::move(fit));
+  return with_other_friction(finish(model, std::move(composition), std::move(fit)));
+}
+
+Studied ImpactStudy::with_other_friction(Studied near) {
+  const std::vector<FreeNumber>& numbers = near.composition.numbers();
+  const auto friction = std::find_if(numbers.begin(), numbers.end(), [&](const FreeNumber& own) {
+    return near.composition.uses()[own.use].id() == "contact-friction" && own.prior_sd > 0.0;
+  });
+  if (friction == numbers.end()) {
+    return near;
+  }
+  constexpr double kLittle = 0.03;
+  constexpr double kBetween = 0.12;
+  const std::vector<double> there = residuals_.anchored_at();
+  std::vector<double> theta = near.fit.theta;
+  theta[static_cast<std::size_t>(friction - numbers.begin())] = friction->inside(
+      friction->theta_of(friction->start > kBetween ? kLittle : friction->prior_mean));
+  residuals_.anchor(near.composition, theta);
+  ModelFit other = fit_model(near.composition, residuals_, executor_, theta);
+  if (other.objective() < near.fit.objective()) {
+    return finish(near.model, near.composition, std::move(other));
+  }
+  residuals_.anchor(near.composition, there);
+  return near;
 }
 
 Studied ImpactStudy::refit(const Model& model, const Workers& executor) {
   Composition composition(model, campaign_);
   ModelFit fit = fit_model(composition, residuals_, executor);
   return finish(model, std::move(composition), std::move(fit));
+}
+
+Studied ImpactStudy::refit_near(const Model& model, const Studied& other) {
+  Composition composition(model, campaign_);
+  ModelFit near = fit_model(composition, residuals_, executor_,
+                            carry(other.composition, other.fit.theta, composition));
+  ModelFit own = fit_model(composition, residuals_, executor_);
+  const bool better = !(near.objective() <= own.objective());
+  return finish(model, std::move(composition), better ? std::move(own) : std::move(near));
+}
+
+Studied ImpactStudy::settled(const Studied& studied) {
+  residuals_.anchor(studied.composition, studied.fit.theta);
+  ModelFit fit = fit_model(studied.composition, residuals_, executor_, studied.fit.theta);
+  return finish(studied.model, studied.composition, std::move(fit));
 }
 
 Studied ImpactStudy::as_it_is(const Model& model) {

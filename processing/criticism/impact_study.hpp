@@ -57,12 +57,21 @@ class ImpactStudy {
         executor_(std::move(executor)),
         residuals_(campaign, whole, cutoff_Hz, executor_) {}
 
+  /// Friction acts most where there is little of it, and between 0.2 and 0.4 restitution turns:
+  /// where it is known within a deviation, the fit begins on both sides, and the better one counts.
   [[nodiscard]] Studied fit(const Model& model);
   /// With the noise and the fine forces as they are by now.
   [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
+  /// The same, from where the model is and from where another fit left what both hold.
+  [[nodiscard]] Studied refit_near(const Model& model, const Studied& other);
+  /// With the fine forces taken where a fit has led, and fitted again from there. The whitener
+  /// stays.
+  [[nodiscard]] Studied settled(const Studied& studied);
   [[nodiscard]] Studied as_it_is(const Model& model);
   [[nodiscard]] ImpactComparison compare(const Studied& studied);
 
+  /// A fit's model and misfit, its deviations with what the calculation may be off by.
+  [[nodiscard]] Studied finish(const Model& model, Composition composition, ModelFit fit) const;
   /// Misfit of white residuals. @param used  degrees of freedom that fitted numbers took
   [[nodiscard]] Misfit misfit_of(const Eigen::VectorXd& white, double used) const;
   /// chi2 of the groups' means and its degrees of freedom: what repeats.
@@ -73,7 +82,7 @@ class ImpactStudy {
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
-  [[nodiscard]] Studied finish(const Model& model, Composition composition, ModelFit fit) const;
+  [[nodiscard]] Studied with_other_friction(Studied near);
 
   const Campaign& campaign_;
   Workers executor_;

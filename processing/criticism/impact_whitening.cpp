@@ -112,8 +112,14 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
       if (g == h) {
         block(rebound, rebound) += std::pow(kRestitutionScatter, 2) * incident;
       }
-      block += std::pow(records_.common_speed_sd, 2) * mistimed(shapes[a]) *
-               mistimed(shapes[b]).transpose();
+    }
+  }
+  solver_ = shared_;
+  for (std::size_t g = 0; g < shapes.size(); ++g) {
+    for (std::size_t h = 0; h < shapes.size(); ++h) {
+      shared_.block(static_cast<Eigen::Index>(g) * size_, static_cast<Eigen::Index>(h) * size_,
+                    size_, size_) += std::pow(records_.common_speed_sd, 2) * mistimed(shapes[g]) *
+                                     mistimed(shapes[h]).transpose();
     }
   }
 }
@@ -121,6 +127,19 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
 Eigen::MatrixXd ImpactWhitening::shared(std::size_t g, std::size_t h) const {
   return shared_.block(static_cast<Eigen::Index>(g) * size_, static_cast<Eigen::Index>(h) * size_,
                        size_, size_);
+}
+
+Eigen::MatrixXd ImpactWhitening::pulls(const Eigen::MatrixXd& jacobian) const {
+  Eigen::MatrixXd groups = Eigen::MatrixXd::Zero(mean_root_.rows(), jacobian.cols());
+  for (std::size_t g = 0; g < records_.groups.size(); ++g) {
+    const SpeedGroup& group = records_.groups[g];
+    const double share = 1.0 / std::sqrt(static_cast<double>(group.shots.size()));
+    for (const std::size_t n : group.shots) {
+      groups.middleRows(static_cast<Eigen::Index>(g) * size_, size_) +=
+          share * jacobian.middleRows(static_cast<Eigen::Index>(n) * size_, size_);
+    }
+  }
+  return groups.transpose() * mean_root_;
 }
 
 Eigen::VectorXd ImpactWhitening::white(const std::vector<Eigen::VectorXd>& residual) const {

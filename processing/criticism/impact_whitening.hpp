@@ -45,6 +45,12 @@ class ImpactWhitening {
   /// covariance diag(S_g / K_g) + D: the sum of squares is the whole quadratic form.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<Eigen::VectorXd>& residual) const;
 
+  /// J^T w(m) as a matrix that takes m, an error of the groups' means, all shots of a group alike:
+  /// how an error that the shots share pulls at the numbers of a fit. @param jacobian  of white
+  /// residuals
+  [[nodiscard]] Eigen::MatrixXd pulls(const Eigen::MatrixXd& jacobian) const;
+  /// Of D, what the calculation may be off by.
+  [[nodiscard]] const Eigen::MatrixXd& solver() const { return solver_; }
   [[nodiscard]] const Eigen::MatrixXd& own(std::size_t group) const { return own_[group]; }
   /// D_gh
   [[nodiscard]] Eigen::MatrixXd shared(std::size_t g, std::size_t h) const;
@@ -58,6 +64,7 @@ class ImpactWhitening {
   std::vector<Eigen::MatrixXd> own_;    ///< by group
   std::vector<Eigen::MatrixXd> roots_;  ///< S^-1/2
   Eigen::MatrixXd shared_;
+  Eigen::MatrixXd solver_;
   Eigen::MatrixXd mean_root_;  ///< C^-1/2
 };
 

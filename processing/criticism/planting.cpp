@@ -49,14 +49,14 @@ std::int32_t rounded(const ChannelRecord& channel, double code) {
       code, static_cast<double>(channel.code_min), static_cast<double>(channel.code_max))));
 }
 
+}  // namespace
+
 Model with_use(const Model& model, const EffectUse& use) {
   Model after = model;
   std::erase_if(after.effects, [&](const EffectUse& own) { return own.id() == use.id(); });
   after.effects.push_back(use);
   return after;
 }
-
-}  // namespace
 
 bool two_sided(const EffectUse& use) {
   const EffectParameter& strength = use.effect->about().parameters.front();
@@ -138,10 +138,10 @@ std::string Planter::impossible_because(const EffectUse& use) const {
   return use.effect->untestable_because(campaign_.bench);
 }
 
-std::vector<Shot> Planter::planted(const EffectUse& use) const {
-  const Composition composition(with_use(studied_.model, use), campaign_);
-  const Composition& base = studied_.composition;
-  std::vector<double> theta = carry(base, studied_.fit.theta, composition);
+std::vector<double> numbers_with(const Studied& studied, const Composition& composition,
+                                 const EffectUse& use, std::size_t gauges) {
+  const Composition& base = studied.composition;
+  std::vector<double> theta = carry(base, studied.fit.theta, composition);
   const bool filed = std::any_of(base.uses().begin(), base.uses().end(),
                                  [&](const EffectUse& own) { return own.id() == use.id(); });
   const bool each_gauge = use.effect->about().each_gauge;
@@ -152,7 +152,7 @@ std::vector<Shot> Planter::planted(const EffectUse& use) const {
       // Alike at all gauges it would be a wave's: every other gauge has the opposite.
       const bool strength =
           !use.effect->about().parameters[number.parameter].auxiliary() && each_gauge;
-      const double sign = strength && place++ % campaign_.gauges() % 2 == 1 ? -1.0 : 1.0;
+      const double sign = strength && place++ % gauges % 2 == 1 ? -1.0 : 1.0;
       const double value = sign * use.values[number.parameter].value;
       // A filed number is moved from where the fit has it.
       theta[i] =
@@ -161,37 +161,63 @@ std::vector<Shot> Planter::planted(const EffectUse& use) const {
                 : number.theta_of(value);
     }
   }
+  return theta;
+}
+
+void add_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
+                const std::vector<double>& more, ChannelRecord& channel) {
+  const Gauge& own = campaign.bench.gauges[gauge];
+  const BridgeConversion bridge(own, campaign.bench.bar_of(own), campaign.bench.positive);
+  for (std::size_t i = 0; i < channel.codes.size(); ++i) {
+    const double reading = bridge.reading(strain[i] + more[i]) - bridge.reading(strain[i]);
+    channel.codes[i] =
+        rounded(channel, static_cast<double>(channel.codes[i]) + reading / channel.scale);
+  }
+}
+
+void replace_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
+                    std::size_t quiet, ChannelRecord& channel) {
+  const Gauge& own = campaign.bench.gauges[gauge];
+  const BridgeConversion bridge(own, campaign.bench.bar_of(own), campaign.bench.positive);
+  double baseline = 0.0;
+  for (std::size_t i = 0; i < quiet; ++i) {
+    baseline += static_cast<double>(channel.codes[i]) / static_cast<double>(quiet);
+  }
+  for (std::size_t i = 0; i < channel.codes.size(); ++i) {
+    channel.codes[i] = rounded(channel, baseline + bridge.reading(strain[i]) / channel.scale);
+  }
+}
+
+std::vector<Shot> Planter::planted(const EffectUse& use) const {
+  const Composition composition(with_use(studied_.model, use), campaign_);
+  const std::vector<double> theta = numbers_with(studied_, composition, use, campaign_.gauges());
   std::vector<Shot> shots = shots_;
   for (std::size_t n = 0; n < shots.size(); ++n) {
     const auto with = through(composition, theta, n);
-    const auto without = through(base, studied_.fit.theta, n);
+    const auto without = through(studied_.composition, studied_.fit.theta, n);
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-      const Gauge& gauge = campaign_.bench.gauges[j];
-      const BridgeConversion bridge(gauge, campaign_.bench.bar_of(gauge), campaign_.bench.positive);
-      ChannelRecord& channel = shots[n].channels[j];
-      for (std::size_t i = 0; i < channel.codes.size(); ++i) {
-        const double strain = campaign_.shots[n].strain[j][i];
-        const double more =
-            bridge.reading(strain + with[j][i] - without[j][i]) - bridge.reading(strain);
-        channel.codes[i] =
-            rounded(channel, static_cast<double>(channel.codes[i]) + more / channel.scale);
+      Record more = with[j];
+      for (std::size_t i = 0; i < more.size(); ++i) {
+        more[i] -= without[j][i];
       }
+      add_strain(campaign_, j, campaign_.shots[n].strain[j], more, shots[n].channels[j]);
     }
   }
   return shots;
 }
 
-std::vector<Planter::Record> Planter::fresh_noise(std::size_t shot, std::uint64_t seed) const {
+std::vector<std::vector<double>> fresh_noise(const Campaign& campaign, std::size_t shot,
+                                             std::uint64_t seed) {
   // White numbers through what was recorded before a pulse: the sum over shots has the mean of
   // their correlations, between samples and between gauges.
-  const std::size_t samples = waves_[shot].size();
+  const std::size_t samples = campaign.shots[shot].strain.front().size();
   std::mt19937_64 random(seed * 1000003U + shot);
   std::normal_distribution<double> normal;
-  std::vector<Record> noise(campaign_.gauges(), Record(samples, 0.0));
-  const double shots = static_cast<double>(campaign_.shots.size());
-  for (const CampaignShot& own : campaign_.shots) {
+  std::vector<std::vector<double>> noise(campaign.gauges(), std::vector<double>(samples, 0.0));
+  const double shots = static_cast<double>(campaign.shots.size());
+  for (const CampaignShot& own : campaign.shots) {
     const std::size_t quiet = own.quiet_samples;
-    DampedTransform transform(samples + 2 * quiet, campaign_.period_s);
+    DampedTransform transform(samples + 2 * quiet, campaign.period_s);
     std::vector<double> drawn(samples + quiet);
     for (double& value : drawn) {
       value = normal(random) / std::sqrt(shots * static_cast<double>(quiet));
@@ -217,21 +243,14 @@ std::vector<Planter::Record> Planter::fresh_noise(std::size_t shot, std::uint64_
 std::vector<Shot> Planter::drawn_anew(std::uint64_t seed) const {
   std::vector<Shot> shots = shots_;
   for (std::size_t n = 0; n < shots.size(); ++n) {
-    const auto foretold = through(studied_.composition, studied_.fit.theta, n);
-    const auto noise = fresh_noise(n, seed);
+    auto strain = through(studied_.composition, studied_.fit.theta, n);
+    const auto noise = fresh_noise(campaign_, n, seed);
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-      const Gauge& gauge = campaign_.bench.gauges[j];
-      const BridgeConversion bridge(gauge, campaign_.bench.bar_of(gauge), campaign_.bench.positive);
-      ChannelRecord& channel = shots[n].channels[j];
-      const std::size_t quiet = campaign_.shots[n].quiet_samples;
-      double baseline = 0.0;
-      for (std::size_t i = 0; i < quiet; ++i) {
-        baseline += static_cast<double>(channel.codes[i]) / static_cast<double>(quiet);
+      for (std::size_t i = 0; i < strain[j].size(); ++i) {
+        strain[j][i] += noise[j][i];
       }
-      for (std::size_t i = 0; i < channel.codes.size(); ++i) {
-        channel.codes[i] = rounded(
-            channel, baseline + bridge.reading(foretold[j][i] + noise[j][i]) / channel.scale);
-      }
+      replace_strain(campaign_, j, strain[j], campaign_.shots[n].quiet_samples,
+                     shots[n].channels[j]);
     }
   }
   return shots;

@@ -38,7 +38,6 @@ class Planter {
   [[nodiscard]] std::vector<Record> through(const Composition& composition,
                                             const std::vector<double>& theta,
                                             std::size_t shot) const;
-  [[nodiscard]] std::vector<Record> fresh_noise(std::size_t shot, std::uint64_t seed) const;
   void find_waves();
 
   const std::vector<Shot>& shots_;
@@ -49,6 +48,31 @@ class Planter {
       waves_;  ///< by shot: at the reference gauge, smoothed, nothing before the foot
   std::vector<Complex> path_;
 };
+
+/// The model with an effect in the place of what it holds of it.
+[[nodiscard]] Model with_use(const Model& model, const EffectUse& use);
+
+/// A fit's numbers, with an effect as `use` has it: the opposite strength at every other gauge
+/// where it has one at each, a filed number moved from where the fit has it.
+/// @param composition  of with_use()
+[[nodiscard]] std::vector<double> numbers_with(const Studied& studied,
+                                               const Composition& composition, const EffectUse& use,
+                                               std::size_t gauges);
+
+/// Noise of one shot, by gauge: with the spectrum, and the covariance between gauges, of all
+/// samples before the pulses. Strain.
+[[nodiscard]] std::vector<std::vector<double>> fresh_noise(const Campaign& campaign,
+                                                           std::size_t shot, std::uint64_t seed);
+
+/// A channel with so much strain more at a gauge, rounded to codes again.
+/// @param strain  as it was, by sample
+void add_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
+                const std::vector<double>& more, ChannelRecord& channel);
+
+/// A channel with another strain in the place of its own, about the same baseline.
+/// @param quiet  samples before the pulse
+void replace_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
+                    std::size_t quiet, ChannelRecord& channel);
 
 /// Whether an effect makes a difference that grows with its sign: a strength that may be negative.
 [[nodiscard]] bool two_sided(const EffectUse& use);

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "processing/base/error.hpp"
 #include "processing/criticism/planting.hpp"
+#include "processing/criticism/selftest_ground.hpp"
 
 namespace kolsky {
 
@@ -22,12 +24,6 @@ struct Case {
   bool null = false;
   std::uint64_t seed = 0;
 };
-
-Diagnosis diagnosed(const std::vector<Shot>& shots, const Model& model, double band_limit_Hz) {
-  const Campaign campaign = read_campaign(shots);
-  Study study(campaign, band_limit_Hz, Workers{});
-  return diagnose(study, model, {});
-}
 
 bool holds(const std::vector<std::string>& list, const std::string& id) {
   return std::find(list.begin(), list.end(), id) != list.end();
@@ -61,18 +57,13 @@ class Run {
  public:
   Run(const std::vector<Shot>& shots, const Model& model, const SelftestOptions& options,
       const Workers& workers)
-      : shots_(shots),
+      : last_gauge_(shots.empty() ? "" : shots.front().bench.gauges.back().name),
         options_(options),
         workers_(workers),
-        campaign_(read_campaign(shots)),
-        study_(campaign_, options.band_limit_Hz, workers),
-        model_(model),
-        studied_(study_.fit(model)),
-        planter_(shots_, study_, studied_) {}
+        ground_(ground_of(shots, model, options.band_limit_Hz, workers)) {}
 
   Selftest operator()() {
-    Study again(campaign_, options_.band_limit_Hz, workers_);
-    const Diagnosis untouched = diagnose(again, model_, {});
+    const Diagnosis untouched = ground_->untouched();
     result_.untouched = untouched.verdict;
     result_.untouched_effects = untouched.effects;
     choose_effects(untouched);
@@ -80,16 +71,8 @@ class Run {
     options_.progress(1, cases_.size() + 1);
     std::vector<Diagnosis> said(cases_.size());
     std::atomic<std::size_t> done{1};
-    workers_.run(cases_.size(), [&](std::size_t i, std::size_t) {
-      const Case& own = cases_[i];
-      const std::vector<Shot> shots =
-          own.null ? planter_.drawn_anew(own.seed) : planter_.planted(own.use);
-      if (std::none_of(shots.begin(), shots.end(),
-                       [](const Shot& shot) { return !bad_data(shot).empty(); })) {
-        said[i] = diagnosed(shots, model_, options_.band_limit_Hz);
-      } else {
-        said[i].verdict = DiagnosisVerdict::bad_data;
-      }
+    workers_.run(cases_.size(), [&](std::size_t i, std::size_t worker) {
+      said[i] = diagnosed(cases_[i], worker);
       options_.progress(++done, cases_.size() + 1);
     });
     for (std::size_t i = 0; i < cases_.size(); ++i) {
@@ -99,17 +82,32 @@ class Run {
   }
 
  private:
+  /// What is said of one case; bad data where the shots no longer serve.
+  [[nodiscard]] Diagnosis diagnosed(const Case& own, std::size_t worker) const {
+    Diagnosis unusable;
+    unusable.verdict = DiagnosisVerdict::bad_data;
+    try {
+      const std::vector<Shot> shots =
+          own.null ? ground_->drawn_anew(own.seed, worker) : ground_->planted(own.use, worker);
+      const bool bad = std::any_of(shots.begin(), shots.end(),
+                                   [](const Shot& shot) { return !bad_data(shot).empty(); });
+      return bad ? unusable : ground_->diagnosed(shots);
+    } catch (const InputError&) {
+      // A ball that no solver carries through, or whose rebound the beams no longer see.
+      return unusable;
+    }
+  }
+
   /// All that first-order theory can tell on these shots; of effects of one gauge those of the
   /// last.
   void choose_effects(const Diagnosis& untouched) {
-    const std::string& last = campaign_.bench.gauges.back().name;
     std::vector<std::string> ids = options_.effects;
     std::map<std::string, std::pair<double, double>> limits;  ///< detectable, identifiable
     for (const CandidateResult& candidate : untouched.candidates) {
       limits[candidate.effect] = {candidate.detectable, candidate.identifiable};
       const EffectUse use = use_named(candidate.effect);
       if (options_.effects.empty() && std::isfinite(candidate.identifiable) &&
-          (use.gauge.empty() || use.gauge == last)) {
+          (use.gauge.empty() || use.gauge == last_gauge_)) {
         ids.push_back(candidate.effect);
       }
     }
@@ -131,7 +129,7 @@ class Run {
     const bool by_identifiable = identifiable < bound;
     const double unit_size = by_identifiable ? identifiable : detectable;
     use.values.front().value = parameter.null_value + parameter.typical;
-    planted.skipped = planter_.impossible_because(use);
+    planted.skipped = ground_->impossible_because(use);
     std::vector<std::pair<double, double>> sizes;  ///< with its multiple
     for (const double size : options_.sizes) {
       sizes.emplace_back(size, by_identifiable ? size / identifiable : 0.0);
@@ -192,14 +190,10 @@ class Run {
     }
   }
 
-  const std::vector<Shot>& shots_;
+  std::string last_gauge_;
   const SelftestOptions& options_;
   const Workers& workers_;
-  Campaign campaign_;
-  Study study_;
-  const Model& model_;
-  Studied studied_;
-  Planter planter_;
+  std::unique_ptr<SelftestGround> ground_;
   std::vector<Case> cases_;
   Selftest result_;
 };
@@ -270,10 +264,6 @@ std::vector<Selftest::Power> Selftest::power() const {
 
 Selftest selftest(const std::vector<Shot>& shots, const Model& model,
                   const SelftestOptions& options, const Workers& workers) {
-  if (model.kind == BenchKind::impact) {
-    throw InputError("model", "is of a ball on a bar, into whose records nothing is planted yet",
-                     "give a model and captures of a bar or a split bar");
-  }
   for (const double size : options.sizes) {
     if (!(size > 0.0) || !std::isfinite(size)) {
       throw InputError("sizes", "must be above 0", "give sizes off the effect's null, in its unit");

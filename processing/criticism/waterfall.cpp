@@ -11,6 +11,20 @@ namespace kolsky {
 
 namespace {
 
+/// A choice between kinds: numbers that no fit moves, other than they were.
+bool chosen_anew(const EffectUse& before, const EffectUse& after) {
+  constexpr double kSame = 1e-9;  // as written into a file and read again
+  bool other = false;
+  for (std::size_t p = 0; p < after.values.size(); ++p) {
+    if (before.values[p].free || after.values[p].free) {
+      return false;
+    }
+    const double moved = std::abs(before.values[p].value - after.values[p].value);
+    other = other || moved > kSame * std::abs(after.values[p].value);
+  }
+  return other;
+}
+
 bool holds(const Model& model, const EffectUse& use) {
   const EffectUse* own = model.find(use.id());
   if (own == nullptr) {
@@ -20,7 +34,7 @@ bool holds(const Model& model, const EffectUse& use) {
     return std::none_of(u.values.begin(), u.values.end(),
                         [](const ModelValue& value) { return value.prior_sd > 0.0; });
   };
-  return freed(*own) || !freed(use);
+  return (freed(*own) || !freed(use)) && !chosen_anew(*own, use);
 }
 
 bool only_filed(const EffectUse& use) {
@@ -42,16 +56,6 @@ Studied best_of_two(Study& study, const Model& model, const Studied& last) {
       fit_model(composition, residuals, study.executor(), carry(again, again.start(), composition));
   ModelFit fit = far.objective() < near.objective() ? std::move(far) : std::move(near);
   return study.refit({model, std::move(composition), std::move(fit), {}});
-}
-
-std::vector<MovedNumber> numbers_of(const EffectUse& use, const std::string& prefix) {
-  std::vector<MovedNumber> list;
-  const auto& parameters = use.effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    list.push_back(
-        {prefix + parameters[p].name, parameters[p].unit, use.values[p].value, use.values[p].sd});
-  }
-  return list;
 }
 
 std::vector<MovedNumber> material_of(const Model& model) {
@@ -83,23 +87,26 @@ double usual_rate(const Studied& last, const Campaign& campaign) {
   return peak * std::sqrt(modulus / bar.density_kg_m3) / campaign.bench.specimen->length_m;
 }
 
-WaterfallStep step_of(Study& study, const LineageStep& own, const Studied& studied,
-                      const std::vector<double>& squares, const std::vector<double>* before) {
-  WaterfallStep step;
-  step.effect = own.effect;
-  step.removed = own.removed;
-  step.misfit = studied.misfit;
-  step.numbers = material_of(studied.model);
-  step.held_out = std::accumulate(squares.begin(), squares.end(), 0.0) /
-                  static_cast<double>(squares.size() * study.residuals().per_shot());
-  for (std::size_t n = 0; before != nullptr && n < squares.size(); ++n) {
-    step.gain += (*before)[n] - squares[n];
-    step.better_shots += (*before)[n] > squares[n] ? 1 : 0;
+}  // namespace
+
+std::vector<MovedNumber> numbers_of(const EffectUse& use, const std::string& prefix) {
+  std::vector<MovedNumber> list;
+  const auto& parameters = use.effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    list.push_back(
+        {prefix + parameters[p].name, parameters[p].unit, use.values[p].value, use.values[p].sd});
   }
-  return step;
+  return list;
 }
 
-}  // namespace
+void take_drop(WaterfallStep& step, const std::vector<double>& squares,
+               const std::vector<double>* before, double residuals) {
+  step.held_out = std::accumulate(squares.begin(), squares.end(), 0.0) / residuals;
+  for (std::size_t n = 0; before != nullptr && n < squares.size(); ++n) {
+    step.gain += (*before)[n] - squares[n];
+    step.better += (*before)[n] > squares[n] ? 1 : 0;
+  }
+}
 
 double Waterfall::closed() const {
   if (steps.empty() || steps.front().held_out <= floor) {
@@ -139,7 +146,7 @@ std::vector<LineageStep> lineage(const Model& first, const Model& last,
 Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
   const Studied last = study.fit(lineage.back().model);
   Waterfall fall;
-  fall.shots = study.campaign().shots.size();
+  fall.shots = fall.folds = study.campaign().shots.size();
   fall.strain_rate_per_s = usual_rate(last, study.campaign());
   std::vector<double> before;
   double penalty = 0.0;
@@ -147,9 +154,16 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
     const Studied studied = best_of_two(study, own.model, last);
     const std::vector<double> squares =
         held_out_squares(studied, study.residuals(), study.executor());
-    fall.steps.push_back(step_of(study, own, studied, squares, before.empty() ? nullptr : &before));
-    fall.steps.back().curve = specimen_curve(studied, study.campaign(), fall.strain_rate_per_s);
-    fall.steps.back().relief = before.empty() ? 0.0 : penalty - studied.fit.penalty;
+    WaterfallStep step;
+    step.effect = own.effect;
+    step.removed = own.removed;
+    step.misfit = studied.misfit;
+    step.numbers = material_of(studied.model);
+    take_drop(step, squares, before.empty() ? nullptr : &before,
+              static_cast<double>(study.residuals().size()));
+    step.curve = specimen_curve(studied, study.campaign(), fall.strain_rate_per_s);
+    step.relief = before.empty() ? 0.0 : penalty - studied.fit.penalty;
+    fall.steps.push_back(std::move(step));
     penalty = studied.fit.penalty;
     before = squares;
     if (&own == &lineage.back()) {
@@ -157,10 +171,10 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
       fall.floor = fall.shots > 1 ? studied.misfit.noise_scale : 1.0;
       fall.signal = study.residuals().signal_energy() / all;
       fall.repeats = studied.misfit.repeatable_share * fall.signal;
-      for (WaterfallStep& step : fall.steps) {
-        const EffectUse* use = step.removed ? nullptr : studied.model.find(step.effect);
+      for (WaterfallStep& made : fall.steps) {
+        const EffectUse* use = made.removed ? nullptr : studied.model.find(made.effect);
         if (use != nullptr) {
-          step.strengths = numbers_of(*use, "");
+          made.strengths = numbers_of(*use, "");
         }
       }
     }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
@@ -38,37 +39,54 @@ class Numbers {
   boost::random::normal_distribution<double> normal_;
 };
 
+constexpr std::size_t kModuli = 3;
+using Moduli = std::array<double, kModuli>;
+
+Moduli moduli_of(const Material& material) {
+  return {material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+}
+
 /// Draws of log moduli: they stay positive, and a per cent is a per cent.
 class MaterialDraws {
  public:
-  explicit MaterialDraws(const MaterialPosterior& posterior) : mean_(posterior.material) {
-    const double values[3] = {mean_.E1_Pa, mean_.E2_Pa, mean_.eta2_Pa_s};
-    Eigen::Matrix3d relative;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        relative(i, j) =
-            posterior.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] /
-            (values[i] * values[j]);
+  explicit MaterialDraws(const BallPosterior& ball) : ball_(ball) {
+    const Moduli core = moduli_of(ball.core.material);
+    const Moduli cover = moduli_of(ball.cover.material);
+    Joint relative;
+    for (std::size_t i = 0; i < kModuli; ++i) {
+      for (std::size_t j = 0; j < kModuli; ++j) {
+        const auto a = static_cast<Eigen::Index>(i);
+        const auto b = static_cast<Eigen::Index>(j);
+        relative(a, b) = ball.core.covariance[i][j] / (core[i] * core[j]);
+        relative(a + 3, b + 3) = ball.cover.covariance[i][j] / (cover[i] * cover[j]);
+        relative(a, b + 3) = relative(b + 3, a) = ball.between[i][j] / (core[i] * cover[j]);
       }
     }
     // By eigenvectors: a covariance may be of lower rank, or off by its last bits.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(relative);
+    const Eigen::SelfAdjointEigenSolver<Joint> solver(relative);
     root_ = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   }
 
-  Material next(Numbers& numbers) const {
-    const Eigen::Vector3d white(numbers(), numbers(), numbers());
-    const Eigen::Vector3d move = root_ * white;
-    Material drawn = mean_;
-    drawn.E1_Pa.value *= std::exp(move(0));
-    drawn.E2_Pa.value *= std::exp(move(1));
-    drawn.eta2_Pa_s.value *= std::exp(move(2));
-    return drawn;
+  Draw next(Numbers& numbers) const {
+    Eigen::Matrix<double, 6, 1> white;
+    for (double& number : white) {
+      number = numbers();
+    }
+    const Eigen::Matrix<double, 6, 1> move = root_ * white;
+    Draw draw{ball_.core.material, ball_.cover.material, numbers()};
+    Eigen::Index at = 0;
+    for (Material* material : {&draw.core, &draw.cover}) {
+      material->E1_Pa.value *= std::exp(move[at++]);
+      material->E2_Pa.value *= std::exp(move[at++]);
+      material->eta2_Pa_s.value *= std::exp(move[at++]);
+    }
+    return draw;
   }
 
  private:
-  Material mean_;
-  Eigen::Matrix3d root_;
+  using Joint = Eigen::Matrix<double, 6, 6>;
+  const BallPosterior& ball_;
+  Joint root_;
 };
 
 double interpolated(const std::vector<double>& values, double place) {
@@ -149,17 +167,14 @@ BallPrediction summary_of(const ForetoldSpeed& asked, const Runs& runs, double i
 }  // namespace
 
 std::vector<BallPrediction> foretell_impacts(
-    const Bench& bench, const MaterialPosterior& core, const MaterialPosterior& cover,
-    const std::vector<ForetoldSpeed>& speeds, const PredictionOptions& options,
-    const Workers& workers, const std::function<void(std::size_t, std::size_t)>& progress) {
+    const Bench& bench, const BallPosterior& ball, const std::vector<ForetoldSpeed>& speeds,
+    const PredictionOptions& options, const Workers& workers,
+    const std::function<void(std::size_t, std::size_t)>& progress) {
   Numbers numbers(options.seed);
-  const MaterialDraws core_draws(core);
-  const MaterialDraws cover_draws(cover);
+  const MaterialDraws materials(ball);
   std::vector<Draw> draws;
   for (std::size_t i = 0; i < options.draws; ++i) {
-    Draw draw{core_draws.next(numbers), cover_draws.next(numbers), 0.0};
-    draw.speed = numbers();
-    draws.push_back(std::move(draw));
+    draws.push_back(materials.next(numbers));
   }
   const double interval_s = 1.0 / bench.sampling_frequency_Hz;
   const auto run = [&](const Material& core_material, const Material& cover_material,
@@ -187,11 +202,11 @@ std::vector<BallPrediction> foretell_impacts(
     Runs& speed = runs[task / each];
     const std::size_t which = task % each;
     if (which == 0) {
-      speed.fine =
-          run(core.material, cover.material, asked, asked.speed_m_per_s, options.fine_elements);
+      speed.fine = run(ball.core.material, ball.cover.material, asked, asked.speed_m_per_s,
+                       options.fine_elements);
     } else if (which == 1) {
-      speed.coarse =
-          run(core.material, cover.material, asked, asked.speed_m_per_s, options.elements);
+      speed.coarse = run(ball.core.material, ball.cover.material, asked, asked.speed_m_per_s,
+                         options.elements);
     } else {
       const Draw& draw = draws[which - 2];
       try {

@@ -16,6 +16,14 @@ struct MaterialPosterior {
   std::array<std::array<double, 3>, 3> covariance{};  ///< of E1_Pa, E2_Pa, eta2_Pa_s
 };
 
+/// Core and cover together.
+struct BallPosterior {
+  MaterialPosterior core;
+  MaterialPosterior cover;
+  /// Covariance of the core's numbers (rows) with the cover's: what both owe to the same bars.
+  std::array<std::array<double, 3>, 3> between{};
+};
+
 /// An impact that is to be foretold, and how its measurement reads a force.
 struct ForetoldSpeed {
   Measured speed_m_per_s;
@@ -52,14 +60,13 @@ struct BallPrediction {
   std::size_t failed = 0;  ///< draws that no ball survives
 };
 
-/// Carries two specimens' posteriors, taken as independent of each other, through the finite
-/// elements: draws of log moduli with the filed covariances, the same ones at every speed, and of
-/// the speed.
+/// Carries two specimens' joint posterior through the finite elements: draws of log moduli with the
+/// filed covariances, the same ones at every speed, and of the speed.
 /// @param progress  from any thread, after each impact: how many are done, of how many
 /// @throws InputError as impact_on; where fewer than two draws come through
 [[nodiscard]] std::vector<BallPrediction> foretell_impacts(
-    const Bench& bench, const MaterialPosterior& core, const MaterialPosterior& cover,
-    const std::vector<ForetoldSpeed>& speeds, const PredictionOptions& options,
-    const Workers& workers, const std::function<void(std::size_t, std::size_t)>& progress = {});
+    const Bench& bench, const BallPosterior& ball, const std::vector<ForetoldSpeed>& speeds,
+    const PredictionOptions& options, const Workers& workers,
+    const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 }  // namespace kolsky

@@ -144,8 +144,12 @@ void fill_numbers(const SpecimenLikelihood& likelihood, const SpecimenMinimum& m
     fit.parameters.push_back({family[i].name, values[i], std::sqrt(fit.covariance[i][i])});
   }
   const auto& unknowns = likelihood.unknowns();
+  fit.by_bench.assign(family.size(), std::vector<double>(unknowns.size()));
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(family.size() + i);
+    for (std::size_t p = 0; p < family.size(); ++p) {
+      fit.by_bench[p][i] = values[p] * minimum.covariance(static_cast<Eigen::Index>(p), at);
+    }
     fit.bench.push_back({unknowns[i].name, minimum.moves[i] * unknowns[i].sd,
                          std::sqrt(minimum.covariance(at, at)) * unknowns[i].sd});
   }

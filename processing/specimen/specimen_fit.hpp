@@ -43,6 +43,9 @@ struct SpecimenFit {
   std::vector<FittedNumber> parameters;         ///< of the solid, in its order
   std::vector<std::vector<double>> covariance;  ///< of the solid's parameters
   std::vector<FittedNumber> bench;  ///< moves of the known unknowns: relative, or in metres
+  /// Covariance of each parameter with each of these moves in their filed deviations: by so much a
+  /// deviation of the bench, whatever specimen is on it, moves the parameter.
+  std::vector<std::vector<double>> by_bench;
   ShpbTheory theory;
   std::vector<TriedTheory> tried;
   double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone

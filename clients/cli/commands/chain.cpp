@@ -183,6 +183,60 @@ MaterialPosterior posterior_of(const SpecimenFit& fit, Material material) {
   return posterior;
 }
 
+bool alike(const Measured& a, const Measured& b) {
+  return a.value == b.value && a.sd == b.sd;
+}
+
+/// Whether two specimens were on the same bars with the same gauges: what is filed of them wrongly
+/// is then wrong for both.
+bool same_bench(const Bench& a, const Bench& b) {
+  const auto same_bar = [](const Bar& x, const Bar& y) {
+    return alike(x.length_m, y.length_m) && alike(x.diameter_m, y.diameter_m) &&
+           alike(x.density_kg_m3, y.density_kg_m3) && alike(x.poisson_ratio, y.poisson_ratio);
+  };
+  if (!same_bar(a.input, b.input) || !same_bar(*a.output, *b.output) ||
+      a.gauges.size() != b.gauges.size()) {
+    return false;
+  }
+  return std::equal(
+      a.gauges.begin(), a.gauges.end(), b.gauges.begin(), [](const Gauge& x, const Gauge& y) {
+        return x.name == y.name && x.bar == y.bar && alike(x.position_m, y.position_m);
+      });
+}
+
+/// Whether the moduli of both specimens' bars are one and the same identification.
+bool same_bars(const std::vector<Shot>& core, const std::vector<Shot>& cover,
+               const Settings& settings) {
+  if (!settings.bar_shots.empty() || settings.bar_model) {
+    return true;
+  }
+  const auto& a = core.front().bar_model;
+  const auto& b = cover.front().bar_model;
+  return a.has_value() == b.has_value() &&
+         (!a || (alike(a->E1_Pa, b->E1_Pa) && alike(a->E2_Pa, b->E2_Pa) &&
+                 alike(a->eta2_Pa_s, b->eta2_Pa_s)));
+}
+
+/// The covariance of two fits by what they share: unit deviations of the bars' moduli and of a
+/// bench that both specimens were on. A fit is off by `by_bench` times what these are off by.
+std::array<std::array<double, 3>, 3> between(const SpecimenFit& core, const SpecimenFit& cover,
+                                             bool same_bars, bool same_bench) {
+  std::array<std::array<double, 3>, 3> sum{};
+  for (std::size_t a = 0; a < core.bench.size(); ++a) {
+    const std::string& name = core.bench[a].name;
+    const bool shared =
+        name.starts_with("bar-model:") ? same_bars : same_bench && !name.starts_with("specimen-");
+    for (std::size_t b = 0; b < cover.bench.size(); ++b) {
+      for (std::size_t i = 0; shared && cover.bench[b].name == name && i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          sum[i][j] += core.by_bench[i][a] * cover.by_bench[j][b];
+        }
+      }
+    }
+  }
+  return sum;
+}
+
 /// The mean over repeats; its deviation is a single shot's, as what the shots share does not
 /// average out, or that of the mean, whichever is more.
 template <typename Member>
@@ -345,10 +399,17 @@ class Progress {
 };
 
 void add_remarks(ChainRun& run) {
-  run.remarks.emplace_back(
-      "core and cover are drawn independently: what both owe to the same bars is counted in each, "
-      "not "
-      "between them");
+  double largest = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      largest = std::max(largest, std::abs(run.between[i][j]) /
+                                      (run.core.parameters[i].sd * run.cover.parameters[j].sd));
+    }
+  }
+  run.remarks.push_back(
+      fmt::format("core and cover are drawn together: what both owe to the same bars correlates "
+                  "their numbers by up to {:.2f}",
+                  largest));
   run.remarks.emplace_back(
       "the deviations hold if the linear model does: they are no allowance for a wrong one");
   for (const auto& [part, fit] : {std::pair("core", &run.core), std::pair("cover", &run.cover)}) {
@@ -375,11 +436,14 @@ int run_command(const Settings& settings, Context& context) {
   const Bars bars = bars_of(settings, run);
   run.core = fit_of(core, settings, bars, "core");
   run.cover = fit_of(cover, settings, bars, "cover");
+  run.between = between(run.core, run.cover, same_bars(core, cover, settings),
+                        same_bench(core.front().bench, cover.front().bench));
   Progress progress;
-  const std::vector<BallPrediction> predictions =
-      foretell_impacts(bench, posterior_of(run.core, core_filed),
-                       posterior_of(run.cover, cover_filed), speeds, run.options, all_cores(),
-                       [&progress](std::size_t done, std::size_t of) { progress.show(done, of); });
+  const std::vector<BallPrediction> predictions = foretell_impacts(
+      bench,
+      {posterior_of(run.core, core_filed), posterior_of(run.cover, cover_filed), run.between},
+      speeds, run.options, all_cores(),
+      [&progress](std::size_t done, std::size_t of) { progress.show(done, of); });
   for (std::size_t i = 0; i < predictions.size(); ++i) {
     run.speeds[i].foretold = predictions[i];
     compare(run.speeds[i], run.impacts);

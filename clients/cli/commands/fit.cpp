@@ -29,7 +29,8 @@ Studied fit(const Model& model, const Campaign& campaign, double band_limit_Hz,
             const Workers& executor) {
   if (model.kind == BenchKind::impact) {
     require_kind(model, campaign);
-    return ImpactStudy(campaign, judges_whole(model), band_limit_Hz, executor).fit(model);
+    ImpactStudy study(campaign, judges_whole(model), band_limit_Hz, executor);
+    return study.settled(study.fit(model));
   }
   return Study(campaign, band_limit_Hz, executor).fit(model);
 }

@@ -3,12 +3,13 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/cli/waterfall_text.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
-#include "processing/base/error.hpp"
+#include "processing/criticism/impact_waterfall.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -41,7 +42,7 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
                            "is fitted to them again, under one measure of the noise"
                          : "not the captures that the model's ledger names: every model of the "
                            "lineage is fitted to these");
-  if (fall.shots < 2) {
+  if (fall.folds < 2) {
     notes.emplace_back("one shot: nothing is held out; repeat the shot to certify");
   }
   if (fall.steps.size() == 1) {
@@ -50,19 +51,29 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
   return notes;
 }
 
+Waterfall fall_of(const Settings& settings, const ModelFile& file, const Model& first) {
+  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  const double band_limit_Hz = band_limit_of(settings.band_limit_Hz);
+  const std::vector<LineageStep> steps = lineage(first, file.model, order_of(file));
+  if (file.model.kind == BenchKind::impact) {
+    require_kind(file.model, campaign);
+    const bool whole = std::any_of(steps.begin(), steps.end(), [](const LineageStep& step) {
+      return judges_whole(step.model);
+    });
+    ImpactStudy study(campaign, whole, band_limit_Hz, all_cores());
+    return waterfall(study, steps);
+  }
+  Study study(campaign, band_limit_Hz, all_cores());
+  return waterfall(study, steps);
+}
+
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
-  if (file.model.kind == BenchKind::impact) {
-    throw InputError(settings.model, "is of a ball on a bar, whose lineage is not refitted yet",
-                     "`kolsky model history` has the misfit of every step");
-  }
   const Model first =
       file.history.empty()
           ? file.model
           : parse_model(file.history.front().before, settings.model + ": history").model;
-  const Campaign campaign = read_campaign(read_shots(settings.captures));
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
-  const Waterfall fall = waterfall(study, lineage(first, file.model, order_of(file)));
+  const Waterfall fall = fall_of(settings, file, first);
   const std::vector<std::string> notes = notes_of(settings, file, fall);
   const std::string title = "How the misfit of " + settings.model + " fell";
   if (settings.report) {
@@ -97,7 +108,9 @@ Command model_waterfall_command() {
       "how the misfit fell, effect by effect, from a model's first form to the noise\n"
       "Every model of the lineage is fitted to the captures; drops are those on shots that the "
       "fits "
-      "did\nnot see. Then how the moduli moved and, beside a specimen, its stress-strain curve.";
+      "did\nnot see. Then how the moduli moved and, beside a specimen, its stress-strain curve. Of "
+      "a "
+      "ball\nwhole speeds are held out, and the force's error at every speed is told.";
   command.examples =
       "  kolsky model waterfall m2.toml shots/*.h5\n"
       "  kolsky model waterfall m2.toml shots --report fall.html --svg fall.svg\n";

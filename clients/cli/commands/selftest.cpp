@@ -231,11 +231,12 @@ Command selftest_command() {
   command.purpose =
       "what `diagnose` would find on your own bench: effects planted into your captures\n"
       "In raw codes, the captures' own noise stays. Also how often it cries wolf, on noise drawn "
-      "anew.";
+      "anew.\nA ball's diagnosis takes half a minute of a core: name --effects, or let it run.";
   command.examples =
       "  kolsky selftest shots --model m1.toml\n"
       "  kolsky selftest shots --model m1.toml --effects gauge-position:g3 --sizes 5e-4 1e-3 "
-      "2e-3\n";
+      "2e-3\n"
+      "  kolsky selftest balls --model m.toml --effects core-nonlinearity --nulls 2\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
       needed("--model", "M.toml", "the model that explains them, the better the more it says",

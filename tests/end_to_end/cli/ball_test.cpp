@@ -217,6 +217,17 @@ TEST(BallLive, PhotoSensorsServeAModelOfTheBall) {
   EXPECT_EQ(fit.code, 0) << fit.err;
   const json found = json_of(kolsky({"diagnose", capture, "--model", model, "--json"}));
   EXPECT_EQ(found["verdict"], "adequate") << found["notes"];
+
+  // An effect that this ball does not have takes nothing off.
+  const std::string more = lab.folder() / "more.toml";
+  ASSERT_EQ(kolsky({"model", "add", fitted, "core-nonlinearity", "-o", more}).code, 0);
+  const json fall = json_of(kolsky({"model", "waterfall", more, capture, "--json"}));
+  ASSERT_EQ(fall["steps"].size(), 2U);
+  EXPECT_EQ(fall["held_out_by"], "shots");
+  EXPECT_EQ(fall["steps"][1]["effect"], "core-nonlinearity");
+  EXPECT_LT(fall["steps"][1]["gain"].get<double>(), 24.0);
+  ASSERT_EQ(fall["steps"][1]["speeds"].size(), 1U);
+  EXPECT_LT(fall["steps"][1]["speeds"][0]["rms_percent_of_peak"].get<double>(), 0.5);
 }
 
 TEST(BallLive, AModelIsComparedAsShotsComeIn) {

@@ -216,10 +216,31 @@ TEST_F(Chain, ForetellsTheBallFromTheSpecimensWithinItsDeviations) {
   }
   EXPECT_NEAR(speed["restitution"]["by_speed"]["predicted"]["value"].get<double>(),
               files_->truth.restitution, 0.004);
+  EXPECT_TRUE(speed["agrees"].get<bool>());
+  EXPECT_TRUE(told["agrees"].get<bool>());
+  EXPECT_EQ(told["core_cover_covariance"].size(), 3U);
   EXPECT_LT(speed["force_rms_share"].get<double>(), 0.01);
   EXPECT_EQ(speed["time_s"].size(), speed["force_measured_N"].size());
   EXPECT_EQ(speed["time_s"].size(), speed["force_predicted_sd_N"].size());
   EXPECT_TRUE(std::filesystem::exists(svg));
+}
+
+// The same captures, and a law in three dimensions that the ball does not have; without friction
+// where it has some.
+TEST_F(Chain, AWrongModelIsFoundOut) {
+  std::vector<std::string> words = with({"chain"}, "--bar-shots", files_->bar);
+  words = with(with(with(words, "--core-shots", files_->core), "--cover-shots", files_->cover),
+               "--ball-shots", files_->ball);
+  words.insert(words.end(), {"--draws", "12", "--reading", "bulk-Einf"});
+  const scene::Answer text = kolsky(words);
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.out.find("does not agree: "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("kolsky diagnose"), std::string::npos);
+  words.back() = "full";
+  words.insert(words.end(), {"--friction", "0", "--json"});
+  const json frictionless = json_of(kolsky(words));
+  EXPECT_FALSE(frictionless["agrees"].get<bool>())
+      << frictionless["speeds"][0]["restitution"].dump();
 }
 
 TEST_F(Chain, ABallThatWeighsSomethingElseIsRefused) {
@@ -242,6 +263,7 @@ TEST_F(Chain, ForetellsWithoutAMeasurementAndInText) {
        {"31.10 m/s, 0 shots", "restitution, speed", "peak force", "foretold"}) {
     EXPECT_NE(answer.out.find(wanted), std::string::npos) << wanted << "\n" << answer.out;
   }
+  EXPECT_EQ(answer.out.find("agree"), std::string::npos) << "nothing was measured";
 }
 
 TEST_F(Chain, RefusesWhatIsNoChain) {

@@ -114,6 +114,16 @@ TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
   EXPECT_TRUE(refused(kolsky({"selftest", file("shots"), "--model", file("m.toml"), "--effects",
                               "gauge-position:g9", "--sizes", "0.001"}),
                       {"gauge-position:g9"}));
+  // Two folders, one name: only the paths tell which is which.
+  std::filesystem::create_directory(folder_ / "later");
+  std::ofstream(file("later.toml")) << content(file("campaign/bench.toml")) << "\n# again\n";
+  ASSERT_EQ(kolsky({"import", "csv", file("campaign/shot01.csv"), "--bench", file("later.toml"),
+                    "-o", file("later/shot01.h5")})
+                .code,
+            0);
+  EXPECT_TRUE(refused(kolsky({"compare", file("shots/shot01.h5"), file("later/shot01.h5"),
+                              "--model", file("m.toml")}),
+                      {"later/shot01.h5: is of another bench", "than " + file("shots/shot01.h5")}));
   EXPECT_TRUE(refused(kolsky({"tour", "--truth-only"}), {"--seed"}));
   EXPECT_TRUE(refused(kolsky({"tour", "--seed", "1", "--shots-only"}), {"--folder"}));
   EXPECT_TRUE(refused(kolsky({"tour", "--folder", file("shots")}), {"empty folder"}));

@@ -111,6 +111,26 @@ TEST(Distinction, IsNoneBetweenTwoNamesOfOneEffect) {
   }
 }
 
+TEST(Expression, OfABallIsRefusedWithTheReasonWhateverItsStage) {
+  ModelFile ball;
+  ball.model = paper_model(BenchKind::impact, true);
+  for (const char* stage : {"propagation", "boundary", "sensor"}) {
+    try {
+      static_cast<void>(parse_model(
+          format_model(ball) + "\n[[expressions]]\nid = \"mine\"\nstage = \"" + stage +
+              "\"\nformula = \"" + (stage == std::string("boundary") ? "a" : "1 + a") +
+              "\"\n[expressions.parameters.a]\nunit = \"-\"\nnull = 0.0\nbounds = [-0.1, 0.1]\n"
+              "typical = 0.01\n",
+          "m.toml"));
+      ADD_FAILURE() << stage << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("a ball's force is calculated by finite elements"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(Model, ThatLacksWavesOrAMaterialIsRefusedBeforeItIsCompared) {
   const Campaign campaign = read_campaign(shots_with(91, ""));
   for (const char* id : {"elementary-waves", "three-element-bar"}) {

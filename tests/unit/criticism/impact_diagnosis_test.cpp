@@ -96,6 +96,39 @@ TEST(ImpactDiagnosis, ForetellsASpeedThatWasHeldOut) {
   EXPECT_LT(after, 0.8);
 }
 
+/// What two codes of one ball differ by is in the deviation that is stated: it holds the other
+/// code's truth, on a mesh that the solver's error was not measured on, and is no blank cheque.
+TEST(ImpactStudy, AStrengthsDeviationHoldsAnotherCodesTruth) {
+  testing::ImpactWishes own = wishes(19);
+  own.shots = 2;
+  own.core_b = -0.5;
+  own.across = 7;
+  Model model = paper_model(BenchKind::impact, true);
+  model.effects.push_back(use_named("core-nonlinearity"));
+  const Campaign campaign = read_campaign(testing::impact_shots(own));
+  ImpactStudy study(campaign, false, 0.0, Workers{});
+  const Studied studied = study.settled(study.fit(model));
+  const ModelValue& b = studied.model.find("core-nonlinearity")->values[0];
+  EXPECT_NEAR(b.value, -0.5, 2.5 * b.sd) << b.sd;
+  EXPECT_LT(b.sd, 0.1);
+  EXPECT_GT(b.sd, 0.03) << "noise alone knows it better than codes agree";
+}
+
+/// A ball without friction, and a model that files some: the fit finds the other side of the hill
+/// that restitution makes over friction.
+TEST(ImpactStudy, FindsThatThereIsNoFriction) {
+  testing::ImpactWishes own = wishes(20);
+  own.shots = 2;
+  own.friction = 0.0;
+  const Campaign campaign = read_campaign(testing::impact_shots(own));
+  ImpactStudy study(campaign, false, 0.0, Workers{});
+  const ModelValue mu =
+      study.fit(paper_model(BenchKind::impact, true)).model.find("contact-friction")->values[0];
+  EXPECT_LT(mu.value, 0.1);
+  EXPECT_LT(mu.value, 2.5 * mu.sd);
+  EXPECT_LT(mu.sd, 0.08) << "the records tell it";
+}
+
 /// The white residuals' squares are the quadratic form of the covariance of all shots at once, here
 /// written out.
 TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
@@ -137,6 +170,22 @@ TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
   }
   const double wanted = stacked.dot(covariance.fullPivLu().solve(stacked));
   EXPECT_NEAR(whitening.white(residual).squaredNorm(), wanted, 1e-6 * wanted);
+  // An error that all shots of a speed share pulls at a fit's numbers as its residuals do.
+  Eigen::MatrixXd jacobian(25, 2);
+  Eigen::VectorXd error(10);
+  for (Eigen::Index i = 0; i < 25; ++i) {
+    jacobian(i, 0) = std::cos(2.0 * static_cast<double>(i));
+    jacobian(i, 1) = std::sin(0.7 * static_cast<double>(i));
+  }
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    error[i] = 1e-6 * std::cos(static_cast<double>(i * i));
+  }
+  std::vector<Eigen::VectorXd> alike;
+  for (const std::size_t g : records.group_of) {
+    alike.emplace_back(error.segment(static_cast<Eigen::Index>(g) * 5, 5));
+  }
+  const Eigen::VectorXd pull = jacobian.transpose() * whitening.white(alike);
+  EXPECT_LT((whitening.pulls(jacobian) * error - pull).norm(), 1e-9 * pull.norm());
   // Of restitution, codes differ alike at all speeds: so much is no news at the second one.
   EXPECT_NEAR(whitening.shared(0, 1)(4, 4),
               std::pow(ImpactWhitening::kRestitutionDoubt, 2) * 31.0 * 50.0 / 25e6 +

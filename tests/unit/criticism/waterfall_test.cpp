@@ -85,7 +85,7 @@ TEST(Waterfall, FallsToTheNoiseByWhatWasHiddenAndTheModuliComeRight) {
   EXPECT_GT(fall.steps[1].held_out, fall.steps[2].held_out);
   for (const std::size_t i : {1U, 2U}) {
     EXPECT_GT(fall.steps[i].gain, 100.0);
-    EXPECT_GE(fall.steps[i].better_shots, 5U);
+    EXPECT_GE(fall.steps[i].better, 5U);
   }
   EXPECT_NEAR(fall.steps[2].held_out, fall.floor, 0.06);
   EXPECT_GT(fall.closed(), 0.95);

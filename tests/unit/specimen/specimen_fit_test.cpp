@@ -159,6 +159,39 @@ TEST(FitSpecimen, TheBarsDeviationIsCarried) {
   expect_material(once, model.specimen);
 }
 
+// What two specimens on the same bars share: a bar that is filed higher by its deviation moves the
+// material by just that covariance.
+TEST(FitSpecimen, TheCovarianceWithTheBarsIsWhatMovingTheirPriorDoes) {
+  LinearShpb model;
+  const auto shots = shots_of(model, 4);
+  SpecimenFitOptions options;
+  options.bars = WaveTheory::elementary;
+  options.specimen = SpecimenWaves::massless;
+  options.after_foot_s = 500e-6;
+  const double sd_Pa = 3e-4 * paper_pmma().E1_Pa;
+  const auto fit_at = [&](double deviations) {
+    Material bars = paper_pmma();
+    bars.E1_Pa.value += deviations * sd_Pa;
+    bars.E1_Pa.sd = sd_Pa;
+    return fit_specimen(shots, BarPrior(bars), options);
+  };
+  const SpecimenFit fit = fit_at(0.0);
+  const SpecimenFit above = fit_at(1.0);
+  const SpecimenFit below = fit_at(-1.0);
+  ASSERT_EQ(fit.bench.size(), 1U);
+  ASSERT_EQ(fit.by_bench.size(), 3U);
+  const auto moved = [&](std::size_t p) {
+    return (above.parameters[p].value - below.parameters[p].value) / 2.0;
+  };
+  const double sign = moved(2) * fit.by_bench[2][0] > 0.0 ? 1.0 : -1.0;
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(sign * fit.by_bench[p][0], moved(p),
+                0.1 * std::abs(moved(p)) + 0.02 * fit.parameters[p].sd)
+        << fit.parameters[p].name;
+  }
+  EXPECT_GT(std::abs(fit.by_bench[2][0]), 0.1 * fit.parameters[2].sd);
+}
+
 TEST(FitSpecimen, CorrelatedModuliMoveTogether) {
   Material bars = paper_pmma();
   BarPrior prior(bars);

@@ -1,0 +1,87 @@
+#include "processing/criticism/impact_waterfall.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/generators/impact_campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+Model paper_with(const std::vector<std::string>& effects) {
+  Model model = paper_model(BenchKind::impact, true);
+  for (const std::string& id : effects) {
+    model.effects.push_back(use_named(id));
+  }
+  return model;
+}
+
+Waterfall fall_of(const std::vector<Shot>& shots, const std::vector<std::string>& effects) {
+  const Campaign campaign = read_campaign(shots);
+  ImpactStudy study(campaign, false, 0.0, Workers{});
+  return waterfall(study, lineage(paper_with({}), paper_with(effects), {}));
+}
+
+testing::ImpactWishes wishes(std::uint64_t seed) {
+  testing::ImpactWishes own;
+  own.seed = seed;
+  own.speeds_m_per_s = {31.1, 51.0};
+  own.shots = 2;
+  return own;
+}
+
+TEST(ImpactWaterfall, FallsToTheNoiseByWhatWasHidden) {
+  testing::ImpactWishes own = wishes(41);
+  own.core_b = 0.9;
+  const Waterfall fall = fall_of(testing::impact_shots(own), {"core-nonlinearity"});
+  ASSERT_EQ(fall.steps.size(), 2U);
+  EXPECT_EQ(fall.fold, "speeds");
+  EXPECT_EQ(fall.folds, 2U);
+  EXPECT_EQ(fall.shots, 4U);
+  EXPECT_NEAR(fall.floor, 0.93, 0.1);
+  EXPECT_GT(fall.steps[0].held_out, 3.0 * fall.floor);
+  EXPECT_LT(fall.steps[1].held_out, 1.5 * fall.floor);
+  EXPECT_GT(fall.closed(), 0.8);
+  EXPECT_EQ(fall.steps[1].better, 2U);
+  EXPECT_NEAR(fall.steps[1].gain / (4.0 * 29.0), fall.steps[0].held_out - fall.steps[1].held_out,
+              0.2 * (fall.steps[0].held_out - fall.steps[1].held_out));
+  // The error where the ball is struck hardest falls to what two codes differ by (docs/impact.md).
+  ASSERT_EQ(fall.steps[0].speeds.size(), 2U);
+  EXPECT_NEAR(fall.steps[0].speeds[1].speed_m_per_s, 51.0, 1.0);
+  EXPECT_GT(fall.steps[0].speeds[1].rms_percent, 1.0);
+  EXPECT_LT(fall.steps[1].speeds[1].rms_percent, 0.5);
+  EXPECT_NEAR(fall.steps[1].speeds[1].restitution_foretold,
+              fall.steps[1].speeds[1].restitution_measured, 0.005);
+  const MovedNumber& b = fall.steps[1].strengths.at(0);
+  EXPECT_NEAR(b.value, 0.9, 3.0 * b.sd);
+  EXPECT_LT(b.sd, 0.3);
+}
+
+TEST(ImpactWaterfall, CreditsAnEffectThatIsNotThereWithNothingAndHoldsOutShotsOfOneSpeed) {
+  testing::ImpactWishes own = wishes(42);
+  own.speeds_m_per_s = {40.3};
+  own.shots = 3;
+  const Waterfall fall = fall_of(testing::impact_shots(own), {"bridge-nonlinearity"});
+  ASSERT_EQ(fall.steps.size(), 2U);
+  EXPECT_EQ(fall.fold, "shots");
+  EXPECT_EQ(fall.folds, 3U);
+  // A claim's square counts over kSolverDoubt.
+  EXPECT_LT(fall.steps[1].gain / kSolverDoubt, 4.0);
+  EXPECT_LT(fall.steps[0].held_out, 1.5 * fall.floor);
+}
+
+TEST(Lineage, AReadingChosenAnewIsAStepOfItsOwn) {
+  const Model first = paper_with({});
+  Model last = paper_with({"core-nonlinearity"});
+  last.find("three-dimensional-reading")->values[0].value = 3.0;
+  const auto steps = lineage(first, last, {});
+  ASSERT_EQ(steps.size(), 3U);
+  EXPECT_EQ(steps[1].effect, "three-dimensional-reading");
+  EXPECT_EQ(steps[1].model.find("core-nonlinearity"), nullptr);
+  EXPECT_EQ(steps[2].effect, "core-nonlinearity");
+  EXPECT_EQ(steps[2].model.find("three-dimensional-reading")->values[0].value, 3.0);
+}
+
+}  // namespace
+}  // namespace kolsky
