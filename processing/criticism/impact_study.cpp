@@ -117,30 +117,7 @@ Studied ImpactStudy::fit(const Model& model) {
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.calibrate(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
-  return with_other_friction(finish(model, std::move(composition), std::move(fit)));
-}
-
-Studied ImpactStudy::with_other_friction(Studied near) {
-  const std::vector<FreeNumber>& numbers = near.composition.numbers();
-  const auto friction = std::find_if(numbers.begin(), numbers.end(), [&](const FreeNumber& own) {
-    return near.composition.uses()[own.use].id() == "contact-friction" && own.prior_sd > 0.0;
-  });
-  if (friction == numbers.end()) {
-    return near;
-  }
-  constexpr double kLittle = 0.03;
-  constexpr double kBetween = 0.12;
-  const std::vector<double> there = residuals_.anchored_at();
-  std::vector<double> theta = near.fit.theta;
-  theta[static_cast<std::size_t>(friction - numbers.begin())] = friction->inside(
-      friction->theta_of(friction->start > kBetween ? kLittle : friction->prior_mean));
-  residuals_.anchor(near.composition, theta);
-  ModelFit other = fit_model(near.composition, residuals_, executor_, theta);
-  if (other.objective() < near.fit.objective()) {
-    return finish(near.model, near.composition, std::move(other));
-  }
-  residuals_.anchor(near.composition, there);
-  return near;
+  return finish(model, std::move(composition), std::move(fit));
 }
 
 Studied ImpactStudy::refit(const Model& model, const Workers& executor) {

@@ -82,8 +82,6 @@ class ImpactStudy {
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
-  [[nodiscard]] Studied with_other_friction(Studied near);
-
   const Campaign& campaign_;
   Workers executor_;
   ImpactResiduals residuals_;

@@ -114,21 +114,6 @@ TEST(ImpactStudy, AStrengthsDeviationHoldsAnotherCodesTruth) {
   EXPECT_GT(b.sd, 0.03) << "noise alone knows it better than codes agree";
 }
 
-/// A ball without friction, and a model that files some: the fit finds the other side of the hill
-/// that restitution makes over friction.
-TEST(ImpactStudy, FindsThatThereIsNoFriction) {
-  testing::ImpactWishes own = wishes(20);
-  own.shots = 2;
-  own.friction = 0.0;
-  const Campaign campaign = read_campaign(testing::impact_shots(own));
-  ImpactStudy study(campaign, false, 0.0, Workers{});
-  const ModelValue mu =
-      study.fit(paper_model(BenchKind::impact, true)).model.find("contact-friction")->values[0];
-  EXPECT_LT(mu.value, 0.1);
-  EXPECT_LT(mu.value, 2.5 * mu.sd);
-  EXPECT_LT(mu.sd, 0.08) << "the records tell it";
-}
-
 /// The white residuals' squares are the quadratic form of the covariance of all shots at once, here
 /// written out.
 TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
