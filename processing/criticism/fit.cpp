@@ -109,6 +109,7 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
   }
   double damping = 0.0;
   bool fresh = false;
+  bool short_before = false;  ///< the last step gained as little
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     if (chord != nullptr && !fresh) {
       fit.jacobian = *chord;
@@ -170,9 +171,11 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
       fresh = !better || gain < 0.5 * promised;
       continue;
     }
-    // A short step gains little wherever it is: only where a full one would too has the fit come to
-    // rest.
-    if (!better || (gain < kSettled && (damping == 0.0 || promised < kSettled))) {
+    // A short step gains little wherever it is, so that where a full one would gain more the next,
+    // longer one decides.
+    const bool at_rest = gain < kSettled && (damping == 0.0 || promised < kSettled || short_before);
+    short_before = gain < kSettled;
+    if (!better || at_rest) {
       fit.converged = better || damping > 1e3;
       break;
     }

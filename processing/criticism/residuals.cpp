@@ -28,8 +28,16 @@ struct WhiteResiduals::Workspace {
   std::vector<Spectrum> rows;                  ///< one shot's residuals, plain, by other gauge
   std::vector<std::vector<double>> responses;  ///< of other gauges to the reference's noise
   SpecimenResponse response;
-  std::vector<Eigen::MatrixXcd> whitener;  ///< by bin, of the evaluation under way
   Eigen::MatrixXcd cross;
+
+  // Much of a fit moves what is added to records alone: how waves travel then stays as it was in
+  // the evaluation before.
+  std::vector<AppliedEffect> on_waves;  ///< that made scene and transfers, for a shot
+  std::optional<std::size_t> shot;
+  std::optional<Scene> scene;
+  Transfers transfers;
+  std::optional<std::vector<AppliedEffect>> on_noise;  ///< that made the whitener
+  std::vector<Eigen::MatrixXcd> whitener;              ///< by bin
 
   Workspace(const JudgedBand& band, double period_s)
       : whole(band.transformed, period_s, kWrapDamping),
@@ -46,10 +54,51 @@ struct WhiteResiduals::Workspace {
         fine_record(fine.length()) {}
 };
 
+namespace {
+
+/// A shot as the others are on average.
+ShotFacts mean_of(const std::vector<CampaignShot>& shots) {
+  ShotFacts mean = shots.front().facts;
+  const auto count = static_cast<double>(shots.size());
+  double peak_strain = 0.0;
+  double warmer_by_K = 0.0;
+  for (const CampaignShot& shot : shots) {
+    peak_strain += shot.facts.peak_strain / count;
+    if (shot.facts.warmer_by_K) {
+      warmer_by_K += *shot.facts.warmer_by_K / count;
+    } else {
+      mean.warmer_by_K.reset();
+    }
+  }
+  mean.peak_strain = peak_strain;
+  if (mean.warmer_by_K) {
+    mean.warmer_by_K = warmer_by_K;
+  }
+  return mean;
+}
+
+/// One shot's effects: those on waves and those on what was made of their strain.
+struct Effects {
+  std::vector<AppliedEffect> on_waves;
+  std::vector<AppliedEffect> on_records;
+
+  Effects(const Composition& composition, const std::vector<double>& theta, std::size_t shot) {
+    for (AppliedEffect& effect : composition.applied(theta, shot)) {
+      auto& list = effect.effect->about().stage == Stage::record ? on_records : on_waves;
+      list.push_back(std::move(effect));
+    }
+  }
+};
+
+}  // namespace
+
 WhiteResiduals::~WhiteResiduals() = default;
 
 WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers)
-    : campaign_(campaign), band_(judged_band(campaign, band_limit_Hz)), noise_(campaign, band_) {
+    : campaign_(campaign),
+      band_(judged_band(campaign, band_limit_Hz)),
+      noise_(campaign, band_),
+      usual_(mean_of(campaign.shots)) {
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
     if (j != campaign.reference) {
       others_.push_back(j);
@@ -120,9 +169,17 @@ void WhiteResiduals::prepare_spectra() {
 }
 
 /// Undoes what effects say was done to the records after the strain was sensed.
-void WhiteResiduals::shape_records(Workspace& work, const RecordScene& record,
+void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
                                    std::size_t of_shot) const {
   const CampaignShot& shot = campaign_.shots[of_shot];
+  Scene& scene = *work.scene;
+  scene.facts = &shot.facts;
+  RecordScene& record = scene.record;
+  record = RecordScene{};
+  record.additions.resize(campaign_.gauges());
+  for (const AppliedEffect& effect : effects) {
+    effect.effect->apply(scene, effect.values, effect.gauge);
+  }
   work.records.resize(campaign_.gauges());
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     work.shaped = shot.strain[j];
@@ -225,9 +282,38 @@ Eigen::MatrixXcd WhiteResiduals::whitener(const CarriedBin& carried, std::size_t
   return factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
 }
 
+/// Scene and transfers of a shot under what acts on waves, unless they are known.
+void WhiteResiduals::know_waves(Workspace& work, const Composition& composition,
+                                std::vector<AppliedEffect> effects, std::size_t shot) const {
+  const bool same_shot = work.shot && (*work.shot == shot || !composition.differs_by_shot());
+  if (work.scene && same_shot && work.on_waves == effects) {
+    return;
+  }
+  work.scene.emplace(campaign_.bench, campaign_.shots[shot].facts, damped_path_);
+  shape(effects, *work.scene);
+  work.transfers = ratios_of(*work.scene);
+  work.on_waves = std::move(effects);
+  work.shot = shot;
+}
+
+/// What whitens residuals under these effects, unless it is known.
+void WhiteResiduals::know_noise(Workspace& work, const std::vector<AppliedEffect>& effects) const {
+  if (work.on_noise == effects) {
+    return;
+  }
+  Scene scene(campaign_.bench, usual_, damped_path_);
+  shape(effects, scene);
+  const std::vector<CarriedBin> carried = carried_by(work, ratios_of(scene));
+  work.whitener.resize(band_.bins_judged);
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    work.whitener[k] = std::numbers::sqrt2 * whitener(carried[k], k, work.cross);
+  }
+  work.on_noise = effects;
+}
+
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
-  Scene scene(campaign_.bench, campaign_.shots.front().facts, damped_path_);
-  shape(composition.applied(theta, 0), scene);
+  Scene scene(campaign_.bench, usual_, damped_path_);
+  shape(Effects(composition, theta, 0).on_waves, scene);
   const std::vector<CarriedBin> carried = carried_by(*work_.front(), ratios_of(scene));
   spread_.clear();
   Eigen::MatrixXcd cross;
@@ -263,6 +349,7 @@ void WhiteResiduals::calibrate(const Composition& composition, const std::vector
   constexpr int kSteps = 6;
   // From below, for too much of it goes slowly.
   noise_.forget();
+  forget_whitener();
   for (int step = 0; step < kSteps; ++step) {
     freeze(composition, theta);
     share_out_noise(evaluate(composition, theta));
@@ -286,6 +373,13 @@ void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white) {
       power[k] = noise_.scale(j, k) * power_over_known(j, k, noise, sources);
     }
     noise_.learn(j, power);
+  }
+  forget_whitener();
+}
+
+void WhiteResiduals::forget_whitener() {
+  for (const auto& work : work_) {
+    work->on_noise.reset();
   }
 }
 
@@ -333,43 +427,26 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
                                     std::size_t end, std::size_t worker, double* next) {
   Workspace& work = *work_[worker];
   const std::size_t reference = campaign_.reference;
-  std::optional<Scene> scene;
-  Transfers transfers;
   const auto rows = static_cast<Eigen::Index>(others_.size());
   Eigen::VectorXcd r(rows);
   Eigen::VectorXcd white(rows);
   Spectrum damped(band_.bins_carried);
+  know_noise(work, Effects(composition, theta, 0).on_waves);
   for (std::size_t n = first; n < end; ++n) {
-    const CampaignShot& shot = campaign_.shots[n];
-    if (!scene || composition.differs_by_shot()) {
-      scene.emplace(campaign_.bench, shot.facts, damped_path_);
-      shape(composition.applied(theta, n), *scene);
-      transfers = ratios_of(*scene);
-      const std::vector<CarriedBin> carried = carried_by(work, transfers);
-      work.whitener.resize(band_.bins_judged);
-      for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-        work.whitener[k] = std::numbers::sqrt2 * whitener(carried[k], k, work.cross);
-      }
-    } else if (composition.changes_records()) {
-      scene->facts = &shot.facts;
-      scene->record = RecordScene{};
-      scene->record.additions.resize(campaign_.gauges());
-      for (const AppliedEffect& effect : composition.applied(theta, n)) {
-        if (effect.effect->about().stage == Stage::record) {
-          effect.effect->apply(*scene, effect.values, effect.gauge);
-        }
-      }
-    }
+    Effects effects(composition, theta, n);
+    know_waves(work, composition, std::move(effects.on_waves), n);
+    const Scene& scene = *work.scene;
+    const Transfers& transfers = work.transfers;
     const std::vector<Spectrum>* records = &spectra_[n];
-    if (composition.changes_records()) {
-      shape_records(work, scene->record, n);
+    if (!effects.on_records.empty()) {
+      shape_records(work, effects.on_records, n);
       records = &work.records;
     }
     const Spectrum& source = (*records)[reference];
-    const bool nonlinear = scene->specimen && scene->specimen->nonlinear();
+    const bool nonlinear = scene.specimen && scene.specimen->nonlinear();
     if (nonlinear) {
       // Of the reference record, what the specimen's further strain q has sent there goes first.
-      work.response.solve(*scene, transfers, reference, source, work.decimated);
+      work.response.solve(scene, transfers, reference, source, work.decimated);
     }
     work.rows.resize(others_.size());
     for (std::size_t i = 0; i < others_.size(); ++i) {

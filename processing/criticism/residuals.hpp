@@ -24,6 +24,8 @@ namespace kolsky {
 /// Whitened with it, their sum of squares is that of all records with the source at its best:
 /// the covariance follows the parameters, or what is noise in y_ref would pull at them.
 ///
+/// The covariance is that of a shot of mean amplitude and temperature.
+///
 /// Work space is per worker; evaluations in different workers may run at once.
 class WhiteResiduals : public ShotResiduals {
  public:
@@ -89,6 +91,9 @@ class WhiteResiduals : public ShotResiduals {
   using Spectrum = std::vector<Complex>;
 
   [[nodiscard]] Transfers ratios_of(const Scene& scene) const;
+  void know_waves(Workspace& work, const Composition& composition,
+                  std::vector<AppliedEffect> effects, std::size_t shot) const;
+  void know_noise(Workspace& work, const std::vector<AppliedEffect>& effects) const;
   [[nodiscard]] std::vector<CarriedBin> carried_by(Workspace& work, const Transfers& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
@@ -97,10 +102,12 @@ class WhiteResiduals : public ShotResiduals {
   void prepare_spectra();
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
-  void shape_records(Workspace& work, const RecordScene& record, std::size_t shot) const;
+  void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
+                     std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
   void estimate_noise(const Eigen::VectorXd& white);
   void share_out_noise(const Eigen::VectorXd& white);
+  void forget_whitener();
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
                                         const std::vector<std::vector<Spectrum>>& noise,
                                         const std::vector<Spectrum>& sources) const;
@@ -115,7 +122,8 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<double> filter_;                  ///< at the judged bins
   std::vector<Complex> damped_filter_;          ///< at the carried bins
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
-  std::vector<Eigen::MatrixXcd> spread_;        ///< whitened residual to deviations of all gauges
+  ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
+  std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
   /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
   std::vector<std::vector<std::vector<double>>> own_noise_;
   double signal_energy_ = 0.0;

@@ -15,6 +15,8 @@ struct AppliedEffect {
   const Effect* effect = nullptr;
   std::size_t gauge = 0;
   std::vector<double> values{};
+
+  bool operator==(const AppliedEffect&) const = default;
 };
 
 /// Lets effects shape the scene of one shot, stage by stage.

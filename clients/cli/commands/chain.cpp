@@ -326,7 +326,7 @@ Measured speed_of(const BallRepeats& group, const std::vector<BallImpact>& impac
 
 Bench ball_bench(const Settings& settings, const std::vector<Shot>& balls) {
   if (settings.bench) {
-    const Bench bench = read_bench(*settings.bench).bench;
+    Bench bench = read_bench(*settings.bench).bench;
     if (bench.kind != BenchKind::impact) {
       throw InputError(*settings.bench + ": kind", "is not \"impact\"",
                        "give a bench with a [ball]");

@@ -132,6 +132,7 @@ JsonObject numbers(const std::vector<FittedNumber>& list) {
 JsonObject describe(const std::vector<CompliancePoint>& spectrum) {
   const auto column = [&](double CompliancePoint::*member) {
     std::vector<double> values;
+    values.reserve(spectrum.size());
     for (const CompliancePoint& point : spectrum) {
       values.push_back(point.*member);
     }

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <ostream>
@@ -45,14 +46,9 @@ struct Settings {
 constexpr const char* kPlace = "kolsky impact: ";
 
 double number_in(const std::string& text, const std::string& option_name) {
-  std::size_t used = 0;
-  double value = std::nan("");
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::logic_error&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size() || !std::isfinite(value)) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0' || !std::isfinite(value)) {
     throw InputError(kPlace + option_name, "\"" + text + "\" is not a number", "give a number");
   }
   return value;

@@ -78,6 +78,7 @@ void tell_apart(const Settings& settings, const Model& model, std::vector<Checke
                        [&](const auto& own) { return own.get() == use.effect; });
   });
   std::vector<std::string> ids;
+  ids.reserve(list.size());
   for (const Checked& own : list) {
     ids.push_back(own.effect->about().id);
   }

@@ -111,7 +111,7 @@ std::string text_of(const Difference& difference) {
     }
     const std::string was = how_held(change.before);
     const std::string is = how_held(change.after);
-    text += was == is ? "\n" : ", " + was + " -> " + is + "\n";
+    text += was == is ? "\n" : fmt::format(", {} -> {}\n", was, is);
   }
   return text.empty() ? "the two models are the same\n" : text;
 }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "processing/models/additions.hpp"
@@ -36,8 +38,17 @@ class MainsHum final : public Effect {
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
     const double w = 2.0 * std::numbers::pi * values[2];
-    add_to(scene.record.additions[gauge], scene.facts->time_s,
-           [&](double t) { return values[0] * std::cos(w * t) + values[1] * std::sin(w * t); });
+    const std::vector<double>& time_s = scene.facts->time_s;
+    // A fit asks for it thousands of times: from sample to sample the phase only turns.
+    const double period_s = (time_s.back() - time_s.front()) /
+                            static_cast<double>(std::max<std::size_t>(time_s.size(), 2) - 1);
+    Complex phase = std::polar(1.0, w * time_s.front());
+    const Complex turn = std::polar(1.0, w * period_s);
+    add_to(scene.record.additions[gauge], time_s, [&](double) {
+      const double reading = values[0] * phase.real() + values[1] * phase.imag();
+      phase *= turn;
+      return reading;
+    });
   }
 };
 
