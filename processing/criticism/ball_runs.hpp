@@ -20,9 +20,11 @@ constexpr double kRunStep_s = 1e-6;
 
 /// Meshes of the ball [elements, about]: derivatives cost the coarse one, the model stands on the
 /// fine one, and the middle one shows what the fine one may still be off by.
-constexpr std::size_t kCoarseBall = 512;
-constexpr std::size_t kMiddleBall = 2048;
-constexpr std::size_t kFineBall = 8192;
+struct BallMeshes {
+  std::size_t coarse = 512;
+  std::size_t middle = 2048;
+  std::size_t fine = 8192;
+};
 
 /// Impacts on one bench, each calculated once: a fit comes back to the same numbers, and effects of
 /// the sensors leave the ball alone. May be asked by several workers at once.

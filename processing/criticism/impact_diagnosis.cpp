@@ -79,7 +79,8 @@ class Diagnostician {
 
   Diagnosis run(const Model& model) {
     options_.progress(fmt::format("impacts at {} speeds on {} and {} elements, then the fit",
-                                  records().groups.size(), kFineBall, kMiddleBall));
+                                  records().groups.size(), study_.residuals().meshes().fine,
+                                  study_.residuals().meshes().middle));
     const Studied first = study_.fit(model);
     first_anchor_ = study_.residuals().anchored_at();
     Studied current = first;
@@ -293,8 +294,8 @@ class Diagnostician {
         "rms), and a square of a deviate counts over {:.2g}: `detectable` says what that leaves",
         1e-3 * window.cutoff_Hz,
         window.to_far_end_only ? ", until the far end's reflection is back" : "",
-        100.0 * residuals.solver_sd(), kMiddleBall, kFineBall, 100.0 * residuals.mesh_difference(),
-        scale_));
+        100.0 * residuals.solver_sd(), residuals.meshes().middle, residuals.meshes().fine,
+        100.0 * residuals.mesh_difference(), scale_));
     const std::size_t unsaid = records().unsaid_rebounds();
     if (unsaid == study_.campaign().shots.size()) {
       diagnosis_.notes.emplace_back(

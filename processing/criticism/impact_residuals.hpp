@@ -29,11 +29,15 @@ inline constexpr double kSolverDoubt = 6.0;
 /// speeds, arrival and offsets of each shot by itself; what the calculation may be off by, twice
 /// what the middle mesh differs from the fine one and at least a floor, is shared by all.
 ///
-/// Three meshes: m = fine(theta_0) + coarse(theta) - coarse(theta_0), theta_0 as prepared.
+/// Three meshes: m = fine(theta_0) + coarse(theta) - coarse(theta_0), theta_0 as prepared. The fine
+/// ones are at the ends of a group's speeds, for the slope between them; the coarse ones in the
+/// middle, and what theta changes there grows with the speed as a ball's force does: within the per
+/// cent or two of a group that is good to a hundredth of the change.
 class ImpactResiduals : public ShotResiduals {
  public:
   /// @param whole  judge beyond the far end's reflection
-  ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz, const Workers& executor);
+  ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz, const Workers& executor,
+                  const BallMeshes& meshes = {});
 
   /// Takes from this model the fine forces, the arrivals and the whitener.
   /// @throws InputError what the solver refuses there
@@ -79,6 +83,7 @@ class ImpactResiduals : public ShotResiduals {
                               std::size_t shot, double arrival_s, double faster,
                               std::size_t worker);
 
+  [[nodiscard]] const BallMeshes& meshes() const { return meshes_; }
   [[nodiscard]] const ImpactRecords& records() const { return records_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
   /// Covariance of one shot by itself, and what all shots of a group share of the solver's error.
@@ -122,9 +127,10 @@ class ImpactResiduals : public ShotResiduals {
     double rebound_high = 0.0;
   };
   struct Anchor {
-    BallRun fine_less_coarse;  ///< at the prepared numbers
-    BallRun law;               ///< Cauchy's less Kirchhoff's
-    BallRun mesh;              ///< fine less middle
+    BallRun fine;    ///< at the prepared numbers
+    BallRun coarse;  ///< the same, at the group's mean speed
+    BallRun law;     ///< Cauchy's less Kirchhoff's
+    BallRun mesh;    ///< fine less middle
   };
 
   [[nodiscard]] RecordScene record_of(const Composition& composition,
@@ -152,6 +158,7 @@ class ImpactResiduals : public ShotResiduals {
 
   const Campaign& campaign_;
   Workers executor_;
+  BallMeshes meshes_;
   ImpactRecords records_;
   BallRuns runs_;
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high

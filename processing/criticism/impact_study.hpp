@@ -51,14 +51,15 @@ struct ImpactComparison {
 /// A campaign of impacts under study.
 class ImpactStudy {
  public:
-  /// @param whole  judge beyond the far end's reflection, as a model with end-reflection asks for
-  ImpactStudy(const Campaign& campaign, bool whole, double cutoff_Hz, Workers executor)
+  /// @param whole   judge beyond the far end's reflection, as a model with end-reflection asks for
+  /// @param meshes  other than these cost more or say less; the documented figures are of these
+  ImpactStudy(const Campaign& campaign, bool whole, double cutoff_Hz, Workers executor,
+              const BallMeshes& meshes = {})
       : campaign_(campaign),
         executor_(std::move(executor)),
-        residuals_(campaign, whole, cutoff_Hz, executor_) {}
+        residuals_(campaign, whole, cutoff_Hz, executor_, meshes) {}
 
-  /// Friction acts most where there is little of it, and between 0.2 and 0.4 restitution turns:
-  /// where it is known within a deviation, the fit begins on both sides, and the better one counts.
+  /// From where the model is, noise and speeds' deviation corrected by the shots' scatter.
   [[nodiscard]] Studied fit(const Model& model);
   /// With the noise and the fine forces as they are by now.
   [[nodiscard]] Studied refit(const Model& model, const Workers& executor);

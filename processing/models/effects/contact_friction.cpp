@@ -13,7 +13,7 @@ class ContactFriction final : public Effect {
             .definition = "Coulomb friction between ball and bar",
             .reference = "effects.md",
             .kinds = {BenchKind::impact},
-            .parameters = {{"mu", "-", 0.0, 0.0, 2.0, 0.1, {}, false, 0.5}},
+            .parameters = {{"mu", "-", 0.0, 0.0, 2.0, 0.1, {}, false, 0.02}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

@@ -3,12 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <thread>
 
-#include "processing/base/error.hpp"
-#include "processing/criticism/impact_whitening.hpp"
-#include "tests/generators/impact_campaign.hpp"
+#include "tests/unit/criticism/thrown_balls.hpp"
 
 namespace kolsky {
 namespace {
@@ -41,193 +37,51 @@ std::string told(const Diagnosis& diagnosis) {
   return text;
 }
 
-Diagnosis diagnosed(const std::vector<Shot>& shots) {
-  const Campaign campaign = read_campaign(shots);
-  ImpactStudy study(campaign, false, 0.0, Workers{});
-  return diagnose_impacts(study, paper_model(BenchKind::impact, true), {});
-}
+using testing::paper_with;
+using testing::ThrownBalls;
+using testing::two_speeds;
 
-/// Two speeds: what grows with the speed shows between them. score_impacts has the long form.
-testing::ImpactWishes wishes(std::uint64_t seed) {
-  testing::ImpactWishes own;
-  own.seed = seed;
-  own.speeds_m_per_s = {31.1, 51.0};
-  own.shots = 3;
-  return own;
+Diagnosis diagnosed(const std::vector<Shot>& shots) {
+  ThrownBalls balls(shots);
+  return diagnose_impacts(balls.study, paper_with({}), {});
 }
 
 TEST(ImpactDiagnosis, ALinearBallIsAdequate) {
-  const Diagnosis diagnosis = diagnosed(testing::impact_shots(wishes(11)));
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(two_speeds(11, 3)));
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
 }
 
-TEST(ImpactDiagnosis, FindsACoreThatStiffens) {
-  testing::ImpactWishes own = wishes(12);
-  own.core_b = 0.9;
-  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+/// A core that stiffens.
+class StiffeningCore : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    testing::ImpactWishes own = two_speeds(12, 3);
+    own.core_b = 0.9;
+    shots_ = testing::impact_shots(own);
+  }
+  static void TearDownTestSuite() { shots_.clear(); }
+
+  inline static std::vector<Shot> shots_;
+};
+
+TEST_F(StiffeningCore, IsFound) {
+  const Diagnosis diagnosis = diagnosed(shots_);
   EXPECT_TRUE(holds(diagnosis, "core-nonlinearity")) << told(diagnosis);
   EXPECT_LT(diagnosis.held_out.after, 1.5 * diagnosis.held_out.floor) << told(diagnosis);
   EXPECT_GT(diagnosis.held_out.before, 2.0 * diagnosis.held_out.after);
 }
 
 /// Fitted to the lower speed, the stiffening core foretells the other; the linear ball does not.
-TEST(ImpactDiagnosis, ForetellsASpeedThatWasHeldOut) {
-  testing::ImpactWishes own = wishes(16);
-  own.core_b = 0.9;
-  std::vector<Shot> all = testing::impact_shots(own);
-  const std::vector<Shot> lower(all.begin(), all.begin() + 3);
-  const std::vector<Shot> upper(all.begin() + 3, all.end());
-  const auto rms_at_51 = [&](const Model& fitted) {
-    const Campaign campaign = read_campaign(upper);
-    ImpactStudy study(campaign, false, 0.0, Workers{});
-    return study.compare(study.as_it_is(fitted)).speeds.back().rms_percent;
+TEST_F(StiffeningCore, ForetellsASpeedThatWasHeldOut) {
+  ThrownBalls lower({shots_.begin(), shots_.begin() + 3});
+  ThrownBalls upper({shots_.begin() + 3, shots_.end()});
+  const auto rms_at_51 = [&](const std::vector<std::string>& effects) {
+    const Model fitted = lower.study.fit(paper_with(effects)).model;
+    return upper.study.compare(upper.study.as_it_is(fitted)).speeds.back().rms_percent;
   };
-  const auto fitted_to_lower = [&](const Model& model) {
-    const Campaign campaign = read_campaign(lower);
-    ImpactStudy study(campaign, false, 0.0, Workers{});
-    return study.fit(model).model;
-  };
-  Model model = paper_model(BenchKind::impact, true);
-  const double before = rms_at_51(fitted_to_lower(model));
-  model.effects.push_back(use_named("core-nonlinearity"));
-  const double after = rms_at_51(fitted_to_lower(model));
-  EXPECT_GT(before, 1.5);
+  EXPECT_GT(rms_at_51({}), 1.5);
   // Two codes of the same ball differ by so much (docs/impact.md).
-  EXPECT_LT(after, 0.8);
-}
-
-/// What two codes of one ball differ by is in the deviation that is stated: it holds the other
-/// code's truth, on a mesh that the solver's error was not measured on, and is no blank cheque.
-TEST(ImpactStudy, AStrengthsDeviationHoldsAnotherCodesTruth) {
-  testing::ImpactWishes own = wishes(19);
-  own.shots = 2;
-  own.core_b = -0.5;
-  own.across = 7;
-  Model model = paper_model(BenchKind::impact, true);
-  model.effects.push_back(use_named("core-nonlinearity"));
-  const Campaign campaign = read_campaign(testing::impact_shots(own));
-  ImpactStudy study(campaign, false, 0.0, Workers{});
-  const Studied studied = study.settled(study.fit(model));
-  const ModelValue& b = studied.model.find("core-nonlinearity")->values[0];
-  EXPECT_NEAR(b.value, -0.5, 2.5 * b.sd) << b.sd;
-  EXPECT_LT(b.sd, 0.1);
-  EXPECT_GT(b.sd, 0.03) << "noise alone knows it better than codes agree";
-}
-
-/// The white residuals' squares are the quadratic form of the covariance of all shots at once, here
-/// written out.
-TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
-  ImpactRecords records;
-  records.window.samples = 4;
-  records.window.period_s = 30e-6;
-  records.groups = {{31.0, 30.9, 31.1, {0, 1, 2}}, {50.0, 49.8, 50.2, {3, 4}}};
-  records.group_of = {0, 0, 0, 1, 1};
-  records.rebound.assign(5, Measured{5e-3, 1e-5});
-  records.wave_speed_m_per_s = 5000.0;
-  records.common_speed_sd = 1e-3;
-  std::vector<ImpactShape> shapes(2);
-  for (std::size_t g = 0; g < 2; ++g) {
-    const double size = 1.0 + static_cast<double>(g);
-    shapes[g].reading = size * Eigen::VectorXd{{0.2e-4, 0.9e-4, 0.5e-4, 0.1e-4, 50e-4}};
-    shapes[g].by_speed = 1.1 * shapes[g].reading;
-    shapes[g].by_time = Eigen::VectorXd{{2.0, 0.5, -1.0, -1.0, 0.0}};
-  }
-  const Eigen::MatrixXd noise = 1e-12 * Eigen::MatrixXd::Identity(4, 4);
-  const ImpactWhitening whitening(records, shapes, {noise, 2e-3, 1e-3, 5e-3});
-  std::vector<Eigen::VectorXd> residual;
-  Eigen::VectorXd stacked(25);
-  Eigen::MatrixXd covariance(25, 25);
-  for (Eigen::Index n = 0; n < 5; ++n) {
-    Eigen::VectorXd own(5);
-    for (Eigen::Index i = 0; i < 5; ++i) {
-      own[i] = 1e-6 * std::sin(1.0 + 3.0 * static_cast<double>(n) + static_cast<double>(i * i));
-    }
-    residual.push_back(own);
-    stacked.segment(5 * n, 5) = own;
-    for (Eigen::Index m = 0; m < 5; ++m) {
-      const std::size_t g = n < 3 ? 0 : 1;
-      const std::size_t h = m < 3 ? 0 : 1;
-      covariance.block(5 * n, 5 * m, 5, 5) = whitening.shared(g, h);
-      if (n == m) {
-        covariance.block(5 * n, 5 * m, 5, 5) += whitening.own(g);
-      }
-    }
-  }
-  const double wanted = stacked.dot(covariance.fullPivLu().solve(stacked));
-  EXPECT_NEAR(whitening.white(residual).squaredNorm(), wanted, 1e-6 * wanted);
-  // An error that all shots of a speed share pulls at a fit's numbers as its residuals do.
-  Eigen::MatrixXd jacobian(25, 2);
-  Eigen::VectorXd error(10);
-  for (Eigen::Index i = 0; i < 25; ++i) {
-    jacobian(i, 0) = std::cos(2.0 * static_cast<double>(i));
-    jacobian(i, 1) = std::sin(0.7 * static_cast<double>(i));
-  }
-  for (Eigen::Index i = 0; i < 10; ++i) {
-    error[i] = 1e-6 * std::cos(static_cast<double>(i * i));
-  }
-  std::vector<Eigen::VectorXd> alike;
-  for (const std::size_t g : records.group_of) {
-    alike.emplace_back(error.segment(static_cast<Eigen::Index>(g) * 5, 5));
-  }
-  const Eigen::VectorXd pull = jacobian.transpose() * whitening.white(alike);
-  EXPECT_LT((whitening.pulls(jacobian) * error - pull).norm(), 1e-9 * pull.norm());
-  // Of restitution, codes differ alike at all speeds: so much is no news at the second one.
-  EXPECT_NEAR(whitening.shared(0, 1)(4, 4),
-              std::pow(ImpactWhitening::kRestitutionDoubt, 2) * 31.0 * 50.0 / 25e6 +
-                  1e-6 * (1.1 - 1.0) * (1.1 - 1.0) * 50e-4 * 100e-4,
-              1e-15);
-}
-
-/// What damps a ball moves its rebound: a rebound that is off by more than codes differ is misfit.
-TEST(ImpactResiduals, ReboundSpeedsAreData) {
-  std::vector<Shot> shots = testing::impact_shots(wishes(18));
-  shots.resize(2);
-  const auto chi2 = [&](double factor) {
-    std::vector<Shot> own = shots;
-    for (Shot& shot : own) {
-      const double rebound = std::stod(shot.meta["rebound_speed_m_per_s"]);
-      shot.meta["rebound_speed_m_per_s"] = std::to_string(factor * rebound);
-    }
-    const Campaign campaign = read_campaign(own);
-    ImpactStudy study(campaign, false, 0.0, Workers{});
-    return study.as_it_is(paper_model(BenchKind::impact, true)).fit.chi2;
-  };
-  // 0.025 of 0.83, where 0.002 is what codes may differ by.
-  EXPECT_GT(chi2(1.03), chi2(1.0) + 60.0);
-}
-
-TEST(ImpactCampaign, PhotoSensorsThatSeeNothingAreRefusedAsTheReductionRefusesThem) {
-  std::vector<Shot> shots = testing::impact_shots(wishes(17));
-  shots.resize(1);
-  shots[0].bench.photo_sensors = {{"p1", {0.09, 0.0}}};
-  shots[0].channels.push_back(shots[0].channels[0]);
-  std::fill(shots[0].channels[1].codes.begin(), shots[0].channels[1].codes.end(), 100);
-  EXPECT_EQ(bad_data(shots[0]), "") << "a clear beam is no cut-off pulse";
-  try {
-    static_cast<void>(read_campaign(shots));
-    FAIL() << "a speed came from nothing";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("p1 sees nothing pass"), std::string::npos);
-  }
-  shots[0].channels.pop_back();
-  EXPECT_NE(bad_data(shots[0]).find("1 channels where the bench files 2"), std::string::npos);
-}
-
-TEST(ImpactCampaign, WithoutASpeedNothingIsForetold) {
-  std::vector<Shot> shots = testing::impact_shots(wishes(17));
-  shots.resize(2);
-  shots[1].meta.erase("incident_speed_m_per_s");
-  try {
-    static_cast<void>(read_campaign(shots));
-    FAIL() << "a shot without a speed was taken";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("incident_speed_m_per_s"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("--meta"), std::string::npos);
-  }
-  shots[1].meta["incident_speed_m_per_s"] = "fast";
-  EXPECT_THROW(static_cast<void>(read_campaign(shots)), InputError);
-  shots[1].meta["incident_speed_m_per_s"] = "-31.1";
-  EXPECT_THROW(static_cast<void>(read_campaign(shots)), InputError);
+  EXPECT_LT(rms_at_51({"core-nonlinearity"}), 0.8);
 }
 
 }  // namespace

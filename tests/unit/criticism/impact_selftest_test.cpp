@@ -6,7 +6,7 @@
 #include "processing/criticism/ball_planting.hpp"
 #include "processing/criticism/selftest.hpp"
 #include "processing/reduction/ball_flight.hpp"
-#include "tests/generators/impact_campaign.hpp"
+#include "tests/unit/criticism/thrown_balls.hpp"
 
 namespace kolsky {
 namespace {
@@ -24,7 +24,7 @@ struct Planted {
   explicit Planted(std::vector<Shot> measured)
       : shots(std::move(measured)),
         campaign(read_campaign(shots)),
-        study(campaign, false, 0.0, Workers{}),
+        study(campaign, false, 0.0, Workers{}, testing::light_meshes()),
         studied(study.fit(paper_model(BenchKind::impact, true))),
         planter(shots, study, studied) {}
 
@@ -137,7 +137,7 @@ TEST(BallPlanter, AnotherReboundPassesTheBeamsAtAnotherTime) {
 }
 
 TEST(ImpactSelftest, FindsWhatWasPlantedLarge) {
-  testing::ImpactWishes own = wishes(63, {31.1, 51.0});
+  testing::ImpactWishes own = wishes(63, {51.0});
   SelftestOptions options;
   options.effects = {"core-nonlinearity"};
   options.sizes = {2.0};
@@ -154,9 +154,11 @@ TEST(ImpactSelftest, FindsWhatWasPlantedLarge) {
 }
 
 TEST(ImpactSelftest, RefusesAModelOfAnotherBench) {
-  EXPECT_THROW((void)selftest(testing::impact_shots(wishes(64, {31.1})),
-                              paper_model(BenchKind::bar, false), {}, Workers{}),
-               InputError);
+  testing::ImpactWishes own = wishes(64, {31.1});
+  own.across = 4;
+  EXPECT_THROW(
+      (void)selftest(testing::impact_shots(own), paper_model(BenchKind::bar, false), {}, Workers{}),
+      InputError);
 }
 
 }  // namespace
