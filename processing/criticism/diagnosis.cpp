@@ -235,7 +235,7 @@ class Diagnostician {
       const double noise = noise_of(current.misfit, study_.campaign().shots.size());
       const double loss = (left.fit.objective() - current.fit.objective()) / noise;
       if (equivalent_square(log_gain_tail(loss, 1.0, false)) < 16.0 ||
-          !own_strengths_confirmed(current, id, study_.campaign())) {
+          !own_strengths_confirmed(current, id, study_.campaign(), Claim::standing)) {
         current = std::move(left);
         std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });
         diagnosis_.tied_with.erase(id);

@@ -159,9 +159,10 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
         damping = std::max(1e-4, damping * 10.0);
       }
     }
+    // What a full step would gain if the residuals were straight.
+    const double promised = downhill.dot(information.ldlt().solve(downhill));
     if (chord != nullptr && !fresh) {
       // The borrowed derivatives serve as long as what they promise comes true.
-      const double promised = downhill.dot(information.ldlt().solve(downhill));
       if (better && gain < kSettled) {
         fit.converged = true;
         break;
@@ -169,7 +170,9 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
       fresh = !better || gain < 0.5 * promised;
       continue;
     }
-    if (!better || gain < kSettled) {
+    // A short step gains little wherever it is: only where a full one would too has the fit come to
+    // rest.
+    if (!better || (gain < kSettled && (damping == 0.0 || promised < kSettled))) {
       fit.converged = better || damping > 1e3;
       break;
     }

@@ -186,7 +186,7 @@ std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, std::size_t wo
     return std::nullopt;
   }
   ImpactRefit out{index, study_.finish(model, composition, std::move(fit))};
-  if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign())) {
+  if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign(), Claim::fresh)) {
     return std::nullopt;
   }
   const double freedom = base_.fit.degrees_of_freedom(base_.composition) -

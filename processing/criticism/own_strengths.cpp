@@ -78,11 +78,13 @@ bool slopes_agree(const std::vector<double>& found, const std::vector<double>& b
   return found.size() > 2 && share > 0.5 && share < 1.5 && share > kSigma * sd;
 }
 
-/// Nearer to products than noise comes in one of a thousand, and not for one gauge's sake.
-bool are_products(const ProductTest& test) {
+/// Nearer to products than noise comes in one of a thousand, and not for one gauge's sake. What was
+/// found so once falls only by half: else it would come and go with the rest of the model.
+bool are_products(const ProductTest& test, Claim claim) {
+  const double share = claim == Claim::fresh ? 1.0 : 0.5;
   constexpr double kChance = -6.9;
   constexpr double kBeyond = 25.0;
-  return test.log_p < kChance && test.beyond_one_gauge > kBeyond;
+  return test.log_p < share * kChance && test.beyond_one_gauge > share * kBeyond;
 }
 
 /// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
@@ -147,13 +149,13 @@ Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
 }  // namespace
 
 bool own_strengths_confirmed(const Studied& studied, const std::string& id,
-                             const Campaign& campaign) {
+                             const Campaign& campaign, Claim claim) {
   const EffectUse* use = studied.model.find(id);
   if (use == nullptr || !use->per_shot) {
     return true;
   }
   if (const auto test = product_test_of(studied, id, campaign)) {
-    return are_products(*test);
+    return are_products(*test, claim);
   }
   if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0).cwiseAbs())) {
     return false;

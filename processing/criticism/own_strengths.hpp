@@ -8,6 +8,9 @@
 
 namespace kolsky {
 
+/// Whether a claim is made or was made before and is looked at again.
+enum class Claim { fresh, standing };
+
 /// Whether strengths that every shot has of its own are more than slow noise that they followed. No
 /// other shot can confirm them, so something else has to:
 ///   a drift must show in the samples before the pulse, too, with the same slopes;
@@ -17,7 +20,7 @@ namespace kolsky {
 ///   too, as a drift must.
 /// True for effects without strengths of their own.
 [[nodiscard]] bool own_strengths_confirmed(const Studied& studied, const std::string& id,
-                                           const Campaign& campaign);
+                                           const Campaign& campaign, Claim claim);
 
 /// How near a hum's amplitudes by shot and gauge are to products. @return nothing for other effects
 [[nodiscard]] std::optional<ProductTest> product_test_of(const Studied& studied,

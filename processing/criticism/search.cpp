@@ -59,8 +59,8 @@ std::vector<Refit> Search::refits() {
   for (auto& own : done) {
     if (own && std::isfinite(own->studied.fit.objective()) &&
         !beyond_the_record(own->studied, *own) &&
-        own_strengths_confirmed(own->studied, candidates_[own->candidate].id(),
-                                study_.campaign())) {
+        own_strengths_confirmed(own->studied, candidates_[own->candidate].id(), study_.campaign(),
+                                Claim::fresh)) {
       list.push_back(std::move(*own));
     }
   }
@@ -71,7 +71,8 @@ std::vector<Refit> Search::refits() {
 }
 
 /// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
-/// (a dashpot, a spring) that it only imitates.
+/// (a dashpot, a spring) that it only imitates. So is one whose strength and time grow together
+/// without end, which shows in a strength less than its own deviation.
 bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
   const Candidate& candidate = candidates_[refit.candidate];
   const EffectUse* use = studied.model.find(candidate.id());
@@ -79,14 +80,20 @@ bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const
   constexpr double kMuchSlower = 5.0;
   const double period_s = study_.residuals().judged_period_s();
   const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
+  bool timed = false;
+  bool unbounded = false;
   for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
-    const double value = use->values[p].value;
-    if (parameters[p].auxiliary() && parameters[p].unit == "s" &&
-        (value > kMuchSlower * record_s || value < 0.5 * study_.campaign().period_s)) {
-      return true;
+    const ModelValue& own = use->values[p];
+    if (!parameters[p].auxiliary()) {
+      unbounded = unbounded || std::abs(own.value - parameters[p].null_value) < own.sd;
+    } else if (parameters[p].unit == "s") {
+      timed = true;
+      if (own.value > kMuchSlower * record_s || own.value < 0.5 * study_.campaign().period_s) {
+        return true;
+      }
     }
   }
-  return false;
+  return timed && unbounded;
 }
 
 double Search::evidence_of(const Direction& direction, const Candidate& candidate) const {
@@ -250,9 +257,12 @@ void Search::rate(std::vector<Refit>& list) const {
   for (Refit& refit : list) {
     refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
     refit.log_p = chance_of(refit);
-    // What differs between the shots has been taken for noise: gain says little of it.
-    refit.evidence = equivalent_square(
-        refit.products ? refit.log_p : log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
+    refit.evidence = equivalent_square(log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
+    if (refit.products) {
+      // What differs between the shots may have been taken for noise: then its gain says too
+      // little.
+      refit.evidence = std::max(refit.evidence, equivalent_square(refit.log_p));
+    }
   }
 }
 

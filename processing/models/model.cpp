@@ -64,6 +64,10 @@ EffectUse use_named(const std::string& id) {
 }
 
 EffectUse use_named(const std::string& id, const Model& model) {
+  if (const auto equals = id.find('='); equals != std::string::npos) {
+    throw InputError("effect " + id, "is a name with a number",
+                     "write " + id.substr(0, equals) + "; a fit finds its strength");
+  }
   const auto colon = id.find(':');
   const std::string name = id.substr(0, colon);
   const std::string gauge = colon == std::string::npos ? "" : id.substr(colon + 1);

@@ -8,6 +8,8 @@
 #include <random>
 #include <span>
 
+#include "processing/criticism/search.hpp"
+#include "processing/criticism/statistics.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -132,6 +134,31 @@ TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
   std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"gauge-position:g3", "temperature"}));
+}
+
+// A hum that gauges pick up by different shares is nearly a drift of its own at each of them. That
+// its phases are common makes it claimable; what it explains weighs against the drifts all the
+// same.
+TEST(Search, AHumWeighsWhatItExplains) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 90;
+  wishes.shots = 4;
+  wishes.samples = 1500;
+  wishes.rate_Hz = 1e6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("mains-hum=4e-5"));
+  truth.world.hum.share = {1.0, 1.2, 1.4, 1.6};
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Model model = paper_model(BenchKind::bar, false);
+  const Studied base = study.fit(model);
+  Search search(study, base, model);
+  const std::vector<Refit> refits = search.refits();
+  const auto hum = std::find_if(refits.begin(), refits.end(),
+                                [](const Refit& refit) { return refit.products.has_value(); });
+  ASSERT_NE(hum, refits.end());
+  EXPECT_EQ(hum, refits.begin());
+  EXPECT_GE(hum->evidence, equivalent_square(log_gain_tail(hum->gain, hum->freedom, false)));
 }
 
 TEST(Diagnosis, CallsUnknownWhatTheLibraryDoesNotHold) {

@@ -105,11 +105,12 @@ Shot with_beams(const Shot& shot) {
   codes.insert(codes.begin(), quiet.begin(), quiet.end());
   codes.insert(codes.end(), quiet.begin(), quiet.end());
   out.bench.photo_sensors = {{"p1", {0.06, 0.0}}, {"p2", {0.09, 0.0}}};
+  const std::size_t samples = codes.size();
   const double touch_s = 400e-6 + kMore * 1e-6;
   for (const double distance_m : {0.06, 0.09}) {
     ChannelRecord beam = shot.channels[0];
     beam.codes.clear();
-    for (std::size_t i = 0; i < codes.size(); ++i) {
+    for (std::size_t i = 0; i < samples; ++i) {
       const double t = static_cast<double>(i) * 1e-6 - touch_s;
       const double front_m = t < 0.0 ? -in * t : away * (t - 450e-6);
       beam.codes.push_back(in_beam(front_m, distance_m) ? 100 : 30000);

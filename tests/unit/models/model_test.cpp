@@ -169,6 +169,7 @@ TEST(UseNamed, RefusesWhatTheLibraryDoesNotHaveOrWhatNamesNoGauge) {
   EXPECT_THROW((void)use_named("geometrical-dispersion"), InputError);
   EXPECT_THROW((void)use_named("gauge-position"), InputError);
   EXPECT_THROW((void)use_named("temperature:g1"), InputError);
+  EXPECT_THROW((void)use_named("gauge-length:g1=0.06"), InputError);
   EXPECT_EQ(use_named("gauge-position:g3").id(), "gauge-position:g3");
 }
 
