@@ -293,6 +293,7 @@ BarFit fit_bar(BarData& data, const BarTheory& theory, const std::vector<double>
 BarData bar_data(const std::vector<Shot>& shots, double band_limit_Hz, WaveTheory theory) {
   constexpr int kMostRounds = 8;
   constexpr double kSettled = 0.1;  // of a deviation
+  constexpr double kSeen = 0.3;
   BarData data(shots, band_limit_Hz);
   std::vector<FittedNumber> before;
   const auto moved = [&](const std::vector<FittedNumber>& now) {
@@ -309,8 +310,12 @@ BarData bar_data(const std::vector<Shot>& shots, double band_limit_Hz, WaveTheor
     const std::vector<FittedNumber> found =
         fit_bar(data, {.waves = theory, .far_end = FarEndReturn::partial}).parameters;
     settled = ++rounds == kMostRounds || !moved(found);
+    // A loss that does not stand out of the noise would make up a tail of its own.
+    const bool lossy = found[1].sd < kSeen * found[1].value;
     const auto solid = make_solid(SolidKind::three_element, values_of(found));
-    data = BarData(shots, band_limit_Hz, {.solid = solid.get(), .judged = settled});
+    const ElasticSolid elastic(found[0].value);
+    data =
+        BarData(shots, band_limit_Hz, {.solid = lossy ? solid.get() : &elastic, .judged = settled});
     before = found;
   }
   return data;
