@@ -123,6 +123,7 @@ JsonValue describe(const BarIdentification& result, const std::vector<ForetoldSh
                        {"degrees_of_freedom", static_cast<std::uint64_t>(three.degrees_of_freedom)},
                        {"dispersion", name_of(three.theory)},
                        {"far_end", name_of(three.far_end)},
+                       {"two_passes", result.two_passes},
                        {"band_limit_Hz", three.band_limit_Hz},
                        {"choice", JsonObject{{"dispersion", describe(result.wave_theory)},
                                              {"far_end", describe(result.far_end)},

@@ -87,7 +87,10 @@ std::string report(const BarIdentification& result) {
   std::string text =
       fmt::format("bar from {} shot{}, up to {}\n", result.shot_ids.size(),
                   result.shot_ids.size() == 1 ? "" : "s", with_unit(three.band_limit_Hz, "Hz"));
-  text += "  three-element solid, by maximum likelihood over whole records\n";
+  text +=
+      result.two_passes
+          ? "  three-element solid, by maximum likelihood, one gauge: the pulse and its return\n"
+          : "  three-element solid, by maximum likelihood over whole records\n";
   text += table_of(three.parameters);
   text +=
       fmt::format("    reduced chi2 {:.4f} of {}\n", three.chi2_reduced, three.degrees_of_freedom);

@@ -7,11 +7,11 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
-#include "processing/calibration/incident_tail.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/waves/bar_modes.hpp"
+#include "processing/waves/incident_tail.hpp"
 
 namespace kolsky {
 

@@ -28,15 +28,16 @@ constexpr std::size_t kFewestJudged = 64;
 /// modes propagate soon after.
 constexpr double kFirstModeAlone = 0.25;
 
-std::size_t longest(const std::vector<Shot>& shots) {
+std::size_t longest(const std::vector<BarRecords>& shots) {
   std::size_t samples = 0;
-  for (const Shot& shot : shots) {
-    samples = std::max(samples, shot.samples());
+  for (const BarRecords& shot : shots) {
+    samples = std::max(samples, shot.strain.front().size());
   }
   return samples;
 }
 
-std::vector<BarRecords> read_all(const std::vector<Shot>& shots) {
+std::vector<BarRecords> read_all(const std::vector<Shot>& shots, const FirstPass& first,
+                                 Bench& bench) {
   std::vector<BarRecords> records;
   for (const Shot& shot : shots) {
     if (shot.rate != shots.front().rate || shot.bench_toml != shots.front().bench_toml) {
@@ -48,6 +49,9 @@ std::vector<BarRecords> read_all(const std::vector<Shot>& shots) {
     } catch (const InputError& error) {
       throw error.inside("capture " + shot.id);
     }
+  }
+  if (bench.gauges.size() == 1) {
+    split_passes(bench, records, first);
   }
   return records;
 }
@@ -61,11 +65,11 @@ double rough_speed_m_per_s(const BarRecords& records) {
 
 }  // namespace
 
-BarData::BarData(const std::vector<Shot>& shots, double band_limit_Hz)
+BarData::BarData(const std::vector<Shot>& shots, double band_limit_Hz, const FirstPass& first)
     : bench_(shots.front().bench),
-      records_(read_all(shots)),
+      records_(read_all(shots, first, bench_)),
       lead_(static_cast<std::size_t>(std::ceil(kLead_s * shots.front().rate.Hz()))),
-      transform_(longest(shots) + 2 * lead_, shots.front().rate.period_s()) {
+      transform_(longest(records_) + 2 * lead_, shots.front().rate.period_s()) {
   choose_band(band_limit_Hz);
   choose_judged_part();
   prepare_noise();
@@ -172,7 +176,7 @@ void BarData::prepare_noise() {
     std::vector<std::span<const double>> quiet;
     double floor = 0.0;
     for (const BarRecords& records : records_) {
-      quiet.emplace_back(records.strain[j].data(), records.quiet_samples);
+      quiet.push_back(records.quiet(j));
       floor = std::max(floor, records.step[j] * records.step[j] / 12.0);
     }
     const NoiseSpectrum noise(quiet);

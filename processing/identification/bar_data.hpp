@@ -7,6 +7,7 @@
 #include "processing/base/shot.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/identification/noise_spectrum.hpp"
+#include "processing/identification/two_passes.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -24,16 +25,19 @@ class BarData {
  public:
   using Spectrum = std::vector<Complex>;
 
+  /// @param first  of a bar with one gauge (see split_passes)
   /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where waves of the
   ///   first mode end to be all there is
   /// @throws InputError where the shots are of different benches or cannot serve (see
-  ///   read_bar_records)
-  BarData(const std::vector<Shot>& shots, double band_limit_Hz);
+  ///   read_bar_records, split_passes)
+  BarData(const std::vector<Shot>& shots, double band_limit_Hz, const FirstPass& first = {});
 
   [[nodiscard]] const Bench& bench() const { return bench_; }
   [[nodiscard]] const std::vector<BarRecords>& records() const { return records_; }
   [[nodiscard]] std::size_t shots() const { return records_.size(); }
   [[nodiscard]] std::size_t gauges() const { return records_.front().position_m.size(); }
+  /// Whether one gauge stands for two (see split_passes).
+  [[nodiscard]] bool two_passes() const { return records_.front().returned; }
   [[nodiscard]] double band_limit_Hz() const { return band_limit_Hz_; }
   /// What is judged of each record, from the first judged sample to the last.
   [[nodiscard]] double judged_s() const;

@@ -209,7 +209,36 @@ BarFit describe(const BarLikelihood& likelihood, const Prior& prior, const Place
   return fit;
 }
 
+BarFit search(BarData& data, const BarTheory& theory, const std::vector<double>& start) {
+  BarLikelihood likelihood(data, BarModel(data.bench(), data.records().front(), theory));
+  const Prior prior = prior_of(data, likelihood.model());
+  Eigen::VectorXd at = prior.centre;
+  if (!start.empty()) {
+    at = Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
+  }
+  const auto weigh = [&](bool exact) {
+    likelihood.weigh({at.data(), static_cast<std::size_t>(at.size())}, exact);
+  };
+  // Most of the way at the price of one shot; weights turn with the waves' phases, so that those of
+  // where it began do not do for where it ends.
+  for (int round = 0; round < 2; ++round) {
+    weigh(false);
+    at = minimise(likelihood, prior, at, 1, kNearEnough).at;
+  }
+  weigh(true);
+  return describe(likelihood, prior,
+                  minimise(likelihood, prior, at, data.shots(), kNegligibleGain));
+}
+
 }  // namespace
+
+std::vector<double> values_of(const std::vector<FittedNumber>& numbers) {
+  std::vector<double> values;
+  for (const FittedNumber& number : numbers) {
+    values.push_back(number.value);
+  }
+  return values;
+}
 
 std::vector<double> first_guess(const BarData& data, SolidKind solid) {
   constexpr double kLeastTangent = 1e-4;
@@ -249,31 +278,54 @@ std::vector<double> first_guess(const BarData& data, SolidKind solid) {
 }
 
 BarFit fit_bar(BarData& data, const BarTheory& theory, const std::vector<double>& start) {
-  BarLikelihood likelihood(data, BarModel(data.bench(), data.records().front(), theory));
-  const Prior prior = prior_of(data, likelihood.model());
-  Eigen::VectorXd at = prior.centre;
-  if (!start.empty()) {
-    at = Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
+  try {
+    return search(data, theory, start);
+  } catch (const InputError&) {
+    if (theory.solid != SolidKind::three_element || theory.lossless) {
+      throw;
+    }
   }
-  const auto weigh = [&](bool exact) {
-    likelihood.weigh({at.data(), static_cast<std::size_t>(at.size())}, exact);
+  BarTheory elastic = theory;
+  elastic.lossless = true;
+  return search(data, theory, search(data, elastic, {}).at);
+}
+
+BarData bar_data(const std::vector<Shot>& shots, double band_limit_Hz, WaveTheory theory) {
+  constexpr int kMostRounds = 8;
+  constexpr double kSettled = 0.1;  // of a deviation
+  constexpr double kSeen = 0.3;
+  BarData data(shots, band_limit_Hz);
+  std::vector<FittedNumber> before;
+  const auto moved = [&](const std::vector<FittedNumber>& now) {
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (std::abs(now[i].value - before[i].value) > kSettled * now[i].sd) {
+        return true;
+      }
+    }
+    return before.empty();
   };
-  // Most of the way at the price of one shot; weights turn with the waves' phases, so that those of
-  // where it began do not do for where it ends.
-  for (int round = 0; round < 2; ++round) {
-    weigh(false);
-    at = minimise(likelihood, prior, at, 1, kNearEnough).at;
+  int rounds = 0;
+  for (bool settled = !data.two_passes(); !settled;) {
+    // What the far end returns is not known yet, and would else be taken for loss.
+    const std::vector<FittedNumber> found =
+        fit_bar(data, {.waves = theory, .far_end = FarEndReturn::partial}).parameters;
+    settled = ++rounds == kMostRounds || !moved(found);
+    // A loss that does not stand out of the noise would make up a tail of its own.
+    const bool lossy = found[1].sd < kSeen * found[1].value;
+    const auto solid = make_solid(SolidKind::three_element, values_of(found));
+    const ElasticSolid elastic(found[0].value);
+    data =
+        BarData(shots, band_limit_Hz, {.solid = lossy ? solid.get() : &elastic, .judged = settled});
+    before = found;
   }
-  weigh(true);
-  return describe(likelihood, prior,
-                  minimise(likelihood, prior, at, data.shots(), kNegligibleGain));
+  return data;
 }
 
 BarFit fit_bar(const std::vector<Shot>& shots, const BarFitOptions& options) {
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot on the bar");
   }
-  BarData data(shots, options.band_limit_Hz);
+  BarData data = bar_data(shots, options.band_limit_Hz, options.theory);
   return fit_bar(data, {options.theory, options.solid, options.far_end});
 }
 

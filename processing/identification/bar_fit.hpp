@@ -24,6 +24,8 @@ struct FittedNumber {
   double sd = 0.0;
 };
 
+[[nodiscard]] std::vector<double> values_of(const std::vector<FittedNumber>& numbers);
+
 /// What one shot by itself says of the solid, the bench as all shots together have it.
 struct ShotEstimate {
   std::vector<FittedNumber> parameters;
@@ -59,10 +61,18 @@ struct BarFit {
 /// @throws InputError as BarData, and where the search does not converge
 [[nodiscard]] BarFit fit_bar(const std::vector<Shot>& shots, const BarFitOptions& options);
 
-/// The same on data that are ready. @param start  in BarModel's parameters; empty: from the pulses'
+/// The same on data that are ready. Where a bar shows no loss, its retardation can be anything and
+/// a search may not end; it does from the elastic fit. @param start  in BarModel's parameters;
+/// empty: from the pulses'
 ///   speed and decay
 [[nodiscard]] BarFit fit_bar(BarData& data, const BarTheory& theory,
                              const std::vector<double>& start = {});
+
+/// Data of shots on one bar. Of a bar with one gauge: by a first fit of three elements and of what
+/// is asked, as far as that goes, what the first pass leaves under the return is taken off, and
+/// again by the next fit, until that no longer moves it.
+[[nodiscard]] BarData bar_data(const std::vector<Shot>& shots, double band_limit_Hz,
+                               WaveTheory theory = WaveTheory::elementary);
 
 /// Where a search for a solid may begin: logarithms of its parameters, in its order.
 [[nodiscard]] std::vector<double> first_guess(const BarData& data, SolidKind solid);

@@ -33,7 +33,7 @@ class Explanations {
       const bool same_parameters = near != nullptr && near->solid == theory.solid &&
                                    theory.far_end != FarEndReturn::partial &&
                                    near->far_end != FarEndReturn::partial;
-      entry.fit = fitted(theory, same_parameters ? near->at : std::vector<double>{});
+      entry.fit = fit_bar(data_, theory, same_parameters ? near->at : std::vector<double>{});
       entry.alternative.log_evidence = entry.fit->log_evidence;
       entry.alternative.chi2_reduced = entry.fit->chi2_reduced;
     } catch (const InputError& error) {
@@ -41,21 +41,6 @@ class Explanations {
     }
     fits_.push_back(std::make_unique<Entry>(std::move(entry)));
     return fits_.back()->fit ? &*fits_.back()->fit : nullptr;
-  }
-
-  /// Where a bar shows no loss, its retardation can be anything and a search may not end; it does
-  /// from the elastic fit.
-  BarFit fitted(const BarTheory& theory, const std::vector<double>& start) {
-    try {
-      return fit_bar(data_, theory, start);
-    } catch (const InputError&) {
-      if (theory.solid != SolidKind::three_element || theory.lossless) {
-        throw;
-      }
-    }
-    BarTheory elastic = theory;
-    elastic.lossless = true;
-    return fit_bar(data_, theory, fit_bar(data_, elastic).at);
   }
 
   [[nodiscard]] std::vector<Alternative> alternatives() const {
@@ -152,6 +137,14 @@ std::vector<FittedNumber> over_shots(const BarFit& fit) {
   return numbers;
 }
 
+/// One gauge lives by what the far end returns: it must return something.
+std::vector<FarEndReturn> ends_to_try(const BarIdentificationOptions& options, bool two_passes) {
+  if (options.far_end) {
+    return {*options.far_end};
+  }
+  return {FarEndReturn::free, two_passes ? FarEndReturn::partial : FarEndReturn::none};
+}
+
 std::string rounded(double value) {
   return in_words(value, "");
 }
@@ -192,7 +185,7 @@ void warn_of_choices(const BarIdentification& result, std::vector<std::string>& 
         "the records do not tell the wave theories apart; deviations take in how far they lie from "
         "each other");
   }
-  if (!result.far_end.asked && !result.far_end.told_apart) {
+  if (!result.far_end.asked && !result.far_end.told_apart && !result.two_passes) {
     warnings.push_back("the records do not show what the far end returns");
   }
   if (result.fit.far_end == FarEndReturn::none && result.far_end.told_apart) {
@@ -268,12 +261,11 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot on the bar");
   }
-  BarData data(shots, options.band_limit_Hz);
+  BarData data =
+      bar_data(shots, options.band_limit_Hz, options.theory.value_or(WaveTheory::elementary));
   Explanations explanations(data);
   const SolidKind three = SolidKind::three_element;
-  const std::vector<FarEndReturn> ends = options.far_end
-                                             ? std::vector{*options.far_end}
-                                             : std::vector{FarEndReturn::free, FarEndReturn::none};
+  const std::vector<FarEndReturn> ends = ends_to_try(options, data.two_passes());
   const std::vector<WaveTheory> theories =
       options.theory ? std::vector{*options.theory}
                      : std::vector{WaveTheory::exact, WaveTheory::love, WaveTheory::elementary};
@@ -283,9 +275,14 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     for (const FarEndReturn end : ends) {
       fits.push_back(explanations.at({waves, three, end}, near));
     }
-    return fits;
+    Best best = best_of(fits);
+    if (fits.size() > 1 && best.fit == fits.back() && ends.back() == FarEndReturn::partial &&
+        fits.front() != nullptr && best.choice.ahead < kPartialAhead) {
+      best.fit = fits.front();
+    }
+    return best;
   };
-  Best end = best_of(over_ends(theories.front(), nullptr));
+  Best end = over_ends(theories.front(), nullptr);
   std::vector<const BarFit*> over_theories;
   for (const WaveTheory waves : theories) {
     const FarEndReturn likely = end.fit != nullptr ? end.fit->far_end : ends.front();
@@ -297,9 +294,9 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     (void)fit_bar(data, {theories.front(), three, ends.front()});
   }
   // What comes back, again, under the theory that was chosen.
-  end = best_of(over_ends(theory.fit->theory, theory.fit));
+  end = over_ends(theory.fit->theory, theory.fit);
   const BarFit* three_element = end.fit;
-  if (!options.far_end && end.choice.told_apart) {
+  if (!options.far_end && !data.two_passes() && end.choice.told_apart) {
     const BarFit* partial = explanations.at({three_element->theory, three, FarEndReturn::partial});
     if (partial != nullptr && partial->log_evidence > three_element->log_evidence + kPartialAhead) {
       three_element = partial;
@@ -314,6 +311,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
 
   BarIdentification result;
   result.three_element = *three_element;
+  result.two_passes = data.two_passes();
   if (three_element->lossless) {
     for (std::size_t i = 1; i < result.three_element.parameters.size(); ++i) {
       result.three_element.parameters[i].sd = result.three_element.parameters[i].value;
@@ -375,7 +373,8 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
 }
 
 std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit) {
-  BarData data(shots, fit.band_limit_Hz);
+  const auto solid = make_solid(fit.solid, values_of(fit.parameters));
+  BarData data(shots, fit.band_limit_Hz, {.solid = solid.get()});
   const BarModel model(data.bench(), data.records().front(), {fit.theory, fit.solid, fit.far_end});
   const auto transfers = model.transfers(fit.at, data.path(), false);
   const BarData::Places& places = data.places();

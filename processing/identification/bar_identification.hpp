@@ -37,6 +37,8 @@ struct BarIdentification {
   BarFit fit;            ///< of the solid that was asked for, or that the evidence chose
   BarFit three_element;  ///< under the same wave theory and far end
   Choice wave_theory, far_end, solid;
+  bool two_passes =
+      false;  ///< one gauge stood for two (see split_passes); the far end counts as free
   std::vector<Alternative> alternatives;  ///< every fit made, best first
   std::vector<FittedNumber> over_shots;   ///< three-element: mean of the shots' own, sd over them
   BarSpectrum spectrum;

@@ -219,9 +219,9 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
         std::sqrt(steady(0, static_cast<std::size_t>(bin)) / samples);
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(by_first.rows(), by_first.rows());
-  covariance.selfadjointView<Eigen::Lower>().rankUpdate(scaled);
+  add_square(scaled, covariance);
   for (const auto& part : data_.slow_noise(0)) {
-    covariance.selfadjointView<Eigen::Lower>().rankUpdate(driven(by_first, part, samples));
+    add_square(driven(by_first, part, samples), covariance);
   }
   for (Eigen::Index j = 0; j < others; ++j) {
     const auto gauge = static_cast<std::size_t>(j) + 1;
@@ -229,7 +229,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     if (!data_.slow_noise(gauge).empty()) {
       const Eigen::MatrixXd by_own = shown_by_own(stride);
       for (const auto& part : data_.slow_noise(gauge)) {
-        own.selfadjointView<Eigen::Lower>().rankUpdate(driven(by_own, part, samples));
+        add_square(driven(by_own, part, samples), own);
       }
     }
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
@@ -245,7 +245,8 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
       }
     }
   }
-  lowest_factor_.compute(covariance);
+  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(covariance);
+  lowest_factor_ = LowerTriangle(factor.matrixLLT());
 }
 
 void BarLikelihood::weigh(std::span<const double> at, bool exact) {
@@ -355,9 +356,9 @@ Eigen::MatrixXd BarLikelihood::white(const std::vector<Eigen::MatrixXcd>& bins) 
   }
   if (lowest_bins_ > 0) {
     const Eigen::Index coupled = 2 * others * static_cast<Eigen::Index>(lowest_bins_);
-    Eigen::MatrixXd lowest = rows.topRows(coupled);
-    lowest_factor_.matrixL().solveInPlace(lowest);
-    rows.topRows(coupled) = lowest;
+    // What else is eliminated lies in that covariance: its columns are empty there.
+    const auto judged = static_cast<Eigen::Index>(model_.parameters()) + 1;
+    lowest_factor_.solve_in_place(rows.topLeftCorner(coupled, judged));
   }
   return rows;
 }

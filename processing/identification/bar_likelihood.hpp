@@ -6,6 +6,7 @@
 
 #include "processing/identification/bar_data.hpp"
 #include "processing/identification/bar_model.hpp"
+#include "processing/identification/wide_products.hpp"
 
 namespace kolsky {
 
@@ -77,7 +78,7 @@ class BarLikelihood {
   BarModel model_;
   std::vector<Whitening> whitening_;
   /// Of the first bins, real parts of all gauges before imaginary ones, bin after bin.
-  Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> lowest_factor_;
+  LowerTriangle lowest_factor_;
   std::size_t lowest_bins_ = 0;
   Spectrum product_;
 };

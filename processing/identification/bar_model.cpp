@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -37,6 +39,10 @@ BarModel::BarModel(const Bench& bench, const BarRecords& records, const BarTheor
     const auto& length = bench.gauges[channel].length_m;
     gauge_length_m_.push_back(length ? length->value : 0.0);
   }
+  if (records.returned && theory.far_end == FarEndReturn::none) {
+    throw InputError("far end", "is to return nothing, which one gauge cannot do without",
+                     "put a second gauge on the bar");
+  }
 }
 
 std::size_t BarModel::first_unknown() const {
@@ -63,6 +69,10 @@ MovedBench BarModel::moved(std::span<const double> at) const {
 }
 
 double BarModel::reflection(std::span<const double> at) const {
+  return records_->returned ? 0.0 : returned_by_end(at);
+}
+
+double BarModel::returned_by_end(std::span<const double> at) const {
   switch (theory_.far_end) {
     case FarEndReturn::free:
       return -1.0;
@@ -118,8 +128,9 @@ std::optional<BarModel::LogSlope> BarModel::slope_by(const KnownUnknown& unknown
                   &gamma.by_poisson};
 }
 
-void BarModel::differentiate(std::size_t gauge, const MovedBench& bench, const BarWaves& waves,
-                             const GammaSlopes& gamma, Transfer& transfer) const {
+void BarModel::differentiate(std::span<const double> at, std::size_t gauge, const MovedBench& bench,
+                             const BarWaves& waves, const GammaSlopes& gamma,
+                             Transfer& transfer) const {
   const RatioSlopes ratio(waves, bench, gauge);
   const auto add = [&](std::size_t parameter, const LogSlope& slope) {
     if (slope.ratio == nullptr) {
@@ -138,8 +149,12 @@ void BarModel::differentiate(std::size_t gauge, const MovedBench& bench, const B
   for (std::size_t m = 0; m < solid_parameters(); ++m) {
     add(m, {1.0, &ratio.by_gamma, &gamma.by_solid[m]});
   }
-  if (const auto at = reflection_at()) {
-    add(*at, {1.0, &ratio.by_reflection, nullptr});
+  if (const auto place = reflection_at()) {
+    if (records_->returned) {
+      add(*place, {1.0 / at[*place], nullptr, nullptr});
+    } else {
+      add(*place, {1.0, &ratio.by_reflection, nullptr});
+    }
   }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (const auto slope = slope_by(unknowns_[i], gauge, bench, ratio, gamma)) {
@@ -148,11 +163,18 @@ void BarModel::differentiate(std::size_t gauge, const MovedBench& bench, const B
   }
 }
 
+void BarModel::make_returned(std::span<const double> at, const std::vector<Complex>& path,
+                             Spectrum& g) const {
+  for (std::size_t k = 0; k < g.size(); ++k) {
+    g[k] *= -returned_by_end(at) * std::exp(records_->late_s * path[k]);
+  }
+}
+
 std::vector<BarModel::Transfer> BarModel::transfers_with(std::span<const double> at, double R,
                                                          const std::vector<Complex>& path,
                                                          bool with_derivatives) const {
   const MovedBench bench = moved(at);
-  const bool with_echo = R != 0.0 || (with_derivatives && reflection_at());
+  const bool with_echo = R != 0.0 || (with_derivatives && reflection_at() && !records_->returned);
   const BarWaves waves(theory_.waves, bench, *solid(at), R, with_echo, gauge_length_m_, path);
   std::optional<GammaSlopes> gamma;
   if (with_derivatives) {
@@ -167,8 +189,11 @@ std::vector<BarModel::Transfer> BarModel::transfers_with(std::span<const double>
     for (Complex& g : transfer.g) {
       g *= bench.gain[j] / bench.gain[0];
     }
+    if (records_->returned) {
+      make_returned(at, path, transfer.g);
+    }
     if (gamma) {
-      differentiate(j, bench, waves, *gamma, transfer);
+      differentiate(at, j, bench, waves, *gamma, transfer);
     }
   }
   return list;

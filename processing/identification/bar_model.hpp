@@ -28,6 +28,8 @@ struct BarTheory {
 /// far end returns of a stress (-1: free),
 ///   h_j = a_j sinhc(gamma l_j / 2) (exp(-gamma x_j) + R exp(-gamma (2 L - x_j))),
 ///   g_j = h_j / h_0, j = 1 .. gauges - 1: causal.
+/// Of one gauge that stands for two (see split_passes), b later:
+///   g_1 = -R exp(b s - gamma (x_1 - x_0)).
 ///
 /// Parameters, in order: logarithms of the solid's, R where it is fitted, the bench's known
 /// unknowns in their standard deviations.
@@ -35,6 +37,7 @@ class BarModel {
  public:
   using Spectrum = std::vector<Complex>;
 
+  /// @throws InputError where one gauge stands for two and the far end is to return nothing
   BarModel(const Bench& bench, const BarRecords& records, const BarTheory& theory);
 
   [[nodiscard]] const BarTheory& theory() const { return theory_; }
@@ -46,6 +49,7 @@ class BarModel {
 
   [[nodiscard]] std::unique_ptr<const Compliance> solid(std::span<const double> at) const;
   [[nodiscard]] MovedBench moved(std::span<const double> at) const;
+  /// What comes back to the gauges; nothing where the return is a gauge of its own.
   [[nodiscard]] double reflection(std::span<const double> at) const;
   /// A bar of another density: to waves the same as another J by that factor at every frequency.
   void scale_density(double factor) { bar_.density_kg_m3.value *= factor; }
@@ -81,6 +85,9 @@ class BarModel {
     const Spectrum* ratio = nullptr;
     const Spectrum* gamma = nullptr;
   };
+  [[nodiscard]] double returned_by_end(std::span<const double> at) const;
+  void make_returned(std::span<const double> at, const std::vector<Complex>& path,
+                     Spectrum& g) const;
   [[nodiscard]] bool varies(KnownUnknown::Of number) const;
   [[nodiscard]] std::optional<LogSlope> slope_by(const KnownUnknown& unknown, std::size_t gauge,
                                                  const MovedBench& bench, const RatioSlopes& ratio,
@@ -88,8 +95,8 @@ class BarModel {
   [[nodiscard]] std::vector<Transfer> transfers_with(std::span<const double> at, double reflection,
                                                      const std::vector<Complex>& path,
                                                      bool with_derivatives) const;
-  void differentiate(std::size_t gauge, const MovedBench& bench, const BarWaves& waves,
-                     const GammaSlopes& gamma, Transfer& transfer) const;
+  void differentiate(std::span<const double> at, std::size_t gauge, const MovedBench& bench,
+                     const BarWaves& waves, const GammaSlopes& gamma, Transfer& transfer) const;
 
   Bar bar_;
   const BarRecords* records_;

@@ -39,9 +39,9 @@ void require_bar(const Shot& shot) {
     throw InputError("kind", "is not \"bar\"",
                      "characterise a bar with a bench file of kind \"bar\"");
   }
-  if (bench.gauges.size() < 2 || shot.channels.size() != bench.gauges.size()) {
-    throw InputError("gauges", "are too few: what a bar does to a wave shows between two places",
-                     "record the pulse with at least two gauges on the bar");
+  if (bench.gauges.empty() || shot.channels.size() != bench.gauges.size()) {
+    throw InputError("gauges", "are not those of the capture's channels",
+                     "give the bench file that the shot was recorded with");
   }
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
@@ -58,12 +58,14 @@ std::vector<std::size_t> along_the_bar(const Bench& bench) {
   });
   const double span =
       bench.gauges[order.back()].position_m - bench.gauges[order.front()].position_m;
-  if (span < bench.input.diameter_m) {
+  if (bench.gauges.size() > 1 && span < bench.input.diameter_m) {
     throw InputError("gauges",
                      "lie within " + in_words(span, "m") +
                          " of each other, too near to show what "
                          "the bar does to a wave",
-                     "put gauges at least a diameter of the bar apart, better ten");
+                     "put gauges at least a diameter of the bar apart, better ten; or give one of "
+                     "them by itself, which needs "
+                     "a free far end");
   }
   return order;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "processing/base/shot.hpp"
@@ -19,13 +20,25 @@ struct BarRecords {
   std::size_t quiet_samples = 0;     ///< before the pulse
   double foot_s = 0.0;               ///< of the pulse at the first gauge, from the first sample
   double period_s = 0.0;
+  bool returned = false;  ///< the second gauge is the first one when the far end answers, inverted
+  double late_s = 0.0;    ///< how much later that one's record begins; its rise is not reckoned so
+
+  /// A gauge's noise before the pulse.
+  [[nodiscard]] std::span<const double> quiet(std::size_t gauge) const {
+    return std::span<const double>(strain[returned ? 0 : gauge]).first(quiet_samples);
+  }
+  /// From the first gauge's rise to another one's, each in its own record.
+  [[nodiscard]] double rise_behind_first_s(std::size_t gauge) const {
+    return rise_s[gauge] - rise_s[0] - late_of_s(gauge);
+  }
+  [[nodiscard]] double late_of_s(std::size_t gauge) const { return gauge > 0 ? late_s : 0.0; }
 };
 
 /// A channel's values in its gauge's unit.
 [[nodiscard]] std::vector<double> readings_of(const ChannelRecord& channel);
 
-/// @throws InputError where the shot cannot serve: another kind of bench, fewer than two gauges or
-///   all at one place, a hole, clipped codes, no pulse, no quiet samples before it
+/// @throws InputError where the shot cannot serve: another kind of bench, several gauges all at
+///   one place, a hole, clipped codes, no pulse, no quiet samples before it
 [[nodiscard]] BarRecords read_bar_records(const Shot& shot);
 
 }  // namespace kolsky

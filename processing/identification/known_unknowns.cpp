@@ -24,7 +24,7 @@ std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& r
   std::vector<KnownUnknown> list;
   for (std::size_t j = 0; j < records.channel.size(); ++j) {
     const Gauge& gauge = bench.gauges[records.channel[j]];
-    if (const double sd = gain_sd(gauge); sd > 0.0) {
+    if (const double sd = records.returned ? 0.0 : gain_sd(gauge); sd > 0.0) {
       list.push_back({"gauge-factor:" + gauge.name, Of::gain, j, sd});
     }
     if (gauge.position_m.sd > 0.0) {

@@ -24,7 +24,8 @@ struct KnownUnknown {
 /// Relative standard deviation of what turns a gauge's reading into strain.
 [[nodiscard]] double gain_sd(const Gauge& gauge);
 
-/// Those of a bench of kind "bar". Gains combine gauge factor, excitation and amplifier.
+/// Those of a bench of kind "bar". Gains combine gauge factor, excitation and amplifier; that of a
+/// gauge which stands for two does not matter.
 [[nodiscard]] std::vector<KnownUnknown> known_unknowns(const Bench& bench,
                                                        const BarRecords& records);
 

@@ -23,7 +23,7 @@ class Windows {
       shortest_s = std::min(shortest_s, to_return_s * kBefore);
       for (const BarRecords& records : data.records()) {
         const double left = static_cast<double>(records.strain[j].size()) * records.period_s -
-                            records.foot_s - (records.rise_s[j] - records.rise_s[0]);
+                            records.foot_s - records.rise_behind_first_s(j);
         shortest_s = std::min(shortest_s, left);
       }
     }
@@ -32,8 +32,8 @@ class Windows {
 
   [[nodiscard]] std::size_t end(std::size_t shot, std::size_t gauge) const {
     const BarRecords& records = data_.records()[shot];
-    const double delay_s = records.rise_s[gauge] - records.rise_s[0];
-    return samples_ + static_cast<std::size_t>(delay_s / records.period_s);
+    return samples_ +
+           static_cast<std::size_t>(records.rise_behind_first_s(gauge) / records.period_s);
   }
 
   /// Whether every pulse has gone where its window ends.
@@ -100,12 +100,13 @@ class StraightLines {
   /// moves slowly.
   Complex log_of(std::size_t j, std::size_t k) {
     constexpr double kTurn = 2.0 * std::numbers::pi;
-    const Complex delay = band_.path[k] * (records_.rise_s[j] - records_.rise_s[0]);
+    const Complex delay = band_.path[k] * records_.rise_behind_first_s(j);
     const Complex turned = spectra_[j][k] / spectra_[0][k] * std::exp(delay);
     double phase = std::arg(turned);
     phase -= kTurn * std::round((phase - phase_before_[j]) / kTurn);
     phase_before_[j] = phase;
-    return Complex(std::log(std::abs(turned)), phase) - delay;
+    return Complex(std::log(std::abs(turned)), phase) - delay -
+           band_.path[k] * records_.late_of_s(j);
   }
 
   const BarData& data_;

@@ -2,65 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <numbers>
-#include <sstream>
 
 #include "processing/waves/bar_modes.hpp"
 #include "processing/waves/pochhammer_chree.hpp"
 #include "tests/accuracy/table.hpp"
+#include "tests/unit/waves/pochhammer_table.hpp"
 
 namespace kolsky::accuracy {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
-struct Row {
-  double a_over_wavelength = 0.0, speed = 0.0, mean_over_surface = 0.0;
-};
-
-std::map<double, std::vector<Row>> reference() {
-  std::map<double, std::vector<Row>> table;
-  std::ifstream file(std::filesystem::path(KOLSKY_SHARED_DATA).parent_path() /
-                     "reference/pochhammer_chree.csv");
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    double nu = 0.0;
-    double frequency = 0.0;
-    char comma = 0;
-    Row row;
-    cells >> nu >> comma >> row.a_over_wavelength >> comma >> frequency >> comma >> row.speed >>
-        comma >> row.mean_over_surface;
-    table[nu].push_back(row);
-  }
-  return table;
-}
-
-/// Modes of a bar of unit speed and radius at the table's wavelengths, reached in small steps.
-std::vector<BarMode> modes_at(double nu, const std::vector<Row>& rows) {
-  const ElasticSolid unit(1.0);
-  const PochhammerChree bar(1.0, nu, 1.0, unit);
-  constexpr int kSteps = 20;
-  std::vector<Complex> path;
-  double from = 0.0;
-  for (const Row& row : rows) {
-    const double to = row.speed * row.a_over_wavelength;
-    for (int step = 1; step <= kSteps; ++step) {
-      path.emplace_back(0.0, kTwoPi * (from + (to - from) * step / kSteps));
-    }
-    from = to;
-  }
-  const auto all = bar.along(path);
-  std::vector<BarMode> modes;
-  for (std::size_t i = kSteps - 1; i < all.size(); i += kSteps) {
-    modes.push_back(all[i]);
-  }
-  return modes;
-}
 
 struct Checked {
   WaveTheory theory;
@@ -71,7 +23,7 @@ struct Checked {
 }  // namespace
 
 std::optional<Section> elastic_waves() {
-  const auto table = reference();
+  const auto table = testing::pochhammer_table();
   if (table.empty()) {
     return std::nullopt;
   }
@@ -82,7 +34,7 @@ std::optional<Section> elastic_waves() {
       {"ν", "rows", "up to a/Λ", "cp/c0 off by", "surface over mean strain off by"},
       {}};
   for (const auto& [nu, rows] : table) {
-    const auto modes = modes_at(nu, rows);
+    const auto modes = testing::modes_at(nu, rows);
     double speed = 0.0;
     double ratio = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -152,6 +152,7 @@ Command identify_bar_command() {
       "what a bar is made of, from shots on it alone: moduli, J, attenuation, with deviations\n"
       "Whole records of two or more gauges, whatever the striker did; overlapping waves serve "
       "too.\n"
+      "One gauge alone: the pulse and its return from a free far end, over before that arrives.\n"
       "Wave theory and far end are chosen by the records; every alternative is listed.";
   command.examples =
       "  kolsky identify bar shot1.h5 shot2.h5 --model-out pmma.toml\n"

@@ -18,9 +18,10 @@ using scene::json_of;
 using scene::refused;
 
 class IdentifyBar : public ::testing::Test {
- protected:
+ public:
   static constexpr RodMaterial kTruth{1180.0, 5.66e9, 37.0e9, 1.81e6};
 
+ protected:
   IdentifyBar() {
     std::string bench =
         "kind = \"bar\"\nsampling_frequency_Hz = 1e6\npositive = \"compression\"\n"
@@ -88,6 +89,57 @@ TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
   const Material filed = read_material(model);
   EXPECT_EQ(filed.E1_Pa.value, result["parameters"]["E1_Pa"]["value"].get<double>());
   EXPECT_EQ(filed.E1_Pa.sd, result["parameters"]["E1_Pa"]["sd"].get<double>());
+}
+
+/// A bar that is struck at one end and has one gauge, its length as well known as a tape measures.
+class IdentifyBarByOneGauge : public ::testing::Test {
+ protected:
+  std::string capture(double position_m) {
+    folder_.write("bench.toml",
+                  fmt::format("kind = \"bar\"\nsampling_frequency_Hz = 1e6\n"
+                              "positive = \"compression\"\n[bars.input]\nlength_m = 2.0\n"
+                              "length_m_sd = 0.0005\ndiameter_m = 0.02\ndensity_kg_m3 = 1180.0\n"
+                              "poisson_ratio = 0.36\n[[gauges]]\nname = \"only\"\n"
+                              "bar = \"input\"\nposition_m = {}\nunit = \"V\"\n"
+                              "strain_per_V = 0.001\n",
+                              position_m));
+    testing::BarShots::Setup setup;
+    setup.material = IdentifyBar::kTruth;
+    setup.position_m = {position_m};
+    setup.post_samples = 2000;
+    std::mt19937_64 random(4);
+    const Shot shot = testing::BarShots(setup).draw(1, {}, random).front();
+    std::string table = "time_s,only\n";
+    for (std::size_t n = 0; n < shot.samples(); ++n) {
+      const ChannelRecord& channel = shot.channels.front();
+      table += fmt::format("{:.7f},{:.7e}\n", static_cast<double>(n) * 1e-6,
+                           channel.value(channel.codes[n]));
+    }
+    folder_.write("shot.csv", table);
+    const std::string path = (folder_ / "shot.h5").string();
+    (void)json_of(scene::kolsky({"import", "csv", (folder_ / "shot.csv").string(), "--bench",
+                                 folder_ / "bench.toml", "-o", path, "--json"}));
+    return path;
+  }
+
+  scene::Folder folder_;
+};
+
+TEST_F(IdentifyBarByOneGauge, FindsTheBarFromThePulseAndItsReturn) {
+  const json result =
+      json_of(scene::kolsky({"identify", "bar", capture(1.0), "--json", "--waveforms"}));
+  EXPECT_TRUE(result["two_passes"].get<bool>());
+  EXPECT_EQ(result["far_end"], "free");
+  const json& E1 = result["parameters"]["E1_Pa"];
+  EXPECT_NEAR(E1["value"].get<double>(), 5.66e9, 4.0 * E1["sd"].get<double>());
+  // 1 mm of 2 m, twice over in the modulus.
+  EXPECT_NEAR(E1["sd"].get<double>() / 5.66e9, 1e-3, 1e-4);
+  EXPECT_TRUE(result["waveforms"][0]["gauges"].contains("only returned"));
+}
+
+TEST_F(IdentifyBarByOneGauge, SaysHowFarFromTheEndsItWouldServe) {
+  EXPECT_TRUE(
+      refused(scene::kolsky({"identify", "bar", capture(0.05)}), {"only", "behind that end"}));
 }
 
 TEST_F(IdentifyBar, RefusesWhatCannotServe) {

@@ -1,4 +1,4 @@
-#include "processing/calibration/incident_tail.hpp"
+#include "processing/waves/incident_tail.hpp"
 
 #include <algorithm>
 #include <cmath>
