@@ -49,10 +49,13 @@ double step_of(const std::vector<double>& strain) {
 }
 
 /// A record that stays at its extreme far longer than it stays anywhere else near it has been cut
-/// off there, wherever its codes end: a table does not tell the converter's range.
+/// off there, wherever its codes end: a table does not tell the converter's range. Where the steps
+/// are coarse and the noise is less, a smooth top stays at one code too: as the quiet record does.
 std::size_t flat_top(const std::vector<double>& readings) {
   const auto [least, most] = std::minmax_element(readings.begin(), readings.end());
   const double extreme = std::abs(*most) >= std::abs(*least) ? *most : *least;
+  constexpr double kCoarse = 1.0 / 300.0;
+  const bool coarse = step_of(readings) > kCoarse * std::abs(extreme);
   std::size_t at_extreme = 0;
   std::size_t elsewhere = 0;
   std::size_t run = 0;
@@ -60,7 +63,7 @@ std::size_t flat_top(const std::vector<double>& readings) {
     run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
     if (readings[n] == extreme) {
       at_extreme = std::max(at_extreme, run);
-    } else if (std::abs(readings[n]) > 0.5 * std::abs(extreme)) {
+    } else if (coarse || std::abs(readings[n]) > 0.5 * std::abs(extreme)) {
       elsewhere = std::max(elsewhere, run);
     }
   }

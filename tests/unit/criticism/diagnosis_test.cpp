@@ -252,5 +252,19 @@ TEST(BadData, SeesATopThatWasCutOff) {
   EXPECT_NE(bad_data(made.shots.front()).find("cut off"), std::string::npos);
 }
 
+TEST(BadData, IsNotARoundTopInCoarseSteps) {
+  Made made = make(83, {});
+  Shot& shot = made.shots.front();
+  auto& codes = shot.channels[1].codes;
+  const auto top = *std::max_element(codes.begin(), codes.end());
+  // A half sine of 200 samples in steps of a hundredth of its height: 17 of them are at the top.
+  for (std::size_t n = 0; n < codes.size(); ++n) {
+    const double phase = std::numbers::pi * (static_cast<double>(n) - 300.0) / 200.0;
+    const double pulse = n >= 300 && n <= 500 ? std::sin(phase) : 0.0;
+    codes[n] = static_cast<std::int32_t>(std::round(100.49 * pulse)) * (top / 100);
+  }
+  EXPECT_EQ(bad_data(shot), "");
+}
+
 }  // namespace
 }  // namespace kolsky
