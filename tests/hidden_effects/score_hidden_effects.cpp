@@ -8,6 +8,7 @@
 #include <iostream>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "processing/base/error.hpp"
@@ -39,6 +40,7 @@ struct Scores {
   std::mutex mutex;
   std::vector<Verdict> verdicts;
   std::exception_ptr failure;  ///< what ended a worker
+  int left_out = 0;
 };
 
 bool went_well(const Verdict& verdict) {
@@ -58,8 +60,25 @@ bool went_well(const Verdict& verdict) {
   return false;
 }
 
+/// @return nothing where the generator cannot calculate what was drawn: that says nothing of the
+/// analyser, and is counted by itself
+std::optional<CaseFiles> written(const Settings& settings, const Case& drawn, Scores& scores) {
+  try {
+    return write_case(drawn, settings.out);
+  } catch (const InputError& error) {
+    const std::lock_guard lock(scores.mutex);
+    std::cerr << fmt::format("{:<24}left out: {}\n", drawn.id, error.what());
+    ++scores.left_out;
+    return std::nullopt;
+  }
+}
+
 void score_case(const Settings& settings, const Case& drawn, Scores& scores) {
-  const CaseFiles files = write_case(drawn, settings.out);
+  const std::optional<CaseFiles> drawn_files = written(settings, drawn, scores);
+  if (!drawn_files) {
+    return;
+  }
+  const CaseFiles& files = *drawn_files;
   if (settings.draw_only) {
     return;
   }
@@ -108,7 +127,7 @@ void work(const Settings& settings, std::atomic<int>& next, Scores& scores) {
   }
 }
 
-int report(const Settings& settings, std::vector<Verdict> verdicts) {
+int report(const Settings& settings, std::vector<Verdict> verdicts, int left_out) {
   std::ranges::sort(verdicts, {}, &Verdict::id);
   nlohmann::json all = nlohmann::json::array();
   for (const Verdict& verdict : verdicts) {
@@ -121,6 +140,10 @@ int report(const Settings& settings, std::vector<Verdict> verdicts) {
             << confusion_text(verdicts)
             << "\nfound, by multiple of the smallest identifiable size\n"
             << power_text(verdicts);
+  if (left_out > 0) {
+    std::cout << fmt::format("\n{} cases left out: the generator could not calculate them\n",
+                             left_out);
+  }
   return std::ranges::all_of(table, [](const Measure& one) { return !one.got || one.met; }) ? 0 : 1;
 }
 
@@ -147,7 +170,7 @@ int run(Settings& settings) {
   if (scores.failure) {
     std::rethrow_exception(scores.failure);
   }
-  return settings.draw_only ? 0 : report(settings, std::move(scores.verdicts));
+  return settings.draw_only ? 0 : report(settings, std::move(scores.verdicts), scores.left_out);
 }
 
 }  // namespace

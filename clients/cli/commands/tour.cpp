@@ -281,7 +281,7 @@ class Tour {
     chapter("4. What is missing?");
     command(
         {"diagnose", "shots", "--model", "m1.toml", "-o", "m2.toml", "--report", "diagnosis.html"});
-    const ModelStep step = read_model("m2.toml").history.back();
+    ModelStep step = read_model("m2.toml").history.back();
     say(verdict_words(step));
     return step;
   }

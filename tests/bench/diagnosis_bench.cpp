@@ -1,0 +1,120 @@
+// Comparing a shot with a model, and asking eight bar shots or six split-bar shots what a model
+// lacks: each beside one forward evaluation of all their records, which any fit is made of.
+#include <benchmark/benchmark.h>
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "processing/criticism/comparison.hpp"
+#include "processing/criticism/diagnosis.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+enum class Kind { bar, shpb };
+
+std::vector<Shot> shots_with(Kind kind, int shots, const char* effect) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 77;
+  wishes.shots = shots;
+  wishes.gauges = kind == Kind::bar ? 4 : 3;
+  wishes.samples = 2048;
+  wishes.rate_Hz = 1e6;
+  wishes.split = kind == Kind::shpb;
+  testing::Campaign made = testing::draw_campaign(wishes);
+  if (effect != nullptr) {
+    testing::hide(made, testing::parse_effect(effect));
+  }
+  return testing::shots_of(made);
+}
+
+Model model_of(Kind kind, const std::vector<Shot>& shots) {
+  if (kind == Kind::bar) {
+    return paper_model(BenchKind::bar, false);
+  }
+  return paper_model(BenchKind::shpb, shots.front().bench.input.youngs_modulus_Pa.has_value());
+}
+
+Workers two_threads() {
+  Workers two;
+  two.workers = 2;
+  two.run = [](std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
+    std::atomic<std::size_t> next = 0;
+    const auto loop = [&](std::size_t worker) {
+      for (std::size_t i = next++; i < count; i = next++) {
+        work(i, worker);
+      }
+    };
+    std::jthread other(loop, 1);
+    loop(0);
+  };
+  return two;
+}
+
+/// As the daemon does it after a shot's reduction.
+void compare_one_shot(benchmark::State& state) {
+  const std::vector<Shot> shots = shots_with(Kind::bar, 3, nullptr);
+  const Campaign all = read_campaign(shots);
+  Study fitting(all, 0.0, Workers{});
+  const Model model = fitting.fit(model_of(Kind::bar, shots)).model;
+  for (auto _ : state) {
+    const Campaign one = read_campaign({shots.front()});
+    Study study(one, 0.0, Workers{});
+    const Studied studied = study.as_it_is(model);
+    benchmark::DoNotOptimize(compare(study, studied));
+  }
+}
+BENCHMARK(compare_one_shot)->Unit(benchmark::kMillisecond);
+
+void diagnose_shots(benchmark::State& state, Kind kind, int count, const char* effect) {
+  const std::vector<Shot> shots = shots_with(kind, count, effect);
+  const Campaign campaign = read_campaign(shots);
+  const Model model = model_of(kind, shots);
+  Study forward(campaign, 0.0, Workers{});
+  const Studied studied = forward.fit(model);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  constexpr int kEvaluations = 10;
+  for (int n = 0; n < kEvaluations; ++n) {
+    // Elsewhere each time: nothing of the one before serves.
+    std::vector<double> theta = studied.fit.theta;
+    theta.front() += 1e-4 * n;
+    benchmark::DoNotOptimize(forward.residuals().evaluate(studied.composition, theta));
+  }
+  const double evaluation_s =
+      std::chrono::duration<double>(Clock::now() - begin).count() / kEvaluations;
+  std::string found;
+  const Clock::time_point start = Clock::now();
+  for (auto _ : state) {
+    Study study(campaign, 0.0, two_threads());
+    const Diagnosis diagnosis = diagnose(study, model, {});
+    found = diagnosis.effects.empty() ? name_of(diagnosis.verdict) : diagnosis.effects.front();
+  }
+  const double diagnosis_s = std::chrono::duration<double>(Clock::now() - start).count() /
+                             static_cast<double>(state.iterations());
+  state.counters["evaluations"] = diagnosis_s / evaluation_s;
+  state.SetLabel(found);
+}
+BENCHMARK_CAPTURE(diagnose_shots, bar_nothing_hidden, Kind::bar, 8, nullptr)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_shots, bar_position, Kind::bar, 8, "gauge-position:g2=0.004")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_shots, bar_relaxation, Kind::bar, 8,
+                  "second-relaxation=5e-12,tau=100e-6")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_shots, shpb_nothing_hidden, Kind::shpb, 6, nullptr)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_shots, shpb_friction, Kind::shpb, 6, "interface-friction=0.3")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace kolsky
