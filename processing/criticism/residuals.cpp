@@ -28,7 +28,6 @@ struct WhiteResiduals::Workspace {
   std::vector<Spectrum> rows;                  ///< one shot's residuals, plain, by other gauge
   std::vector<std::vector<double>> responses;  ///< of other gauges to the reference's noise
   SpecimenResponse response;
-  Eigen::MatrixXcd cross;
 
   // Much of a fit moves what is added to records alone: how waves travel then stays as it was in
   // the evaluation before.
@@ -38,6 +37,7 @@ struct WhiteResiduals::Workspace {
   Transfers transfers;
   std::optional<std::vector<AppliedEffect>> on_noise;  ///< that made the whitener
   std::vector<Eigen::MatrixXcd> whitener;              ///< by bin
+  std::vector<Eigen::MatrixXcd> cross;                 ///< P G^H by bin
 
   Workspace(const JudgedBand& band, double period_s)
       : whole(band.transformed, period_s, kWrapDamping),
@@ -305,22 +305,20 @@ void WhiteResiduals::know_noise(Workspace& work, const std::vector<AppliedEffect
   shape(effects, scene);
   const std::vector<CarriedBin> carried = carried_by(work, ratios_of(scene));
   work.whitener.resize(band_.bins_judged);
+  work.cross.resize(band_.bins_judged);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    work.whitener[k] = std::numbers::sqrt2 * whitener(carried[k], k, work.cross);
+    work.whitener[k] = std::numbers::sqrt2 * whitener(carried[k], k, work.cross[k]);
   }
   work.on_noise = effects;
 }
 
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
-  Scene scene(campaign_.bench, usual_, damped_path_);
-  shape(Effects(composition, theta, 0).on_waves, scene);
-  const std::vector<CarriedBin> carried = carried_by(*work_.front(), ratios_of(scene));
+  Workspace& work = *work_.front();
+  know_noise(work, Effects(composition, theta, 0).on_waves);
   spread_.clear();
-  Eigen::MatrixXcd cross;
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    const Eigen::MatrixXcd inverse = whitener(carried[k], k, cross);
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
-    spread_.push_back(cross * inverse.adjoint() / std::numbers::sqrt2);
+    spread_.push_back(0.5 * work.cross[k] * work.whitener[k].adjoint());
   }
   estimate_noise(evaluate(composition, theta));
 }
