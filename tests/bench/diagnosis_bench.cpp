@@ -2,14 +2,13 @@
 // lacks: each beside one forward evaluation of all their records, which any fit is made of.
 #include <benchmark/benchmark.h>
 
-#include <atomic>
 #include <chrono>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "processing/criticism/comparison.hpp"
 #include "processing/criticism/diagnosis.hpp"
+#include "tests/bench/two_threads.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -37,22 +36,6 @@ Model model_of(Kind kind, const std::vector<Shot>& shots) {
     return paper_model(BenchKind::bar, false);
   }
   return paper_model(BenchKind::shpb, shots.front().bench.input.youngs_modulus_Pa.has_value());
-}
-
-Workers two_threads() {
-  Workers two;
-  two.workers = 2;
-  two.run = [](std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
-    std::atomic<std::size_t> next = 0;
-    const auto loop = [&](std::size_t worker) {
-      for (std::size_t i = next++; i < count; i = next++) {
-        work(i, worker);
-      }
-    };
-    std::jthread other(loop, 1);
-    loop(0);
-  };
-  return two;
 }
 
 /// As the daemon does it after a shot's reduction.

@@ -4,12 +4,11 @@
 #include <fftw3.h>
 
 #include <algorithm>
-#include <atomic>
-#include <thread>
 
 #include "processing/reduction/reducer.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 #include "processing/uncertainty/monte_carlo.hpp"
+#include "tests/bench/two_threads.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
 
@@ -91,17 +90,7 @@ void monte_carlo(benchmark::State& state) {
   shot.bench.specimen->length_m.sd = 0.01e-3;
   shot.bench.temperature_K = Measured{296.0, 0.5};
   const Reduction reduction = Reducer().reduce(shot);
-  Workers two;
-  two.run = [](std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
-    std::atomic<std::size_t> next = 0;
-    const auto loop = [&](std::size_t worker) {
-      for (std::size_t i = next++; i < count; i = next++) {
-        work(i, worker);
-      }
-    };
-    std::jthread other(loop, 1);
-    loop(0);
-  };
+  const Workers two = two_threads();
   for (auto _ : state) {
     benchmark::DoNotOptimize(propagate(shot, {}, reduction, {}, two));
   }
