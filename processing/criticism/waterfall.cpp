@@ -37,8 +37,10 @@ bool holds(const Model& model, const EffectUse& use) {
   return (freed(*own) || !freed(use)) && !chosen_anew(*own, use);
 }
 
+/// A number of the bench, not what is only bounded by a prior, as a hum's amplitudes are.
 bool only_filed(const EffectUse& use) {
-  return std::any_of(use.values.begin(), use.values.end(),
+  return !use.effect->about().each_gauge &&
+         std::any_of(use.values.begin(), use.values.end(),
                      [](const ModelValue& value) { return value.prior_sd > 0.0; });
 }
 

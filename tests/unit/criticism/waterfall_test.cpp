@@ -69,6 +69,15 @@ TEST(Lineage, CountsAFiledNumberOnlyOnceItIsFreedOfItsPrior) {
   EXPECT_EQ(ids_of(lineage(first, first, {"gauge-position:g2"})), (std::vector<std::string>{""}));
 }
 
+TEST(Lineage, CountsAHumThoughAPriorBoundsIt) {
+  const Model first = paper_with({});
+  Model last = paper_with({"mains-hum"});
+  last.find("mains-hum")->values[0].prior_sd = 3e-5;
+  last.find("mains-hum")->values[1].prior_sd = 3e-5;
+  EXPECT_EQ(ids_of(lineage(first, last, {})), (std::vector<std::string>{"", "mains-hum"}));
+  EXPECT_EQ(ids_of(lineage(last, first, {})), (std::vector<std::string>{"", "-mains-hum"}));
+}
+
 TEST(Lineage, TakesOutWhatTheLastModelNoLongerHolds) {
   const auto steps = lineage(paper_with({"crosstalk:g3"}), paper_with({"temperature"}), {});
   EXPECT_EQ(ids_of(steps), (std::vector<std::string>{"", "-crosstalk:g3", "temperature"}));
