@@ -104,7 +104,7 @@ TriggerConfig read_trigger(const TomlTable& table) {
 
 std::string read_endpoint(const TomlTable& table, const std::string& key,
                           const std::string& otherwise) {
-  const std::string endpoint = table.optional_text(key).value_or(otherwise);
+  std::string endpoint = table.optional_text(key).value_or(otherwise);
   constexpr std::array<std::string_view, 3> kTransports{"tcp://", "ipc://", "inproc://"};
   const bool known = std::any_of(kTransports.begin(), kTransports.end(),
                                  [&](std::string_view t) { return endpoint.starts_with(t); });

@@ -148,7 +148,7 @@ void SampleRing::write_channel(std::size_t channel, const Block& block, Tick end
   const auto codes = codes_of<Code>(block.channels[channel], block.samples);
   const std::size_t known = static_cast<std::size_t>(
       std::clamp(written - block.first_tick, Tick{0}, end - block.first_tick));
-  statistics = run_statistics(codes.first(known));
+  statistics = known > 0 ? run_statistics(codes.first(known)) : RunStatistics{};
   for (std::size_t done = known; done < codes.size();) {
     const std::size_t slot =
         static_cast<std::size_t>(block.first_tick + static_cast<Tick>(done)) & mask;

@@ -30,6 +30,9 @@ Studied Study::fit(const Model& model) {
 Studied Study::refit(const Studied& studied) {
   residuals_.freeze(studied.composition, studied.fit.theta);
   ModelFit fit = fit_model(studied.composition, residuals_, executor_, studied.fit.theta);
+  if (put_branches_in_order(studied.composition, fit.theta)) {
+    fit = fit_model(studied.composition, residuals_, executor_, fit.theta);
+  }
   const Misfit misfit =
       misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(studied.composition));
   Model after = fitted(studied.model, studied.composition, fit);

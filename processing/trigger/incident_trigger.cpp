@@ -262,7 +262,8 @@ Tick IncidentTrigger::pass_over_cells(const Run<Code>& run, Tick from) {
   while (from == cell_.first_tick && excursion_.tainted == 0 && run.end - from >= 2 * kCell &&
          near(run.all, cell_.pivot)) {
     const Tick cells = std::min(kAhead, (run.end - from) / kCell);
-    const Extremes all = extremes(run.part(from, from + cells * kCell));
+    const Extremes all =
+        within_band(run.all) ? run.all : extremes(run.part(from, from + cells * kCell));
     if (!within_band(all)) return from;
     const std::int32_t pivot = cell_.pivot;
     for (Tick i = 0; i < cells; ++i) {

@@ -218,13 +218,6 @@ RunStatistics statistics_of(std::size_t size, const Sums& sums) noexcept {
 
 }  // namespace
 
-RunStatistics RunStatistics::joined(const RunStatistics& other) const noexcept {
-  if (count == 0) return other;
-  if (other.count == 0) return *this;
-  return {count + other.count, sum + other.sum, sum_of_squares + other.sum_of_squares,
-          std::min(minimum, other.minimum), std::max(maximum, other.maximum)};
-}
-
 RunStatistics run_statistics(std::span<const std::int16_t> codes) noexcept {
   return statistics_of(codes.size(), narrow_sums(codes.data(), codes.size()));
 }

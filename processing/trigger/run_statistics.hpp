@@ -18,7 +18,12 @@ struct RunStatistics {
   std::int32_t maximum = 0;
 
   /// Of this run and another together.
-  [[nodiscard]] RunStatistics joined(const RunStatistics& other) const noexcept;
+  [[nodiscard]] RunStatistics joined(const RunStatistics& other) const noexcept {
+    if (count == 0) return other;
+    if (other.count == 0) return *this;
+    return {count + other.count, sum + other.sum, sum_of_squares + other.sum_of_squares,
+            std::min(minimum, other.minimum), std::max(maximum, other.maximum)};
+  }
   friend bool operator==(const RunStatistics&, const RunStatistics&) = default;
 };
 

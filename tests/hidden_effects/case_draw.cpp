@@ -94,7 +94,7 @@ Planted sized(const Identifiable& found, double multiple, Random& random) {
   if (!found.candidate.kind.one_sided && uniform(random, 0.0, 1.0) < 0.5) {
     sign = -sign;
   }
-  const double size = std::min(multiple * found.smallest, found.most());
+  const double size = std::min(multiple * found.smallest, found.candidate.most);
   effect.strength = found.candidate.null + sign * size;
   return {effect, size / found.smallest};
 }

@@ -23,6 +23,8 @@ constexpr double kDetect = 6.0;
 constexpr double kAgainstRival = 5.0;
 // A size beyond this many typical ones is nothing a laboratory has.
 constexpr double kBeyondReason = 10.0;
+// Two branches may change names: which is the second must be beyond doubt.
+constexpr double kMostOfBranch = 0.7;
 // Below this exponent the generator's own error is no longer small.
 constexpr double kMostFractional = 0.25;
 
@@ -260,22 +262,41 @@ HiddenEffect probe_of(const EffectKind& kind, const std::string& gauge) {
   return effect;
 }
 
+// The compliance of the branch that a further relaxation is second to; none: infinite.
+double first_branch_per_Pa(const EffectKind& kind, const Campaign& campaign) {
+  if (kind.id == "specimen-second-relaxation") {
+    return 1.0 / campaign.split->specimen.E2_Pa;
+  }
+  return kind.id == "second-relaxation" && !campaign.world.material.elastic
+             ? 1.0 / campaign.world.material.E2_Pa
+             : std::numeric_limits<double>::infinity();
+}
+
+double most_of(const EffectKind& kind, const Campaign& campaign) {
+  if (kind.id == "fractional-damping") {
+    return kMostFractional;
+  }
+  return std::min(kBeyondReason * std::abs(kind.typical - kind.null),
+                  kMostOfBranch * first_branch_per_Pa(kind, campaign));
+}
+
 std::vector<Candidate> all_candidates(const Campaign& campaign) {
   std::vector<Candidate> out;
   for (const EffectKind& kind : campaign.split ? testing::shpb_effects() : testing::bar_effects()) {
+    const double most = most_of(kind, campaign);
     if (!kind.per_gauge) {
-      out.push_back({probe_of(kind, ""), kind, kind.null});
+      out.push_back({probe_of(kind, ""), kind, kind.null, most});
       if (kind.id == "second-relaxation") {
         out.back().effect.details["tau"] = 3e-4;
         for (const double tau : {2e-5, 8e-5, 1.5e-3}) {
-          out.push_back({probe_of(kind, ""), kind, kind.null});
+          out.push_back({probe_of(kind, ""), kind, kind.null, most});
           out.back().effect.details["tau"] = tau;
         }
       }
       continue;
     }
     for (const testing::TrueGauge& gauge : campaign.world.gauges) {
-      out.push_back({probe_of(kind, gauge.name), kind, kind.null});
+      out.push_back({probe_of(kind, gauge.name), kind, kind.null, most});
     }
   }
   return out;
@@ -303,18 +324,14 @@ bool Identifiable::all_or_nothing() const {
 bool Identifiable::seen_but_tied() const {
   const double typical = std::abs(candidate.kind.typical - candidate.null);
   return !all_or_nothing() && !possible() && std::isfinite(detect) && detect < 2.0 * typical &&
-         4.0 * detect < most();
+         4.0 * detect < candidate.most;
 }
 
 bool Identifiable::possible() const {
   if (all_or_nothing()) {
     return smallest > 0.0 && smallest <= candidate.kind.typical;
   }
-  if (candidate.kind.id == "fractional-damping" && smallest > kMostFractional) {
-    return false;
-  }
-  return smallest > 0.0 && std::isfinite(smallest) &&
-         smallest <= kBeyondReason * std::abs(candidate.kind.typical - candidate.null);
+  return smallest > 0.0 && smallest <= candidate.most;
 }
 
 Identifiability::Identifiability(const Campaign& campaign) : candidates_(all_candidates(campaign)) {
@@ -383,12 +400,6 @@ void Identifiability::judge() {
     found.rival_share = own > 0.0 ? std::sqrt(std::max(least, 0.0) / own) : 0.0;
     effects_.push_back(found);
   }
-}
-
-double Identifiable::most() const {
-  return candidate.kind.id == "fractional-damping"
-             ? kMostFractional
-             : kBeyondReason * std::abs(candidate.kind.typical - candidate.null);
 }
 
 double Identifiability::withheld_size(const Identifiable& effect, double sigmas) const {

@@ -14,6 +14,7 @@ struct Candidate {
   testing::HiddenEffect effect;  ///< with the strength at which the difference was taken
   testing::EffectKind kind;
   double null = 0.0;
+  double most = 0.0;  ///< strength from null that a laboratory may have and the generator can make
 };
 
 /// How well a bench could tell effects, computed from the generator alone.
@@ -29,7 +30,6 @@ struct Identifiable {
   [[nodiscard]] bool possible() const;
   /// Rivals cannot be told from it at any reasonable size.
   [[nodiscard]] bool seen_but_tied() const;
-  [[nodiscard]] double most() const;  ///< strength from null that the generator can still make
 };
 
 /// Every library effect (and the withheld ones, which are no rivals) on this campaign's bench and

@@ -157,6 +157,51 @@ TEST(BranchOrder, KeepsTheComplianceAndCallsTheLesserBranchFurther) {
   EXPECT_FALSE(put_branches_in_order(composition, theta));
 }
 
+// A fit that ends with the names the other way round is as good: whoever asks for it again gets
+// them in order.
+TEST(Study, RefitsWithTheLesserBranchFurther) {
+  const Campaign campaign = read_campaign(small_campaign({"second-relaxation=1.5e-11,tau=3e-5"}));
+  Model model = paper_model(BenchKind::bar, false);
+  model.effects.push_back(use_named("second-relaxation"));
+  for (ModelValue& value : model.effects.back().values) {
+    value.free = true;
+  }
+  Study study(campaign, 0.0, Workers{});
+  const Studied fitted = study.fit(model);
+  const auto places = [&](const std::string& id) {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < fitted.fit.theta.size(); ++i) {
+      if (fitted.composition.uses()[fitted.composition.numbers()[i].use].id() == id) {
+        out.push_back(i);
+      }
+    }
+    return out;
+  };
+  const std::vector<std::size_t> own = places("three-element-bar");
+  const std::vector<std::size_t> further = places("second-relaxation");
+  ASSERT_EQ(own.size(), 3u);
+  ASSERT_EQ(further.size(), 2u);
+  const auto value = [&](const Studied& studied, std::size_t i) {
+    return studied.composition.numbers()[i].value_at(studied.fit.theta[i]);
+  };
+
+  Studied renamed = fitted;
+  const auto set = [&](std::size_t i, double to) {
+    renamed.fit.theta[i] = fitted.composition.numbers()[i].theta_of(to);
+  };
+  const double E2 = value(fitted, own[1]);
+  const double D = value(fitted, further[0]);
+  set(further[0], 1.0 / E2);
+  set(further[1], value(fitted, own[2]) / E2);
+  set(own[1], 1.0 / D);
+  set(own[2], value(fitted, further[1]) / D);
+  EXPECT_GT(value(renamed, further[0]), D);
+
+  const Studied again = study.refit(renamed);
+  EXPECT_NEAR(value(again, further[0]), D, 0.05 * D);
+  EXPECT_NEAR(value(again, own[1]), E2, 0.05 * E2);
+}
+
 // Its length acts by its square: from nothing a fit must still find it.
 TEST(Fit, FindsAGaugesLengthFromNull) {
   const std::vector<Shot> shots = small_campaign({"gauge-length:g2=0.03"});
