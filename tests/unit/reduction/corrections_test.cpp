@@ -93,6 +93,28 @@ TEST(SetStress, ABackFaceThatMovesCostsHalfTheSpecimensMassPerFace) {
   EXPECT_NEAR(moved(StressFrom::both_faces), 0.0, 1e-6);
 }
 
+/// The force that stands for the front face's is the back face's, and lacks what that lacks: the
+/// mean over a specimen whose faces gather speed by a and b is rho h (a / 6 + b / 3) above it.
+TEST(SetStress, EquilibriumAssumedLeavesTheBackFacesInertia) {
+  Reduction r = growing();
+  r.force_front_N = r.force_back_N;
+  r.separation = Separation::equilibrium;
+  std::vector<double> front(at_rest(r));
+  for (std::size_t n = 0; n < front.size(); ++n) {
+    front[n] += 5e6 * r.time_s[n];
+    r.strain_rate_per_s[n] *= 1e-3;  // so that what goes with the rate's square is nothing
+  }
+  const double back_growth = 5e6 + 1e7 - 1e4;
+  const double front_growth = 5e6 + 1e7;
+  for (const StressFrom from : {StressFrom::both_faces, StressFrom::front, StressFrom::back}) {
+    set_stress(from, {}, disc(), front, r);
+    const double plain = r.stress_Pa[50];
+    set_stress(from, {.axial_inertia = true, .friction = {}}, disc(), front, r);
+    EXPECT_NEAR(r.stress_Pa[50] - plain, 1000.0 * 16e-6 * (front_growth / 6.0 + back_growth / 3.0),
+                1.0);
+  }
+}
+
 TEST(SetStress, TakesFrictionOff) {
   Reduction r = growing();
   set_stress(StressFrom::both_faces, {}, disc(), at_rest(r), r);
