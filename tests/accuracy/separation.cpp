@@ -349,8 +349,8 @@ std::optional<Section> separated_waves() {
       "first section does not, because that section grows. "
       "Foam, strain: the gauge's record is sampled too slowly for a bar of 50 mm. Every second "
       "sample gives the first pulse another area, and the area of all is another one than the "
-      "end's motion needs, before any wave is separated; that momentum stays in the input bar to "
-      "the end. "
+      "end's motion needs, before any wave is separated; neither the band limit nor the theory of "
+      "waves moves it, and that momentum stays in the input bar to the end. "
       "Copper, stress: the bars know the back face's force, the set the mean over a specimen that "
       "has mass (`--inertia axial`).",
       {"set", "quantity", "ours off [%]", "tool off [%]"},
