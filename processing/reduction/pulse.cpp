@@ -104,12 +104,12 @@ std::optional<Rise> find_first_pulse(std::span<const double> record, std::size_t
     return std::nullopt;
   }
   const std::size_t longest = std::max(kFirstLook, record.size() / 100);
-  if (const auto rise = pulse_after(record, longest, width, reach)) {
+  if (auto rise = pulse_after(record, longest, width, reach)) {
     return rise;
   }
   // The look held the pulse itself where that comes early, as in slowly sampled records.
   for (std::size_t look = kFirstLook / 2; look >= kShortestLook; look /= 2) {
-    const auto rise = pulse_after(record, look, width, reach);
+    auto rise = pulse_after(record, look, width, reach);
     if (rise && rise->index >= look) {
       return rise;
     }

@@ -8,7 +8,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
 
@@ -83,6 +87,7 @@ class Reference {
 
   [[nodiscard]] std::vector<double> at(const std::vector<double>& times_s) const {
     std::vector<double> values;
+    values.reserve(times_s.size());
     for (const double t : times_s) {
       const auto next = std::upper_bound(time_s_.begin() + 1, time_s_.end() - 1, t);
       const auto n = static_cast<std::size_t>(next - time_s_.begin());
@@ -170,7 +175,7 @@ TEST_P(FiniteElementShots, AreReducedFromTheirTableToWhatTheModelHad) {
   const auto reflected = history("reflected");
   const auto transmitted = history("transmitted");
   const auto force = history("force_back_N");
-  const double bar_N = kModulus * std::acos(-1.0) * std::pow(set.diameter_m / 2.0, 2);
+  const double bar_N = kModulus * std::numbers::pi * std::pow(set.diameter_m / 2.0, 2);
   for (std::size_t n = 0; n < time_s.size(); ++n) {
     stress[n] *= set.keeps_volume ? std::exp(log_strain[n]) : 1.0;
     // The transmitted wave goes right; what comes back from the far end is the rest of the force.
