@@ -205,7 +205,7 @@ TEST(Publisher, ThreadsShareSequencesWithoutHolesOrDoubles) {
     thread.join();
   }
   std::set<std::string> ids;
-  for (std::uint64_t expected = 1; expected <= kThreads * kEach; ++expected) {
+  for (std::uint64_t expected = 1; expected <= std::uint64_t{kThreads} * kEach; ++expected) {
     const auto received = expect_next<Received>(subscriber);
     ASSERT_TRUE(received);
     ASSERT_EQ(received->sequence, expected);
@@ -253,7 +253,7 @@ TEST(Publisher, ASlowSubscriberIsNotWaitedForAndSeesWhatItLost) {
   until_connected(publisher, quick);
 
   v1::Result result;
-  result.add_histories()->set_data(std::string(256 * 1024, 'x'));
+  result.add_histories()->set_data(std::string(262144, 'x'));
   constexpr std::uint64_t kMessages = 400;
   std::vector<double> durations_ms;
   for (std::uint64_t i = 1; i <= kMessages; ++i) {
