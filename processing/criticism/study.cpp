@@ -9,7 +9,7 @@ Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
       executor_(std::move(executor)),
       residuals_(campaign, band_limit_Hz, executor_.workers) {}
 
-Studied Study::fit(const Model& model) {
+Studied Study::fit(const Model& model, LearnNoise learn) {
   Model started = model;
   start_moduli(started, campaign_, residuals_);
   Composition composition(started, campaign_);
@@ -17,8 +17,10 @@ Studied Study::fit(const Model& model) {
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
-  residuals_.calibrate(composition, fit.theta);
-  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  if (learn == LearnNoise::yes) {
+    residuals_.calibrate(composition, fit.theta);
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
   if (put_branches_in_order(composition, fit.theta)) {
     fit = fit_model(composition, residuals_, executor_, fit.theta);
   }

@@ -100,6 +100,27 @@ TEST_F(SimulatedBar, KeepsTheLedgerOfADiagnosisAndRevertsIt) {
   EXPECT_EQ(json_of(kolsky({"model", "history", file("m2.toml"), "--json"}))["history"].size(), 2U);
 }
 
+TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
+  const std::vector<std::string> words{"diagnose", file("shots"), "--model", file("m.toml"),
+                                       "--json"};
+  EXPECT_FALSE(json_of(kolsky(words)).contains("without"));
+  std::vector<std::string> fewer = words;
+  fewer.insert(fewer.end(),
+               {"-o", file("m2.toml"), "--without", "unknown", "--without", "search-count"});
+  EXPECT_EQ(json_of(kolsky(fewer))["without"], json({"search-count", "unknown"}));
+  EXPECT_NE(content(file("m2.toml")).find("without search-count; without unknown"),
+            std::string::npos);
+  EXPECT_TRUE(refused(
+      kolsky({"diagnose", file("shots"), "--model", file("m.toml"), "--without", "heldout"}),
+      {"\"heldout\"", "the nearest is held-out"}));
+  const std::string help = kolsky({"diagnose", "--help"}).out;
+  for (const char* name : {"search-count:", "held-out:", "shot-agreement:", "own-strengths:",
+                           "fitted-noise:", "backward:", "unknown:"}) {
+    EXPECT_NE(help.find("\n                            " + std::string(name)), std::string::npos)
+        << name;
+  }
+}
+
 TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
   EXPECT_TRUE(refused(kolsky({"model", "diff", file("m.toml") + "@3", file("m.toml")}),
                       {"names no step", "from 0 to 0"}));
