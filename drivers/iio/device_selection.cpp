@@ -171,7 +171,7 @@ ChannelInfo describe(const AttributeOwner& owner, const ScanFormat& format,
 }
 
 std::string unit_of(const DigitiserOptions& options, std::size_t i) {
-  const std::string unit = i < options.units.size() ? options.units[i] : "V";
+  std::string unit = i < options.units.size() ? options.units[i] : "V";
   if (unit != "V" && unit != "strain") {
     throw InputError("unit of channel " + std::to_string(i + 1), "\"" + unit + "\" is not known",
                      "give \"V\" or \"strain\"");

@@ -11,7 +11,7 @@ ScenarioSource::ScenarioSource(const Scenario& scenario, BenchHistory shot)
   for (std::size_t i = 0; i < scenario.bench.channels().size(); ++i) {
     channels_.emplace_back(scenario.front_end, i);
   }
-  set_rate(SampleRate::from_Hz(scenario.bench.sampling_frequency_Hz));
+  ScenarioSource::set_rate(SampleRate::from_Hz(scenario.bench.sampling_frequency_Hz));
 }
 
 void ScenarioSource::set_rate(SampleRate rate) {

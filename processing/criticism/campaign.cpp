@@ -54,21 +54,29 @@ double step_of(const std::vector<double>& strain) {
 std::size_t flat_top(const std::vector<double>& readings) {
   const auto [least, most] = std::minmax_element(readings.begin(), readings.end());
   const double extreme = std::abs(*most) >= std::abs(*least) ? *most : *least;
-  constexpr double kCoarse = 1.0 / 300.0;
-  const bool coarse = step_of(readings) > kCoarse * std::abs(extreme);
-  std::size_t at_extreme = 0;
-  std::size_t elsewhere = 0;
-  std::size_t run = 0;
-  for (std::size_t n = 0; n < readings.size(); ++n) {
-    run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
-    if (readings[n] == extreme) {
-      at_extreme = std::max(at_extreme, run);
-    } else if (coarse || std::abs(readings[n]) > 0.5 * std::abs(extreme)) {
-      elsewhere = std::max(elsewhere, run);
+  /// Longest run of one code there, and anywhere else that is at least `from`.
+  const auto runs = [&](double from) {
+    std::pair<std::size_t, std::size_t> longest{0, 0};
+    std::size_t run = 0;
+    for (std::size_t n = 0; n < readings.size(); ++n) {
+      run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
+      if (readings[n] == extreme) {
+        longest.first = std::max(longest.first, run);
+      } else if (std::abs(readings[n]) > from) {
+        longest.second = std::max(longest.second, run);
+      }
     }
-  }
+    return longest;
+  };
   constexpr std::size_t kLongRun = 8;
-  return at_extreme >= kLongRun && at_extreme > 3 * elsewhere ? at_extreme : 0;
+  const auto cut_off = [&](double from) {
+    const auto [at_extreme, elsewhere] = runs(from);
+    return at_extreme >= kLongRun && at_extreme > 3 * elsewhere ? at_extreme : 0;
+  };
+  const std::size_t found = cut_off(0.5 * std::abs(extreme));
+  constexpr double kCoarse = 1.0 / 300.0;
+  constexpr double kAnywhere = -1.0;
+  return found > 0 && step_of(readings) > kCoarse * std::abs(extreme) ? cut_off(kAnywhere) : found;
 }
 
 std::optional<double> logged(const Shot& shot, const std::string& key) {

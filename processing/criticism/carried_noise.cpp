@@ -139,6 +139,11 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
     four.turn.resize(whole_);
     four.blocks.resize((whole_ + block_ - 1) / block_);
   }
+  std::vector<Complex> circle(window.judged);
+  for (std::size_t n = 0; n < window.judged; ++n) {
+    circle[n] = std::polar(
+        1.0, -2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(window.judged));
+  }
   for (std::size_t k = 0; k < bins; ++k) {
     FourBins& four = four_[k / kTogether];
     const auto lane = static_cast<Eigen::Index>(k % kTogether);
@@ -149,11 +154,14 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
       power -= part.power(cycles);
     }
     four.white[lane] = std::max(power, least_power) / coarse;
-    const double step = -2.0 * std::numbers::pi * per_judged * static_cast<double>(stride_);
+    // Whole steps of the judged window's own circle.
+    const std::size_t step = (k + 1) * stride_ % window.judged;
+    std::size_t place = (window.judged - step * before_ % window.judged) % window.judged;
     for (std::size_t n = 0; n < whole_; ++n) {
-      const double phase = step * (static_cast<double>(n) - static_cast<double>(before_));
-      four.turn[n].re[lane] = std::cos(phase);
-      four.turn[n].im[lane] = std::sin(phase);
+      four.turn[n].re[lane] = circle[place].real();
+      four.turn[n].im[lane] = circle[place].imag();
+      place += step;
+      place -= place >= window.judged ? window.judged : 0;
     }
   }
   for (FourBins& four : four_) {

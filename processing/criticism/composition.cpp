@@ -118,7 +118,8 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
     for (std::size_t place = 0; place < own.of.size(); ++place) {
       Slot& slot = own.of[place];
       slot.fixed = value.value;
-      if (value.free) {
+      // What is chosen among a few has no neighbourhood to search.
+      if (value.free && !parameter.chosen) {
         slot.number = static_cast<std::ptrdiff_t>(numbers_.size());
         const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
         numbers_.push_back({uses_.size(), p, value.value, scale, parameter.lower, parameter.upper,

@@ -165,7 +165,7 @@ class Diagnostician {
       return;
     }
     options_.progress("weighing the other readings of the law in three dimensions");
-    const auto now = static_cast<std::size_t>(own->values[0].value + 0.5);
+    const auto now = static_cast<std::size_t>(std::lround(own->values[0].value));
     std::array<double, kReadingNames.size()> objective{};
     // All around the same fine forces, as the search itself.
     if (anchor_) {

@@ -28,10 +28,11 @@ NextExperiment next_experiment(const std::string& effect, const std::vector<std:
   const bool in_time = std::all_of(all.begin(), all.end(), [](const std::string& id) {
     return id.starts_with("channel-delay") || id.starts_with("amplifier");
   });
+  next.change = "a shorter striker, for higher frequencies";
   if (in_time) {
-    // Alike to first order in frequency, and only so.
-    next.change = "a shorter striker, for higher frequencies";
-  } else if (about(all, "amplitude") || about(all, "nonlinear")) {
+    return next;  // alike to first order in frequency, and only so
+  }
+  if (about(all, "amplitude") || about(all, "nonlinear")) {
     next.change = "a series of amplitudes, from a third to three times today's";
   } else if (about(all, "temperature")) {
     next.change = "log the temperature of each shot, over at least 5 K";
@@ -43,8 +44,6 @@ NextExperiment next_experiment(const std::string& effect, const std::vector<std:
     next.change = "the channels of the gauges concerned swapped for some shots";
   } else if (about(all, "relaxation") || about(all, "dashpot") || about(all, "fractional")) {
     next.change = "a further gauge at a larger distance, and a shorter striker";
-  } else {
-    next.change = "a shorter striker, for higher frequencies";
   }
   return next;
 }

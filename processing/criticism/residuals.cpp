@@ -444,7 +444,7 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     const bool nonlinear = scene.specimen && scene.specimen->nonlinear();
     if (nonlinear) {
       // Of the reference record, what the specimen's further strain q has sent there goes first.
-      work.response.solve(scene, transfers, reference, source, work.decimated);
+      work.response.solve(scene, transfers, reference, source, damped_filter_, work.decimated);
     }
     work.rows.resize(others_.size());
     for (std::size_t i = 0; i < others_.size(); ++i) {
@@ -457,7 +457,7 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
         for (std::size_t k = 0; k < band_.bins_carried; ++k) {
           damped[k] -= (transfers.reading_of_q[j][k] -
                         transfers.reading[j][k] * transfers.reading_of_q[reference][k]) *
-                       q[k];
+                       damped_filter_[k] * q[k];
         }
       }
       plain_spectrum(work, damped, work.rows[i]);

@@ -11,9 +11,10 @@ std::vector<double> smooth_power(const std::vector<double>& power) {
   const std::size_t bins = power.size();
   std::array<double, 3> s{};
   // White where the upper half says so, the rest from the lowest bins: the start of the ascent.
-  s[0] = std::max(1e-6, std::accumulate(power.begin() + static_cast<std::ptrdiff_t>(bins / 2),
-                                        power.end(), 0.0) /
-                            static_cast<double>(bins - bins / 2));
+  const std::size_t half = bins / 2;
+  s[0] = std::max(
+      1e-6, std::accumulate(power.begin() + static_cast<std::ptrdiff_t>(half), power.end(), 0.0) /
+                static_cast<double>(bins - half));
   const double lowest = std::max(1e-6, (power[0] + power[1]) / 2.0 - s[0]);
   s[1] = s[2] = std::max(0.1 * s[0], lowest / 2.0);
   const auto shape = [](std::size_t term, std::size_t k) {

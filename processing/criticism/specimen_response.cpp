@@ -28,7 +28,8 @@ void SpecimenResponse::to_spectrum(const std::vector<double>& record, DampedTran
 }
 
 void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std::size_t reference,
-                             const std::vector<Complex>& source, DampedTransform& transform) {
+                             const std::vector<Complex>& source, std::span<const Complex> filter,
+                             DampedTransform& transform) {
   const SpecimenScene& specimen = *scene.specimen;
   const std::size_t places = scene.s.size();
   q_.assign(places, 0.0);
@@ -39,7 +40,7 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const auto& own = transfers.reading[reference];
     const auto strength = [&](std::size_t k) {
-      return (source[k] - transfers.reading_of_q[reference][k] * q_[k]) / own[k];
+      return (source[k] - filter[k] * transfers.reading_of_q[reference][k] * q_[k]) / own[k];
     };
     for (std::size_t k = 0; k < places; ++k) {
       spectrum_[k] = transfers.stress[k] * strength(k) + transfers.stress_of_q[k] * q_[k];
@@ -72,8 +73,13 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
         const double spring = std::max(0.05, 1.0 + specimen.stiffening * e);
         extra_[n] += (stress_[n] + material_[n]) / specimen.solid.E1_Pa * (1.0 / spring - 1.0);
       }
-      if (specimen.gap_m != 0.0) {
-        extra_[n] += std::clamp(strain_[n], 0.0, specimen.gap_m / specimen.length_m);
+    }
+    if (specimen.gap_m != 0.0) {
+      const double gap = specimen.gap_m / specimen.length_m;
+      bool open = true;
+      for (std::size_t n = 0; n < strain_.size(); ++n) {
+        open = strain_[n] < gap && (open || specimen.gap_reopens);
+        extra_[n] += open ? strain_[n] : gap;
       }
     }
     to_spectrum(material_, transform, spectrum_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "processing/models/transfers.hpp"
@@ -8,17 +9,21 @@
 namespace kolsky {
 
 /// The strain q(t) by which a specimen departs from its linear law under one shot's source, found
-/// with the source: the reference gauge has seen what q sent there, too.
+/// with the source: the reference gauge has seen what q sent there, too. What is bent is not the
+/// filtered wave: the source is smooth and passes the records' filter, the specimen's answer to it
+/// need not. So q is found unfiltered from the filtered source, and what it sends to the gauges is
+/// filtered.
 ///   stiffening   spring strain sigma/E1 -> sigma / (E1 (1 + b e))
 ///   friction     material stress = measured / (1 + mu d / 3h), current d and h
-///   gap          bars approach by delta before the specimen is loaded
+///   gap          bars approach by delta before the specimen is loaded, and again if it reopens
 ///   lateral      - m strain'^2 / 16 of the stress is inertia (its linear part is in the transfers)
 class SpecimenResponse {
  public:
   /// @param transfers   reading relative to the reference's, except the reference's own
   /// @param source      record of the reference gauge, on the scene's path
   void solve(const Scene& scene, const Transfers& transfers, std::size_t reference,
-             const std::vector<Complex>& source, DampedTransform& transform);
+             const std::vector<Complex>& source, std::span<const Complex> filter,
+             DampedTransform& transform);
 
   [[nodiscard]] const std::vector<Complex>& q() const { return q_; }
 

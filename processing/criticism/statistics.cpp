@@ -33,7 +33,7 @@ double log_chi2_tail(double x, double k) {
       break;
     }
   }
-  return -z + a * std::log(z) - std::lgamma(a) + std::log(h);
+  return -z + a * std::log(z) - boost::math::lgamma(a) + std::log(h);
 }
 
 double log_f_tail(double f, double m, double n) {

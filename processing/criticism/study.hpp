@@ -27,7 +27,9 @@ class Study {
   /// @param band_limit_Hz  0: where the pulses fall below the noise
   Study(const Campaign& campaign, double band_limit_Hz, Workers executor);
 
-  /// Fits from wherever the model's moduli are.
+  /// Fits from wherever the model's moduli are. What was just added begins at the best of its
+  /// auxiliary parameters' starts, and what is free to choose among a few is held at the best from
+  /// then on.
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
@@ -39,6 +41,8 @@ class Study {
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
+  [[nodiscard]] Model begun(Model model);
+
   const Campaign& campaign_;
   Workers executor_;
   WhiteResiduals residuals_;

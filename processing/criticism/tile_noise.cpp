@@ -11,28 +11,192 @@ namespace kolsky {
 
 namespace {
 
-/// A real record's transform, looked up at any whole frequency.
+/// A real record's transform at whole frequencies, as far to both sides as a length of it.
 class Lines {
  public:
-  explicit Lines(std::span<const double> record) : length_(record.size()) {
-    DampedTransform transform(length_, 1.0, 1.0);
-    lines_.resize(transform.bins());
-    transform.forward(record, lines_);
+  Lines(DampedTransform& transform, std::span<const double> record) : length_(record.size()) {
+    std::vector<Complex> half(transform.bins());
+    transform.forward(record, half);
+    lines_.resize(3 * length_);
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const std::size_t folded = k % length_;
+      lines_[k] = folded < half.size() ? half[folded] : std::conj(half[length_ - folded]);
+    }
   }
 
-  [[nodiscard]] Complex at(std::size_t frequency) const {
-    const std::size_t folded = frequency % length_;
-    return folded < lines_.size() ? lines_[folded] : std::conj(lines_[length_ - folded]);
+  [[nodiscard]] Complex at(std::ptrdiff_t frequency) const {
+    return lines_[static_cast<std::size_t>(frequency + static_cast<std::ptrdiff_t>(length_))];
   }
-  [[nodiscard]] Complex minus(std::size_t a, std::size_t b) const { return at(a + length_ - b); }
 
  private:
   std::size_t length_;
   std::vector<Complex> lines_;
 };
 
+/// A product without a general one's checks for infinities.
+Complex times(Complex a, Complex b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+/// Second moments of a windowed record's spectrum U, for a record of independent judged bins
+/// Z(k), E|Z|^2 = 2, less its mean by the weights v:
+///
+///     U(f) = sum_k Z(k) [w(f-k) - v(k)* w(f)] + Z(k)* [w(f+k) - v(k) w(f)]
+///
+/// The sums over k of products at two frequencies differ from those one bin on by their ends alone.
+class SpectralMoments {
+ public:
+  SpectralMoments(DampedTransform& transform, std::span<const double> window,
+                  std::span<const double> quiet, std::size_t judged)
+      : judged_(static_cast<std::ptrdiff_t>(judged)), w_(transform, window) {
+    shared_.assign(transform.bins(), 0.0);
+    if (quiet.empty()) {
+      return;
+    }
+    // sum over the judged k of both signs of v(k) w(f-k): a product in time.
+    std::vector<Complex> v(transform.bins());
+    transform.forward(quiet, v);
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      v[k] = k >= 1 && k <= judged ? v[k] : 0.0;
+      quiet_ += std::norm(v[k]);
+    }
+    std::vector<double> part(window.size());
+    transform.inverse(v, part);
+    for (std::size_t t = 0; t < part.size(); ++t) {
+      part[t] *= window[t] * static_cast<double>(window.size());
+    }
+    transform.forward(part, shared_);
+  }
+
+  /// E |U(f)|^2 over a range of bins.
+  [[nodiscard]] Eigen::VectorXd energies(const BinRange& range) const {
+    Eigen::VectorXd out(static_cast<Eigen::Index>(range.end - range.first));
+    Complex sum = 0.0;
+    for (Eigen::Index i = 0; i < out.size(); ++i) {
+      const std::ptrdiff_t f = static_cast<std::ptrdiff_t>(range.first) + i;
+      sum = i > 0 ? next_alike(sum, f, f) : alike(f, f);
+      out[i] = 2.0 * less_mean(sum, f, f).real();
+    }
+    return out;
+  }
+
+  /// E U(f) U(g)* and E U(f) U(g) over a range of bins.
+  struct Covariance {
+    Eigen::MatrixXcd proper;
+    Eigen::MatrixXcd other;
+  };
+  [[nodiscard]] Covariance over(const BinRange& range) const {
+    const auto first = static_cast<std::ptrdiff_t>(range.first);
+    const auto bins = static_cast<Eigen::Index>(range.end - range.first);
+    Covariance out{Eigen::MatrixXcd(bins, bins), Eigen::MatrixXcd(bins, bins)};
+    Eigen::MatrixXcd crossed(bins, bins);
+    for (Eigen::Index g = 0; g < bins; ++g) {
+      for (Eigen::Index f = 0; f < bins; ++f) {
+        if (g >= f) {
+          out.proper(f, g) = f > 0 ? next_alike(out.proper(f - 1, g - 1), first + f, first + g)
+                                   : alike(first + f, first + g);
+        }
+      }
+      for (Eigen::Index f = bins; f-- > 0;) {
+        crossed(f, g) = g > 0 && f + 1 < bins
+                            ? before_crossed(crossed(f + 1, g - 1), first + f, first + g)
+                            : crossing(first + f, first + g);
+      }
+    }
+    for (Eigen::Index g = 0; g < bins; ++g) {
+      for (Eigen::Index f = 0; f <= g; ++f) {
+        const std::ptrdiff_t at_f = first + f;
+        const std::ptrdiff_t at_g = first + g;
+        out.proper(f, g) = 2.0 * less_mean(out.proper(f, g), at_f, at_g);
+        out.proper(g, f) = std::conj(out.proper(f, g));
+        const Complex mean = times(shared_at(at_f), w_.at(at_g)) +
+                             times(w_.at(at_f), shared_at(at_g)) -
+                             2.0 * quiet_ * times(w_.at(at_f), w_.at(at_g));
+        out.other(f, g) = out.other(g, f) = 2.0 * (crossed(f, g) + crossed(g, f) - mean);
+      }
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] Complex shared_at(std::ptrdiff_t f) const {
+    return shared_[static_cast<std::size_t>(f)];
+  }
+  [[nodiscard]] Complex less_mean(Complex sum, std::ptrdiff_t f, std::ptrdiff_t g) const {
+    const Complex w_f = w_.at(f);
+    const Complex w_g = std::conj(w_.at(g));
+    return sum - times(shared_at(f), w_g) - times(w_f, std::conj(shared_at(g))) +
+           2.0 * quiet_ * times(w_f, w_g);
+  }
+  // sum of w(f-k) w(g-k)* + w(f+k) w(g+k)*
+  [[nodiscard]] Complex alike(std::ptrdiff_t f, std::ptrdiff_t g) const {
+    Complex sum = 0.0;
+    for (std::ptrdiff_t k = 1; k <= judged_; ++k) {
+      sum += times(w_.at(f - k), std::conj(w_.at(g - k)));
+      sum += times(w_.at(f + k), std::conj(w_.at(g + k)));
+    }
+    return sum;
+  }
+  [[nodiscard]] Complex next_alike(Complex before, std::ptrdiff_t f, std::ptrdiff_t g) const {
+    const auto product = [&](std::ptrdiff_t off) {
+      return times(w_.at(f + off), std::conj(w_.at(g + off)));
+    };
+    return before + product(-1) - product(-1 - judged_) - product(0) + product(judged_);
+  }
+  // sum of w(f-k) w(g+k)
+  [[nodiscard]] Complex crossing(std::ptrdiff_t f, std::ptrdiff_t g) const {
+    Complex sum = 0.0;
+    for (std::ptrdiff_t k = 1; k <= judged_; ++k) {
+      sum += times(w_.at(f - k), w_.at(g + k));
+    }
+    return sum;
+  }
+  /// Of (f, g), from that of (f + 1, g - 1).
+  [[nodiscard]] Complex before_crossed(Complex after, std::ptrdiff_t f, std::ptrdiff_t g) const {
+    return after - times(w_.at(f), w_.at(g)) + times(w_.at(f - judged_), w_.at(g + judged_));
+  }
+
+  std::ptrdiff_t judged_;
+  Lines w_;
+  std::vector<Complex> shared_;
+  double quiet_ = 0.0;
+};
+
 /// Operations that a tile's exact moments may cost.
 constexpr std::size_t kMostOperations = 1'000'000;
+
+/// By root: of each bin's share in the energy.
+TileNoise exact(SpectralMoments::Covariance moments, const Eigen::VectorXd& root) {
+  const Eigen::Index bins = root.size();
+  for (Eigen::MatrixXcd* part : {&moments.proper, &moments.other}) {
+    *part = (root.asDiagonal() * *part * root.asDiagonal()).eval();
+  }
+  // Of real and imaginary parts.
+  Eigen::MatrixXd covariance(2 * bins, 2 * bins);
+  covariance.topLeftCorner(bins, bins) = 0.5 * (moments.proper + moments.other).real();
+  covariance.bottomRightCorner(bins, bins) = 0.5 * (moments.proper - moments.other).real();
+  covariance.topRightCorner(bins, bins) = 0.5 * (moments.other - moments.proper).imag();
+  covariance.bottomLeftCorner(bins, bins) = covariance.topRightCorner(bins, bins).transpose();
+  return {covariance.trace(), covariance.squaredNorm(),
+          (covariance * covariance).cwiseProduct(covariance).sum()};
+}
+
+/// As if the window's spectrum were narrow against the judged band.
+TileNoise nearly(double mean, const Lines& squared, const BinRange& range,
+                 const Eigen::VectorXd& root) {
+  TileNoise noise{mean, 0.0, 0.0};
+  const auto first = static_cast<std::ptrdiff_t>(range.first);
+  const auto bins = static_cast<std::ptrdiff_t>(range.end - range.first);
+  for (std::ptrdiff_t f = 0; f < bins; ++f) {
+    for (std::ptrdiff_t g = 0; g < bins; ++g) {
+      const double share = root[f] * root[f] * root[g] * root[g];
+      noise.second +=
+          2.0 * share * (std::norm(squared.at(f - g)) + std::norm(squared.at(2 * first + f + g)));
+    }
+  }
+  noise.third = noise.second * noise.second / noise.mean;
+  return noise;
+}
 
 }  // namespace
 
@@ -53,55 +217,30 @@ TileNoise& TileNoise::operator+=(const TileNoise& other) {
 
 std::vector<TileNoise> tile_noise(std::span<const double> window, std::span<const double> quiet,
                                   std::size_t judged, std::span<const BinRange> ranges) {
+  DampedTransform transform(window.size(), 1.0, 1.0);
+  const SpectralMoments moments(transform, window, quiet, judged);
   std::vector<double> square(window.begin(), window.end());
   for (double& value : square) {
     value *= value;
   }
-  const std::vector<double> none(window.size(), 0.0);
-  const Lines w(window);
-  const Lines w2(square);
-  const Lines v(quiet.empty() ? std::span<const double>(none) : quiet);
-  const double n = static_cast<double>(window.size());
-  const auto share = [&](std::size_t bin) {
-    return bin == 0 || 2 * bin == window.size() ? 0.5 : 1.0;
-  };
+  const Lines squared(transform, square);
+  const auto n = static_cast<double>(window.size());
   std::vector<TileNoise> list;
   for (const BinRange& range : ranges) {
     const std::size_t bins = range.end - range.first;
-    // From real and imaginary parts of the judged bins to those of the tile's.
-    Eigen::MatrixXd map(2 * bins, 2 * judged);
+    Eigen::VectorXd root(static_cast<Eigen::Index>(bins));
     for (std::size_t f = range.first; f < range.end; ++f) {
-      const auto row = static_cast<Eigen::Index>(2 * (f - range.first));
-      const double root = std::sqrt(share(f)) / n;
-      for (std::size_t k = 1; k <= judged; ++k) {
-        const auto column = static_cast<Eigen::Index>(2 * (k - 1));
-        const Complex below = w.minus(f, k);
-        const Complex above = w.at(f + k);
-        const Complex of_real = root * (below + above - 2.0 * v.at(k).real() * w.at(f));
-        const Complex of_imaginary =
-            root * (Complex(0.0, 1.0) * (below - above) - 2.0 * v.at(k).imag() * w.at(f));
-        map(row, column) = of_real.real();
-        map(row + 1, column) = of_real.imag();
-        map(row, column + 1) = of_imaginary.real();
-        map(row + 1, column + 1) = of_imaginary.imag();
-      }
+      const bool half = f == 0 || 2 * f == window.size();
+      root[static_cast<Eigen::Index>(f - range.first)] = (half ? std::sqrt(0.5) : 1.0) / n;
     }
-    TileNoise noise;
-    noise.mean = map.squaredNorm();
     if (4 * bins * bins * 2 * judged <= kMostOperations) {
-      const Eigen::MatrixXd covariance = map * map.transpose();
-      noise.second = covariance.squaredNorm();
-      noise.third = (covariance * covariance).cwiseProduct(covariance).sum();
-    } else {
-      for (std::size_t f = range.first; f < std::min(range.end, judged + 1); ++f) {
-        for (std::size_t g = range.first; g < std::min(range.end, judged + 1); ++g) {
-          noise.second += share(f) * share(g) * 2.0 / (n * n) *
-                          (std::norm(w2.minus(f, g)) + std::norm(w2.at(f + g)));
-        }
-      }
-      noise.third = noise.second * noise.second / noise.mean;
+      list.push_back(exact(moments.over(range), root));
+      continue;
     }
-    list.push_back(noise);
+    const double mean = root.array().square().matrix().dot(moments.energies(range));
+    // Beyond the judged band the window smears little.
+    const BinRange judged_part{range.first, std::min(range.end, judged + 1)};
+    list.push_back(nearly(mean, squared, judged_part, root * std::sqrt(n)));
   }
   return list;
 }

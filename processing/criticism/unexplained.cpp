@@ -69,7 +69,7 @@ Extended clear_columns(Study& study, const Studied& studied) {
 Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns) {
   constexpr double kResolved = 1e-4;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(columns.transpose() * columns);
-  const Eigen::VectorXd values = solver.eigenvalues();
+  const Eigen::VectorXd& values = solver.eigenvalues();
   const Eigen::Index count = (values.array() > kResolved).count();
   return columns * solver.eigenvectors().rightCols(count) *
          values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();

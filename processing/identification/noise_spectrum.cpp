@@ -155,12 +155,19 @@ class NoiseSpectrum::Fit {
  private:
   /// Steps that multiply the weights, keep them positive and never lower the likelihood.
   void refine() {
+    Eigen::ArrayXd inverse(parts_.rows());
+    Eigen::VectorXd excess(parts_.rows());
     for (int round = 0; round < kRounds; ++round) {
-      const Eigen::ArrayXd inverse = (parts_ * weights_).array().inverse();
-      const Eigen::VectorXd excess = inverse.square() * data_->power;
-      const Eigen::ArrayXd up = parts_.transpose() * excess;
-      const Eigen::ArrayXd down = parts_.transpose() * inverse.matrix();
-      weights_.array() *= (up / down).sqrt();
+      inverse = weights_[0] * parts_.col(0).array();
+      for (Eigen::Index part = 1; part < parts_.cols(); ++part) {
+        inverse += weights_[part] * parts_.col(part).array();
+      }
+      inverse = inverse.inverse();
+      excess = (inverse.square() * data_->power).matrix();
+      for (Eigen::Index part = 0; part < parts_.cols(); ++part) {
+        const auto column = parts_.col(part);
+        weights_[part] *= std::sqrt(column.dot(excess) / column.dot(inverse.matrix()));
+      }
     }
   }
 

@@ -81,6 +81,7 @@ struct SpecimenScene {
   double stiffening = 0.0;                ///< E1 (1 + b strain)
   double friction = 0.0;                  ///< mu of Coulomb friction at its faces
   double gap_m = 0.0;                     ///< closes before it is loaded
+  bool gap_reopens = false;               ///< else closed for good once it was
 
   [[nodiscard]] double area_m2() const;
   /// Whether its answer depends on how hard it is loaded.

@@ -266,27 +266,26 @@ SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
     window.band_limit_Hz = *options.most_band_Hz;
     longest = std::make_unique<SpecimenLikelihood>(shots, bars, window);
   }
-  std::unique_ptr<SpecimenLikelihood> likelihood;
+  std::unique_ptr<SpecimenLikelihood> beginning;
   if (may_extend) {
     window.after_foot_s = longest->first_return_s();
     window.band_limit_Hz = longest->band_limit_Hz();
-    likelihood = std::make_unique<SpecimenLikelihood>(shots, bars, window);
-  } else {
-    likelihood = std::move(longest);
+    beginning = std::make_unique<SpecimenLikelihood>(shots, bars, window);
   }
+  SpecimenLikelihood* likelihood = beginning ? beginning.get() : longest.get();
   TheoryChoice choice(*likelihood, options);
   Fitted fitted = choice.choose();
   double dof = degrees_of_freedom(*likelihood, options.solid);
 
   SpecimenFit fit;
   fit.tried = choice.tried();
-  if (may_extend && longest->judged_s() > likelihood->judged_s()) {
+  if (longest->judged_s() > likelihood->judged_s()) {
     const double longer_dof = degrees_of_freedom(*longest, options.solid);
     const SpecimenMinimum longer =
         SpecimenSearch(*longest, options.solid, fitted.theory).minimise(fitted.minimum.parameters);
     if (same_model(fitted.minimum.chi2, dof, longer.chi2, longer_dof)) {
       fitted.minimum = longer;
-      likelihood = std::move(longest);
+      likelihood = longest.get();
       dof = longer_dof;
       fit.to_the_end = true;
     }

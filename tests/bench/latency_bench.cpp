@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -41,7 +42,7 @@ double percentile(Durations durations, double share) {
   }
   std::sort(durations.begin(), durations.end());
   const auto last = static_cast<double>(durations.size() - 1);
-  return durations[static_cast<std::size_t>(share * last + 0.5)];
+  return durations[static_cast<std::size_t>(std::lround(share * last))];
 }
 
 template <typename Work>
@@ -222,8 +223,8 @@ int main(int argc, char** argv) {
       "bound: p99 of total under %.1f ms: %s; shots missed %d, samples missing %llu, overruns "
       "%llu\n",
       kBound_ms, p99_ms < kBound_ms ? "kept" : "MISSED", measured.missed,
-      static_cast<unsigned long long>(measured.status.samples_missing() +
-                                      measured.status.gaps_of_unknown_length()),
+      static_cast<unsigned long long>(measured.status.samples_missing()) +
+          measured.status.gaps_of_unknown_length(),
       static_cast<unsigned long long>(measured.status.ring_overruns()));
   return p99_ms < kBound_ms ? 0 : 1;
 }

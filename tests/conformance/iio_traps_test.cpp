@@ -71,7 +71,7 @@ std::unique_ptr<Digitiser> open_scripted(const ScriptedIiod& server) {
 TEST(IioTraps, UriIsCopiedBecauseLibiioCutsItsPortOffInPlace) {
   SimulatedDevice device;
   const std::string uri = device.uri();
-  const std::string same = std::string(uri.c_str());  // a buffer of its own
+  const std::string same = std::string(uri.data(), uri.size());  // a buffer of its own
   const ContextHandle context = open_context(uri);
   EXPECT_EQ(uri, same);
   const auto digitiser = open_digitiser(uri, pattern_options());
@@ -209,7 +209,7 @@ TEST(IioTraps, ShortRefillIsABlock) {
       stream(client, bytes);
       return;
     }
-    stream(client, 4 * 100);
+    stream(client, 400);
     client.send("0\n");
   });
   const auto digitiser = open_scripted(server);
@@ -248,7 +248,7 @@ TEST(IioTraps, StrideIsTakenAfterEveryRefillBecauseOtherChannelsMayComeIn) {
     ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
     ASSERT_EQ(block.samples, 200U);
     ASSERT_EQ(block.channels.size(), 2U);
-    EXPECT_TRUE(shows_pattern(*digitiser, block, 200 * i));
+    EXPECT_TRUE(shows_pattern(*digitiser, block, Tick{200} * i));
   }
 }
 

@@ -250,7 +250,7 @@ void ScriptedIiod::write_attribute(const std::vector<std::string>& words,
                                    const std::string& value) {
   const std::lock_guard lock(mutex_);
   if (device_.writable && device_.sticks) {
-    device_.texts[attribute_key(words)] = value.c_str();
+    device_.texts[attribute_key(words)] = value.substr(0, value.find('\0'));
   }
 }
 

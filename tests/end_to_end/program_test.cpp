@@ -25,7 +25,6 @@ using scene::eventually;
 using scene::Installation;
 using scene::kolskyd;
 using scene::Lab;
-using scene::LabOptions;
 using scene::Listener;
 using scene::Process;
 using std::chrono::milliseconds;

@@ -6,7 +6,8 @@
 namespace kolsky::testing {
 
 Stencil lagrange_stencil(double place, std::size_t nodes) {
-  constexpr auto kHalf = static_cast<double>(Stencil::kPoints / 2 - 1);
+  constexpr std::size_t kBefore = Stencil::kPoints / 2 - 1;
+  constexpr auto kHalf = static_cast<double>(kBefore);
   const double first =
       std::clamp(std::floor(place) - kHalf, 0.0, static_cast<double>(nodes - Stencil::kPoints));
   Stencil stencil;

@@ -168,12 +168,13 @@ void Prober::add_modulus(std::vector<Direction>& out, double testing::TrueMateri
 void Prober::add_specimen(std::vector<Direction>& out) {
   using S = testing::TrueSpecimen;
   const Specimen& filed = *campaign_.bench.specimen;
-  for (const auto& [member, sd] :
+  for (const auto& [of_specimen, sd] :
        {std::pair{&S::E1_Pa, 0.0},
         {&S::E2_Pa, 0.0},
         {&S::eta2_Pa_s, 0.0},
         {&S::length_m, filed.length_m.sd / filed.length_m.value},
         {&S::diameter_m, filed.diameter_m.sd / filed.diameter_m.value}}) {
+    const auto member = of_specimen;
     if (sd > 0.0 || (member != &S::length_m && member != &S::diameter_m)) {
       const auto at = [&](double share) {
         Campaign campaign = campaign_;

@@ -134,7 +134,7 @@ Verdict judge(const Case& drawn, const Answer& answer) {
 
 std::string proposal_of(const Answer& answer) {
   for (const Json& proposed : answer.json.value("next_experiment", Json::array())) {
-    if (const std::string change = text_at(proposed, "change"); !change.empty()) {
+    if (std::string change = text_at(proposed, "change"); !change.empty()) {
       return change;
     }
   }

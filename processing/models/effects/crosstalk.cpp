@@ -19,12 +19,13 @@ class Crosstalk final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
-    // The channel before or after it in the bench's list.
-    const auto count = static_cast<std::ptrdiff_t>(scene.gauges.size());
-    const std::ptrdiff_t other = static_cast<std::ptrdiff_t>(gauge) + (values[1] < 0.0 ? -1 : 1);
-    if (other >= 0 && other < count) {
-      scene.gauges[gauge].picks_up.emplace_back(static_cast<std::size_t>(other), values[0]);
+    // The channel before or after it in the bench's list; the first and the last have one.
+    const std::size_t last = scene.gauges.size() - 1;
+    if (last == 0) {
+      return;
     }
+    const bool before = gauge == last || (gauge > 0 && values[1] < 0.0);
+    scene.gauges[gauge].picks_up.emplace_back(before ? gauge - 1 : gauge + 1, values[0]);
   }
 };
 

@@ -13,14 +13,14 @@ class InterfaceGap final : public Effect {
             .definition = "a gap or soft layer closes before the specimen is loaded",
             .reference = "effects.md",
             .kinds = {BenchKind::shpb},
-            .parameters =
-                // A gap below the noise of the strain before the pulse shows nothing of what one
-                // does.
-            {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}, false, 1.0}},
+            // A gap below the noise of the strain before the pulse shows nothing of what one does.
+            .parameters = {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}, false, 1.0},
+                           {"reopens", "-", 0.0, 0.0, 1.0, 1.0, {0.0, 1.0}, false, 2e-3, true}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
     scene.specimen->gap_m = values[0];
+    scene.specimen->gap_reopens = values[1] != 0.0;
   }
 };
 

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "processing/models/effect.hpp"
 #include "processing/models/scene.hpp"
 
@@ -19,7 +21,7 @@ class ThreeDimensionalReading final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
-    scene.ball->reading = static_cast<int>(values[0] + 0.5);
+    scene.ball->reading = static_cast<int>(std::lround(values[0]));
   }
 };
 

@@ -44,7 +44,7 @@ class BallLab {
   }
   /// The capture of a shot, once it is stored.
   [[nodiscard]] std::string capture_of(const std::string& id) const {
-    const std::string capture = setup_.store() / "shots" / (id + ".h5");
+    std::string capture = setup_.store() / "shots" / (id + ".h5");
     EXPECT_TRUE(scene::eventually([&] { return std::filesystem::exists(capture); })) << capture;
     return capture;
   }
@@ -280,7 +280,7 @@ mass_kg = 0.0434
       table << 1e-6 * n << ',' << push_N / (113e9 * kArea_m2) << '\n';
     }
     table.close();
-    const std::string capture = folder_ / (name + ".h5");
+    std::string capture = folder_ / (name + ".h5");
     std::vector<std::string> words = {"import",
                                       "csv",
                                       folder_ / (name + ".csv"),

@@ -116,7 +116,7 @@ class IdentifyBarByOneGauge : public ::testing::Test {
                            channel.value(channel.codes[n]));
     }
     folder_.write("shot.csv", table);
-    const std::string path = (folder_ / "shot.h5").string();
+    std::string path = (folder_ / "shot.h5").string();
     (void)json_of(scene::kolsky({"import", "csv", (folder_ / "shot.csv").string(), "--bench",
                                  folder_ / "bench.toml", "-o", path, "--json"}));
     return path;

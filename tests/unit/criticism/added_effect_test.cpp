@@ -1,0 +1,77 @@
+// What a user adds by hand and fits: the campaign's generator works in time and has no part in it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/study.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+testing::CampaignWishes wishes(bool split) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 5;
+  wishes.shots = 3;
+  wishes.gauges = split ? 3 : 4;
+  wishes.noise_strain = 4e-6;
+  wishes.split = split;
+  return wishes;
+}
+
+struct Added {
+  testing::Campaign truth;
+  Studied studied;
+
+  [[nodiscard]] const ModelValue& value(const std::string& id, std::size_t parameter) const {
+    return studied.model.find(id)->values[parameter];
+  }
+  /// In its deviations.
+  [[nodiscard]] double off(const std::string& id, std::size_t parameter, double true_value) const {
+    const ModelValue& own = value(id, parameter);
+    return std::abs(own.value - true_value) / own.sd;
+  }
+};
+
+Added fitted_with(bool split, const std::string& hidden, const std::string& added) {
+  testing::Campaign truth = testing::draw_campaign(wishes(split));
+  testing::hide(truth, testing::parse_effect(hidden));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Model model = paper_model(split ? BenchKind::shpb : BenchKind::bar, false);
+  model.effects.push_back(use_named(added));
+  Study study(campaign, 0.0, Workers{});
+  return {std::move(truth), study.fit(model)};
+}
+
+class Gap : public ::testing::TestWithParam<double> {};
+
+// Closing takes a few samples, less than the records' filter resolves.
+TEST_P(Gap, IsFoundWithTheMaterialBehindIt) {
+  const double gap_m = GetParam();
+  const Added added =
+      fitted_with(true, "interface-gap=" + std::to_string(1e6 * gap_m) + "e-6", "interface-gap");
+  EXPECT_LT(added.off("interface-gap", 0, gap_m), 3.0);
+  EXPECT_LT(added.value("interface-gap", 0).sd, 0.5e-6);
+  const testing::TrueSpecimen& specimen = added.truth.split->specimen;
+  EXPECT_LT(added.off("three-element-specimen", 0, specimen.E1_Pa), 3.0);
+  EXPECT_LT(added.off("three-element-specimen", 1, specimen.E2_Pa), 3.0);
+  EXPECT_LT(added.off("three-element-specimen", 2, specimen.eta2_Pa_s), 3.0);
+  EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Gap, ::testing::Values(3e-6, 10e-6, 20e-6));
+
+TEST(Added, CrosstalkTakesTheNeighbourThatItFits) {
+  for (const auto* from : {"2", "4"}) {
+    const Added added =
+        fitted_with(false, std::string("crosstalk:g3=0.02,from=") + from, "crosstalk:g3");
+    EXPECT_LT(added.off("crosstalk:g3", 0, 0.02), 3.0) << from;
+    EXPECT_EQ(added.value("crosstalk:g3", 1).value, from[0] == '2' ? -1.0 : 1.0);
+    EXPECT_FALSE(added.value("crosstalk:g3", 1).free);
+  }
+}
+
+}  // namespace
+}  // namespace kolsky
