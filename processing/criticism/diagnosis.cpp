@@ -19,6 +19,8 @@ namespace {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 constexpr double kTie = 7.5;
+/// A rival may be so much likelier to be chance than what may be named.
+constexpr double kRivalChance = 10.0;
 constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
@@ -114,15 +116,16 @@ class Diagnostician {
       note_refits(search, refits, held_out, per_shot, diagnosis_.candidates);
     }
     std::optional<std::size_t> best;
-    std::vector<std::string> ties;
     double leading = 0.0;
+    std::vector<std::size_t> confirmed;
     for (std::size_t i = 0; i < refits.size(); ++i) {
       const Refit& refit = refits[i];
       // What slow noise does by itself is no rival.
-      if (!claimable(search, refit)) {
+      if (!plausible(search, refit)) {
         continue;
       }
-      leading = std::max(leading, refit.evidence);
+      const bool may_be_named = claimable(search, refit);
+      leading = may_be_named ? std::max(leading, refit.evidence) : leading;
       if (refit.evidence < (best ? refits[*best].evidence : leading) - kTie) {
         break;
       }
@@ -136,14 +139,19 @@ class Diagnostician {
           (safeguards.shot_agreement &&
            !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot))) {
         set_verdict(id, "rejected");
-      } else if (best) {
-        ties.push_back(id);
-      } else {
-        best = i;
+        continue;
       }
+      confirmed.push_back(i);
+      best = may_be_named && !best ? i : best;
     }
     if (!best) {
       return std::nullopt;
+    }
+    std::vector<std::string> ties;
+    for (const std::size_t i : confirmed) {
+      if (i != *best && refits[i].evidence < refits[*best].evidence + kTie) {
+        ties.push_back(search.candidates()[refits[i].candidate].id());
+      }
     }
     Refit& refit = refits[*best];
     return Choice{search.candidates()[refit.candidate].id(), refit.candidate,
@@ -154,6 +162,11 @@ class Diagnostician {
     return search.with_search(refit.log_p) <= options_.log_alpha;
   }
 
+  /// Too little to be named by itself, enough not to be told from what is named with hardly more.
+  [[nodiscard]] bool plausible(const Search& search, const Refit& refit) const {
+    return search.with_search(refit.log_p) <= options_.log_alpha + std::log(kRivalChance);
+  }
+
   /// Exact for those that may be named; of the others first order tells enough.
   std::vector<Certification> certify(const Search& search, const std::vector<Refit>& refits,
                                      const Studied& base) {
@@ -162,7 +175,7 @@ class Diagnostician {
     std::vector<Certification> held_out;
     const std::vector<double> before = held_out_of(base);
     for (const Refit& refit : refits) {
-      const bool near = leading != refits.end() && claimable(search, refit) &&
+      const bool near = leading != refits.end() && plausible(search, refit) &&
                         refit.evidence > leading->evidence - 2.0 * kTie;
       const Studied& own = refit.studied;
       held_out.push_back(certification(

@@ -10,6 +10,24 @@ namespace {
 constexpr int kMostIterations = 30;
 constexpr double kConverged = 1e-7;
 
+/// The sample at which bars begin to approach: what comes before is noise, which closes no gap.
+std::size_t at_rest_until(const std::vector<double>& approach) {
+  constexpr double kUnderWay = 0.1;
+  constexpr double kAtRest = 0.005;  // of the steepest step
+  const auto top = std::max_element(approach.begin(), approach.end());
+  const auto under_way =
+      std::find_if(approach.begin(), top, [&](double value) { return value >= kUnderWay * *top; });
+  double steepest = 0.0;
+  for (auto step = under_way; step != top; ++step) {
+    steepest = std::max(steepest, step[1] - step[0]);
+  }
+  auto at = under_way;
+  while (at != approach.begin() && at[0] - at[-1] > kAtRest * steepest) {
+    --at;
+  }
+  return static_cast<std::size_t>(at - approach.begin());
+}
+
 }  // namespace
 
 void SpecimenResponse::to_time(const std::vector<Complex>& spectrum, DampedTransform& transform,
@@ -37,6 +55,7 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
   spectrum_.resize(places);
   double before = 1e300;
   double mixing = 1.0;
+  std::size_t at_rest = 0;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const auto& own = transfers.reading[reference];
     const auto strength = [&](std::size_t k) {
@@ -75,11 +94,13 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
       }
     }
     if (specimen.gap_m != 0.0) {
+      at_rest = iteration == 0 ? at_rest_until(strain_) : at_rest;
       const double gap = specimen.gap_m / specimen.length_m;
       bool open = true;
-      for (std::size_t n = 0; n < strain_.size(); ++n) {
-        open = strain_[n] < gap && (open || specimen.gap_reopens);
-        extra_[n] += open ? strain_[n] : gap;
+      for (std::size_t n = at_rest; n < strain_.size(); ++n) {
+        const double approach = strain_[n] - strain_[at_rest];
+        open = approach < gap && (open || specimen.gap_reopens);
+        extra_[n] += open ? approach : gap;
       }
     }
     to_spectrum(material_, transform, spectrum_);
