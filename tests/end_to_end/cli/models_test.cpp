@@ -100,6 +100,32 @@ TEST_F(SimulatedBar, KeepsTheLedgerOfADiagnosisAndRevertsIt) {
   EXPECT_EQ(json_of(kolsky({"model", "history", file("m2.toml"), "--json"}))["history"].size(), 2U);
 }
 
+// Of all places, those that do not fail too: bands without gaps, windows one after the other.
+TEST_F(SimulatedBar, SaysWhichPlacesAreCompared) {
+  const json compared =
+      json_of(kolsky({"compare", file("shots"), "--model", file("m.toml"), "--json"}));
+  const json& places = compared["places"];
+  EXPECT_EQ(places["shots"].size(), 4U);
+  const json& bands = places["bands_Hz"];
+  for (std::size_t b = 1; b < bands.size(); ++b) {
+    EXPECT_EQ(bands[b][0], bands[b - 1][1]);
+  }
+  const json* before = nullptr;
+  for (const json& window : places["windows"]) {
+    EXPECT_LE(window["start_s"], window["end_s"]);
+    EXPECT_GE(window["start_s"], 0.0);
+    if (before != nullptr && (*before)["shot"] == window["shot"] &&
+        (*before)["gauge"] == window["gauge"]) {
+      EXPECT_EQ(window["start_s"], (*before)["end_s"]);
+    }
+    before = &window;
+  }
+  ASSERT_FALSE(compared["where"].empty());
+  for (const json& tile : compared["where"]) {
+    EXPECT_NE(std::find(bands.begin(), bands.end(), tile["band_Hz"]), bands.end());
+  }
+}
+
 TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
   const std::vector<std::string> words{"diagnose", file("shots"), "--model", file("m.toml"),
                                        "--json"};
