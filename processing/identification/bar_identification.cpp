@@ -14,6 +14,9 @@ namespace {
 constexpr double kToldApart = 5.0;  // odds of 150 to 1
 constexpr double kPartialAhead = 10.0;
 constexpr double kPaperBand_Hz = 15e3;
+/// A loss that stands out by so many of its deviations leaves an elastic bar behind by a log
+/// evidence of half their square, a hundred times what its two numbers less can gain.
+constexpr double kLossInDeviations = 50.0;
 
 /// Fits made so far, so that none is made twice.
 class Explanations {
@@ -135,6 +138,12 @@ std::vector<FittedNumber> over_shots(const BarFit& fit) {
     numbers[m].sd = count > 1.0 ? std::sqrt(squares / (count - 1.0)) : numbers[m].sd;
   }
   return numbers;
+}
+
+/// Whether the loss is so clear that to fit a bar without any would be a waste.
+bool loss_stands_out(const BarFit& fit) {
+  const FittedNumber& E2 = fit.parameters[1];
+  return !fit.lossless && kLossInDeviations * E2.sd < E2.value;
 }
 
 /// One gauge lives by what the far end returns: it must return something.
@@ -303,10 +312,12 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     }
   }
 
-  BarTheory elastic{three_element->theory, three, three_element->far_end, true};
-  if (const BarFit* lossless = explanations.at(elastic);
-      lossless != nullptr && lossless->log_evidence > three_element->log_evidence) {
-    three_element = lossless;
+  if (!loss_stands_out(*three_element)) {
+    const BarFit* lossless =
+        explanations.at({three_element->theory, three, three_element->far_end, true});
+    if (lossless != nullptr && lossless->log_evidence > three_element->log_evidence) {
+      three_element = lossless;
+    }
   }
 
   BarIdentification result;

@@ -95,7 +95,9 @@ void set_stress(StressFrom from, const Corrections& corrections, const Specimen&
                                                  : (front + back) / (2.0 * area_m2);
   }
   if (corrections.axial_inertia || corrections.radial_inertia) {
-    take_off_inertia(from, corrections, specimen, rate_of_front_per_s, r);
+    // Where equilibrium was assumed, both forces are the back face's.
+    const StressFrom taken = r.separation == Separation::equilibrium ? StressFrom::back : from;
+    take_off_inertia(taken, corrections, specimen, rate_of_front_per_s, r);
   }
   if (corrections.friction) {
     const double slender = specimen.diameter_m / (3.0 * specimen.length_m);

@@ -30,7 +30,8 @@ struct Corrections {
 ///   axial   rho h^2 (e' - e^2)/12 off the mean of both faces; off the back face -1/6, off the
 ///           front face +1/3 of rho h^2 (e' - e^2) (Davies and Hunter's form, of a back face at
 ///           rest) and, as the back face moves, -1/2 and +1/2 of rho h times its acceleration: what
-///           is left is the mean over the specimen, whichever face it is from,
+///           is left is the mean over the specimen, whichever face it is from (the back, whatever
+///           is asked for, where waves were separated by equilibrium: both forces are its),
 ///   friction  the stress is divided by 1 + mu d / (3 h), d and h as they are at that strain.
 /// @param rate_of_front_per_s  velocity of the front face over h, as long as the histories; the
 ///   back face's follows from it and the strain rate

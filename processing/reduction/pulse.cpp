@@ -10,6 +10,8 @@ namespace {
 
 /// The record's beginning, taken as quiet until the pulse has been found.
 constexpr std::size_t kFirstLook = 32;
+/// Where that holds no quiet, down to so many.
+constexpr std::size_t kShortestLook = 8;
 
 double largest_excursion(std::span<const double> record, double baseline) {
   double largest = 0.0;
@@ -34,6 +36,42 @@ Crossing crossing_before(std::span<const double> record, std::size_t from, doubl
   const double rise = record[n + 1] - record[n];
   const double share = rise > 0.0 ? std::clamp((level - record[n]) / rise, 0.0, 1.0) : 0.5;
   return {static_cast<double>(n) + share, rise};
+}
+
+/// The first pulse, with the noise of so many samples at the record's beginning.
+std::optional<Rise> pulse_after(std::span<const double> record, std::size_t look, std::size_t width,
+                                std::size_t reach) {
+  const Quiet start = quiet_before(record, look);
+  const double level =
+      std::max(6.0 * start.noise_rms, 0.1 * largest_excursion(record, start.baseline));
+  if (level <= 0.0) {
+    return std::nullopt;
+  }
+  std::size_t run = 0;
+  std::size_t n = 0;
+  double sense = 1.0;
+  for (; n < record.size() && run < width; ++n) {
+    const double deviation = record[n] - start.baseline;
+    const bool outside = std::abs(deviation) > level;
+    if (outside && run == 0) {
+      sense = deviation > 0.0 ? 1.0 : -1.0;
+    }
+    run = outside && deviation * sense > 0.0 ? run + 1 : 0;
+  }
+  if (run < width) {
+    return std::nullopt;
+  }
+  const std::size_t first = n - run;
+  const std::size_t end = std::min(record.size(), first + reach);
+  double peak = 0.0;
+  for (std::size_t i = first; i < end; ++i) {
+    peak = std::max(peak, (record[i] - start.baseline) * sense);
+  }
+  std::size_t half = first;
+  while (half + 1 < end && (record[half] - start.baseline) * sense < peak / 2.0) {
+    ++half;
+  }
+  return Rise{half == 0 ? 0 : half - 1, sense};
 }
 
 }  // namespace
@@ -65,37 +103,18 @@ std::optional<Rise> find_first_pulse(std::span<const double> record, std::size_t
   if (record.size() < kFirstLook + width) {
     return std::nullopt;
   }
-  const Quiet start = quiet_before(record, std::max(kFirstLook, record.size() / 100));
-  const double level =
-      std::max(6.0 * start.noise_rms, 0.1 * largest_excursion(record, start.baseline));
-  if (level <= 0.0) {
-    return std::nullopt;
+  const std::size_t longest = std::max(kFirstLook, record.size() / 100);
+  if (auto rise = pulse_after(record, longest, width, reach)) {
+    return rise;
   }
-  std::size_t run = 0;
-  std::size_t n = 0;
-  double sense = 1.0;
-  for (; n < record.size() && run < width; ++n) {
-    const double deviation = record[n] - start.baseline;
-    const bool outside = std::abs(deviation) > level;
-    if (outside && run == 0) {
-      sense = deviation > 0.0 ? 1.0 : -1.0;
+  // The look held the pulse itself where that comes early, as in slowly sampled records.
+  for (std::size_t look = kFirstLook / 2; look >= kShortestLook; look /= 2) {
+    auto rise = pulse_after(record, look, width, reach);
+    if (rise && rise->index >= look) {
+      return rise;
     }
-    run = outside && deviation * sense > 0.0 ? run + 1 : 0;
   }
-  if (run < width) {
-    return std::nullopt;
-  }
-  const std::size_t first = n - run;
-  const std::size_t end = std::min(record.size(), first + reach);
-  double peak = 0.0;
-  for (std::size_t i = first; i < end; ++i) {
-    peak = std::max(peak, (record[i] - start.baseline) * sense);
-  }
-  std::size_t half = first;
-  while (half + 1 < end && (record[half] - start.baseline) * sense < peak / 2.0) {
-    ++half;
-  }
-  return Rise{half == 0 ? 0 : half - 1, sense};
+  return std::nullopt;
 }
 
 Foot foot_of(std::span<const double> record, std::size_t half, double peak, double noise_rms) {

@@ -88,9 +88,11 @@ Check window_overlap(const QualityInputs& in) {
                          100 * check.value, 100 * kOverlapLimit)
                    : formatted(
                          "%.1f %% of the striker's push is left when the reflection hides it "
-                         "(limit %.0f %%): a shorter "
-                         "pulse or a gauge further from the specimen is needed",
-                         100 * check.value, 100 * kOverlapLimit);
+                         "(limit %.0f %%)",
+                         100 * check.value, 100 * kOverlapLimit) +
+                         ": it takes a shorter pulse, a gauge further from the specimen, or waves "
+                         "told apart by a second place on the input bar (--separate gauges) or the "
+                         "output bar's force (--separate equilibrium)";
   return check;
 }
 

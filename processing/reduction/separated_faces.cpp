@@ -147,7 +147,8 @@ SeparatedFaces separated_faces(const Shot& shot, const ShpbTables& bars, Separat
   const ShpbBar& noisy_bar = how == Separation::equilibrium ? bars.output : bars.input;
   const double noisy_at_m = how == Separation::equilibrium ? 0.0 : bars.input_bar.length_m.value;
   faces.front_noise_N = times(noisier.stress_noise_Pa(noisy_at_m, quiet), noisy_bar.waves.area_m2);
-  for (const BlindFrequency& blind : front.blind()) {
+  for (const BlindFrequency& blind : blind_frequencies(bars.input_bar, *bars.input.compliance,
+                                                       bars.theory, in.gauges, {}, band_limit_Hz)) {
     faces.blind_Hz.push_back(blind.frequency_Hz);
   }
   faces.gauges = in.names;

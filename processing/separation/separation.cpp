@@ -18,18 +18,27 @@ struct Row {
   Complex right, left;
 };
 
-Row row_at(double x, double length_m, Complex gamma, const FreeEnds& ends) {
-  Row row{std::exp(-gamma * x), std::exp(-gamma * (length_m - x))};
+/// exp(-gamma (L - x)), without another exponential where that costs no digits.
+Complex from_end_to(double x, double length_m, Complex gamma, Complex across, Complex from_start) {
+  constexpr double kFarFromNothing = 1e-100;
+  return std::norm(from_start) > kFarFromNothing ? across / from_start
+                                                 : std::exp(-gamma * (length_m - x));
+}
+
+/// @param across  exp(-gamma L)
+Row row_at(double x, double length_m, Complex gamma, Complex across, const FreeEnds& ends) {
+  const Complex from_start = std::exp(-gamma * x);
   if (ends.end_matched) {
-    row.left = 0.0;
-  } else if (ends.end) {
-    row.right -= std::exp(-gamma * (2.0 * length_m - x));
-    row.left = 0.0;
-  } else if (ends.start) {
-    row.left -= std::exp(-gamma * (length_m + x));
-    row.right = 0.0;
+    return {from_start, 0.0};
   }
-  return row;
+  const Complex from_end = from_end_to(x, length_m, gamma, across, from_start);
+  if (ends.end) {
+    return {from_start - across * from_end, 0.0};
+  }
+  if (ends.start) {
+    return {0.0, from_end - across * from_start};
+  }
+  return {from_start, from_end};
 }
 
 /// Normal equations of the two waves.
@@ -46,12 +55,16 @@ struct Normal {
   [[nodiscard]] double determinant() const { return right * left - std::norm(both); }
 };
 
+std::size_t gauges_needed(const FreeEnds& ends) {
+  return ends.start || ends.end || ends.end_matched ? 1 : 2;
+}
+
 void require_gauges(const Bar& bar, const std::vector<SeparationGauge>& gauges,
                     const FreeEnds& ends) {
   if (ends.start && (ends.end || ends.end_matched)) {
     throw InputError("ends", "are both free", "a bar that nothing drives has no waves to separate");
   }
-  const std::size_t needed = ends.start || ends.end || ends.end_matched ? 1 : 2;
+  const std::size_t needed = gauges_needed(ends);
   if (gauges.size() < needed) {
     throw InputError("gauges", "are too few to separate left- and right-going waves",
                      "give two gauges, or one on a bar with a free end");
@@ -75,28 +88,138 @@ void require_gauges(const Bar& bar, const std::vector<SeparationGauge>& gauges,
   }
 }
 
-/// Undamped frequencies to a limit, close enough to see what a passage does.
-std::vector<Complex> axis_to(double limit_Hz, double passage_s) {
-  constexpr double kPerPassage = 50.0;
-  const double step_Hz = 0.5 / (passage_s * kPerPassage);
+double weight_of(const SeparationGauge& gauge) {
+  return gauge.noise_rms > 0.0 ? 1.0 / (gauge.noise_rms * gauge.noise_rms) : 1.0;
+}
+
+/// The longest way on which the gauges see two waves part: what they are blind to comes back every
+/// c / (2 way).
+double way_between(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
+                   double length_m) {
+  double least = length_m;
+  double most = 0.0;
+  for (const SeparationGauge& gauge : gauges) {
+    least = std::min(least, gauge.position_m);
+    most = std::max(most, gauge.position_m);
+  }
+  const double way = ends.end ? length_m - least : ends.start ? most : most - least;
+  return way > 0.0 ? way : length_m;
+}
+
+/// How much worse the worse known wave is known than by as many gauges that see it alone.
+class NoiseGain {
+ public:
+  NoiseGain(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends, double length_m)
+      : gauges_(gauges), ends_(ends), length_m_(length_m) {
+    for (const SeparationGauge& gauge : gauges) {
+      best_ += weight_of(gauge);
+    }
+  }
+
+  [[nodiscard]] double at(Complex gamma) const {
+    const Complex across = std::exp(-gamma * length_m_);
+    Normal normal;
+    for (const SeparationGauge& gauge : gauges_) {
+      normal.add(row_at(gauge.position_m, length_m_, gamma, across, ends_), weight_of(gauge));
+    }
+    const double known = ends_.end || ends_.end_matched ? normal.right
+                         : ends_.start                  ? normal.left
+                                       : normal.determinant() / std::max(normal.right, normal.left);
+    return std::sqrt(best_ / std::max(known, 1e-300));
+  }
+
+ private:
+  const std::vector<SeparationGauge>& gauges_;
+  const FreeEnds& ends_;
+  double length_m_;
+  double best_ = 0.0;
+};
+
+/// Where a peak is highest between frequencies that are next to it, the modes there on a straight
+/// line between theirs.
+BlindFrequency highest_near(const NoiseGain& gain, const std::vector<Complex>& axis,
+                            const std::vector<BarMode>& modes, std::size_t peak) {
+  constexpr int kSteps = 20;
+  const auto frequency_Hz = [](Complex s) { return s.imag() / (2.0 * std::numbers::pi); };
+  BlindFrequency highest{frequency_Hz(axis[peak]), gain.at(modes[peak].gamma)};
+  const auto look = [&](std::size_t from, std::size_t to) {
+    for (int step = 1; step < kSteps; ++step) {
+      const double share = static_cast<double>(step) / kSteps;
+      const double here =
+          gain.at(modes[from].gamma + share * (modes[to].gamma - modes[from].gamma));
+      if (here > highest.noise_gain) {
+        highest = {frequency_Hz(axis[from] + share * (axis[to] - axis[from])), here};
+      }
+    }
+  };
+  if (peak > 0) {
+    look(peak - 1, peak);
+  }
+  if (peak + 1 < axis.size()) {
+    look(peak, peak + 1);
+  }
+  return highest;
+}
+
+/// Undamped frequencies to a limit.
+std::vector<Complex> axis_to(double limit_Hz, double step_Hz) {
   std::vector<Complex> axis;
+  axis.reserve(static_cast<std::size_t>(limit_Hz / step_Hz) + 1);
   for (double f = step_Hz; f < limit_Hz; f += step_Hz) {
     axis.emplace_back(0.0, 2.0 * std::numbers::pi * f);
   }
   return axis;
 }
 
-double weight_of(const SeparationGauge& gauge) {
-  return gauge.noise_rms > 0.0 ? 1.0 / (gauge.noise_rms * gauge.noise_rms) : 1.0;
-}
-
 }  // namespace
+
+/// Transform and filter of one length.
+struct WaveSeparation::Work {
+  DampedTransform transform;
+  BandLimit band;
+
+  Work(std::size_t samples, double period_s)
+      : transform(samples, period_s), band(transform, kPulseOfNoUse) {}
+
+ private:
+  static constexpr std::size_t kPulseOfNoUse = 16;
+};
+
+std::vector<BlindFrequency> blind_frequencies(const Bar& bar, const Compliance& compliance,
+                                              WaveTheory theory,
+                                              const std::vector<SeparationGauge>& gauges,
+                                              const FreeEnds& ends, double band_limit_Hz) {
+  require_gauges(bar, gauges, ends);
+  constexpr double kBlind = 5.0;
+  constexpr double kPerSpacing = 50.0;
+  const double spacing_Hz =
+      front_speed_m_per_s(bar, compliance) / (2.0 * way_between(gauges, ends, bar.length_m));
+  // Blindness is that of the undamped waves.
+  const std::vector<Complex> axis = axis_to(band_limit_Hz, spacing_Hz / kPerSpacing);
+  const std::vector<BarMode> modes = bar_modes(theory, bar, compliance, axis);
+  const NoiseGain noise_gain(gauges, ends, bar.length_m);
+  std::vector<double> gain;
+  gain.reserve(axis.size());
+  for (const BarMode& mode : modes) {
+    gain.push_back(noise_gain.at(mode.gamma));
+  }
+  std::vector<BlindFrequency> blind;
+  for (std::size_t k = 0; k < gain.size(); ++k) {
+    const bool highest =
+        (k == 0 || gain[k] >= gain[k - 1]) && (k + 1 == gain.size() || gain[k] > gain[k + 1]);
+    if (highest && gain[k] > kBlind) {
+      // At the lowest frequencies of all the waves' sum is all that is seen.
+      blind.push_back(k == 0 ? BlindFrequency{0.0, gain[k]}
+                             : highest_near(noise_gain, axis, modes, k));
+    }
+  }
+  return blind;
+}
 
 WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, WaveTheory theory,
                                const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
                                double period_s, double band_limit_Hz)
     : length_m_(bar.length_m),
-      density_kg_m3_(bar.density_kg_m3),
       period_s_(period_s),
       band_limit_Hz_(band_limit_Hz),
       front_speed_m_per_s_(front_speed_m_per_s(bar, compliance)),
@@ -106,47 +229,50 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
   // Waves are looked for where they came from, before the gauges saw them: room for two passages.
   const double passage_s = length_m_ / front_speed_m_per_s_;
   lead_ = static_cast<std::size_t>(std::ceil(2.5 * passage_s / period_s_)) + 16;
-  const DampedTransform transform(samples_ + 2 * lead_, period_s_);
-  const std::size_t bins = BandLimit::bins_within(transform, band_limit_Hz_);
+  work_ = std::make_unique<Work>(samples_ + 2 * lead_, period_s_);
+  const std::size_t bins = BandLimit::bins_within(work_->transform, band_limit_Hz_);
+  path_.reserve(bins);
   for (std::size_t k = 0; k < bins; ++k) {
-    path_.push_back(transform.s(k));
+    path_.push_back(work_->transform.s(k));
   }
   modes_ = bar_modes(theory, bar, compliance, path_);
+  across_.reserve(bins);
+  stiffness_.reserve(bins);
+  for (std::size_t k = 0; k < bins; ++k) {
+    const Complex slowness = modes_[k].gamma / path_[k];
+    across_.push_back(std::exp(-modes_[k].gamma * length_m_));
+    stiffness_.push_back(bar.density_kg_m3.value / (slowness * slowness) *
+                         modes_[k].mean_over_surface);
+  }
   share_out(gauges, ends);
   solve(gauges);
-  const std::size_t needed = ends.start || ends.end || ends.end_matched ? 1 : 2;
-  if (gauges.size() > needed) {
+  if (gauges.size() > gauges_needed(ends)) {
     // exp(-2 eta t) = 1e-3
     looks_ahead_ = static_cast<std::size_t>(3.45 / path_.front().real() / period_s_);
   }
-
-  // Blindness is that of the undamped waves.
-  const std::vector<Complex> axis = axis_to(band_limit_Hz_, passage_s);
-  find_blind(gauges, ends, bar_modes(theory, bar, compliance, axis), axis);
 }
 
-Complex WaveSeparation::stiffness(std::size_t k) const {
-  const Complex slowness = modes_[k].gamma / path_[k];
-  return density_kg_m3_ / (slowness * slowness) * modes_[k].mean_over_surface;
-}
+WaveSeparation::~WaveSeparation() = default;
 
 void WaveSeparation::share_out(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends) {
   for (const SeparationGauge& gauge : gauges) {
     shares_.push_back({gauge.position_m, gauge.noise_rms, {}, {}});
+    shares_.back().right.reserve(path_.size());
+    shares_.back().left.reserve(path_.size());
   }
   std::vector<Row> rows(gauges.size());
   for (std::size_t k = 0; k < path_.size(); ++k) {
     const Complex gamma = modes_[k].gamma;
-    const Complex across = std::exp(-gamma * length_m_);
+    const Complex across = across_[k];
     Normal normal;
     for (std::size_t j = 0; j < gauges.size(); ++j) {
-      rows[j] = row_at(gauges[j].position_m, length_m_, gamma, ends);
+      rows[j] = row_at(gauges[j].position_m, length_m_, gamma, across, ends);
       normal.add(rows[j], weight_of(gauges[j]));
     }
     for (std::size_t j = 0; j < gauges.size(); ++j) {
       // A stress tells the strain times the stiffness.
       const Complex unit =
-          gauges[j].record == SeparationRecord::mean_stress_Pa ? 1.0 / stiffness(k) : 1.0;
+          gauges[j].record == SeparationRecord::mean_stress_Pa ? 1.0 / stiffness_[k] : 1.0;
       const Complex to_right = unit * weight_of(gauges[j]) * std::conj(rows[j].right);
       const Complex to_left = unit * weight_of(gauges[j]) * std::conj(rows[j].left);
       Complex right = 0.0;
@@ -168,8 +294,7 @@ void WaveSeparation::share_out(const std::vector<SeparationGauge>& gauges, const
 }
 
 void WaveSeparation::solve(const std::vector<SeparationGauge>& gauges) {
-  DampedTransform transform(samples_ + 2 * lead_, period_s_);
-  BandLimit band(transform, 16);
+  DampedTransform& transform = work_->transform;
   std::vector<double> padded(transform.length());
   std::vector<Complex> spectrum(transform.bins());
   right_.assign(path_.size(), 0.0);
@@ -185,37 +310,26 @@ void WaveSeparation::solve(const std::vector<SeparationGauge>& gauges) {
     }
   }
   for (auto* wave : {&right_, &left_}) {
-    band.apply_half(band_limit_Hz_, *wave);
-    band.apply_half(band_limit_Hz_, *wave);
+    work_->band.apply_half(band_limit_Hz_, *wave);
+    work_->band.apply_half(band_limit_Hz_, *wave);
   }
 }
 
-void WaveSeparation::find_blind(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
-                                const std::vector<BarMode>& undamped,
-                                const std::vector<Complex>& axis) {
-  constexpr double kBlind = 5.0;
-  double best = 0.0;
-  for (const SeparationGauge& gauge : gauges) {
-    best += weight_of(gauge);
+WaveSeparation::Way WaveSeparation::way_to(double position_m) const {
+  if (position_m == 0.0) {
+    return {std::vector<Complex>(path_.size(), 1.0), across_};
   }
-  std::vector<double> gain;
-  for (const BarMode& mode : undamped) {
-    Normal normal;
-    for (const SeparationGauge& gauge : gauges) {
-      normal.add(row_at(gauge.position_m, length_m_, mode.gamma, ends), weight_of(gauge));
-    }
-    const double known = ends.end || ends.end_matched ? normal.right
-                         : ends.start                 ? normal.left
-                                      : normal.determinant() / std::max(normal.right, normal.left);
-    gain.push_back(std::sqrt(best / std::max(known, 1e-300)));
+  if (position_m == length_m_) {
+    return {across_, std::vector<Complex>(path_.size(), 1.0)};
   }
-  for (std::size_t k = 0; k < gain.size(); ++k) {
-    const bool highest =
-        (k == 0 || gain[k] >= gain[k - 1]) && (k + 1 == gain.size() || gain[k] > gain[k + 1]);
-    if (highest && gain[k] > kBlind) {
-      blind_.push_back({axis[k].imag() / (2.0 * std::numbers::pi), gain[k]});
-    }
+  Way way;
+  way.from_start.reserve(path_.size());
+  way.from_end.reserve(path_.size());
+  for (const BarMode& mode : modes_) {
+    way.from_start.push_back(std::exp(-mode.gamma * position_m));
+    way.from_end.push_back(std::exp(-mode.gamma * (length_m_ - position_m)));
   }
+  return way;
 }
 
 std::size_t WaveSeparation::known(double position_m) const {
@@ -229,24 +343,24 @@ std::size_t WaveSeparation::known(double position_m) const {
 }
 
 SeparatedWaves WaveSeparation::at(double position_m, StrainOf strain) const {
-  DampedTransform transform(samples_ + 2 * lead_, period_s_);
+  DampedTransform& transform = work_->transform;
+  const Way way = way_to(position_m);
   std::vector<Complex> right(transform.bins());
   std::vector<Complex> left(transform.bins());
   std::vector<Complex> stress(transform.bins());
   std::vector<Complex> velocity(transform.bins());
   for (std::size_t k = 0; k < path_.size(); ++k) {
-    const Complex gamma = modes_[k].gamma;
-    const Complex to_right = right_[k] * std::exp(-gamma * position_m);
-    const Complex to_left = left_[k] * std::exp(-gamma * (length_m_ - position_m));
+    const Complex to_right = right_[k] * way.from_start[k];
+    const Complex to_left = left_[k] * way.from_end[k];
     const Complex mean = modes_[k].mean_over_surface;
     const Complex read = strain == StrainOf::section ? mean : 1.0;
     right[k] = read * to_right;
     left[k] = read * to_left;
-    stress[k] = stiffness(k) * (to_right + to_left);
-    velocity[k] = path_[k] / gamma * mean * (to_right - to_left);
+    stress[k] = stiffness_[k] * (to_right + to_left);
+    velocity[k] = path_[k] / modes_[k].gamma * mean * (to_right - to_left);
   }
+  std::vector<double> record(transform.length());
   const auto history = [&](const std::vector<Complex>& spectrum) {
-    std::vector<double> record(transform.length());
     transform.inverse(spectrum, record);
     const auto begin = record.begin() + static_cast<std::ptrdiff_t>(lead_);
     return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(samples_));
@@ -255,11 +369,22 @@ SeparatedWaves WaveSeparation::at(double position_m, StrainOf strain) const {
 }
 
 std::vector<double> WaveSeparation::stress_noise_Pa(double position_m, std::size_t quiet) const {
-  DampedTransform transform(samples_ + 2 * lead_, period_s_);
-  BandLimit band(transform, 16);
+  DampedTransform& transform = work_->transform;
   std::vector<Complex> answer(transform.bins());
   std::vector<double> record(transform.length());
   std::vector<double> variance(samples_, 0.0);
+  // The stress of a filtered wave that starts with the record.
+  Way way = way_to(position_m);
+  const double start_s = static_cast<double>(lead_) * period_s_;
+  for (std::size_t k = 0; k < path_.size(); ++k) {
+    const Complex stress = stiffness_[k] * std::exp(-path_[k] * start_s);
+    way.from_start[k] *= stress;
+    way.from_end[k] *= stress;
+  }
+  for (auto* direction : {&way.from_start, &way.from_end}) {
+    work_->band.apply_half(band_limit_Hz_, *direction);
+    work_->band.apply_half(band_limit_Hz_, *direction);
+  }
   for (const Share& share : shares_) {
     const double white = share.noise_rms * share.noise_rms;
     if (white <= 0.0) {
@@ -267,14 +392,8 @@ std::vector<double> WaveSeparation::stress_noise_Pa(double position_m, std::size
     }
     // The stress after one sample's unit error at the record's start.
     for (std::size_t k = 0; k < path_.size(); ++k) {
-      const Complex gamma = modes_[k].gamma;
-      const double start_s = static_cast<double>(lead_) * period_s_;
-      answer[k] = stiffness(k) * std::exp(-path_[k] * start_s) *
-                  (share.right[k] * std::exp(-gamma * position_m) +
-                   share.left[k] * std::exp(-gamma * (length_m_ - position_m)));
+      answer[k] = share.right[k] * way.from_start[k] + share.left[k] * way.from_end[k];
     }
-    band.apply_half(band_limit_Hz_, std::span(answer).first(path_.size()));
-    band.apply_half(band_limit_Hz_, std::span(answer).first(path_.size()));
     transform.inverse(answer, record);
     double squares = 0.0;
     double sum = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,12 @@ struct BlindFrequency {
   double noise_gain = 0.0;  ///< of the worse known wave, over that of two independent gauges
 };
 
+/// @throws InputError as WaveSeparation does
+/// @param band_limit_Hz  they are looked for up to it
+[[nodiscard]] std::vector<BlindFrequency> blind_frequencies(
+    const Bar& bar, const Compliance& compliance, WaveTheory theory,
+    const std::vector<SeparationGauge>& gauges, const FreeEnds& ends, double band_limit_Hz);
+
 /// Left- and right-going waves in a bar from two or more gauges, or from one and a free end, by
 /// maximum likelihood. With P the right-going wave at the start and Q the left-going one at the
 /// end,
@@ -56,6 +63,7 @@ struct BlindFrequency {
 /// where it is matched. Solved at each s = eta + i w by least squares weighted with the noise: with
 /// damping (see DampedTransform) overlapping passes and a record that is cut between them cost
 /// nothing, and blind frequencies amplify noise but never divide by zero.
+/// Holds its own work space: one thread at a time.
 class WaveSeparation {
  public:
   /// @param compliance  of the bar
@@ -63,6 +71,9 @@ class WaveSeparation {
   WaveSeparation(const Bar& bar, const Compliance& compliance, WaveTheory theory,
                  const std::vector<SeparationGauge>& gauges, const FreeEnds& ends, double period_s,
                  double band_limit_Hz);
+  ~WaveSeparation();
+  WaveSeparation(const WaveSeparation&) = delete;
+  WaveSeparation& operator=(const WaveSeparation&) = delete;
 
   /// The waves at a place, over the records' time.
   [[nodiscard]] SeparatedWaves at(double position_m, StrainOf strain = StrainOf::surface) const;
@@ -79,20 +90,20 @@ class WaveSeparation {
   /// t)).
   [[nodiscard]] std::size_t known(double position_m) const;
 
-  [[nodiscard]] const std::vector<BlindFrequency>& blind() const { return blind_; }
-
  private:
+  /// What waves do between a bar's ends and a place, by bin.
+  struct Way {
+    std::vector<Complex> from_start, from_end;
+  };
+
   /// Each gauge's share in the waves, by least squares.
   void share_out(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends);
   /// The waves from the records, filtered.
   void solve(const std::vector<SeparationGauge>& gauges);
-  void find_blind(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends,
-                  const std::vector<BarMode>& undamped, const std::vector<Complex>& axis);
-  /// Mean stress over surface strain.
-  [[nodiscard]] Complex stiffness(std::size_t k) const;
+  [[nodiscard]] Way way_to(double position_m) const;
 
+  struct Work;
   double length_m_;
-  double density_kg_m3_;
   double period_s_;
   double band_limit_Hz_;
   double front_speed_m_per_s_;
@@ -101,6 +112,8 @@ class WaveSeparation {
   std::size_t looks_ahead_ = 0;
   std::vector<Complex> path_;
   std::vector<BarMode> modes_;
+  std::vector<Complex> across_;     ///< exp(-gamma L)
+  std::vector<Complex> stiffness_;  ///< mean stress over surface strain
   /// What one gauge's record has in the waves.
   struct Share {
     double position_m;
@@ -110,7 +123,7 @@ class WaveSeparation {
   std::vector<Share> shares_;
   std::vector<Complex> right_;  ///< at the start
   std::vector<Complex> left_;   ///< at the end
-  std::vector<BlindFrequency> blind_;
+  std::unique_ptr<Work> work_;
 };
 
 }  // namespace kolsky

@@ -1,11 +1,13 @@
-// How often `kolsky calibrate` passes a bench that is filed within its deviations, and how often it
-// names what is off: calibrate_rates [--repeats 100] [--seed 7000]. Seeds that nothing was chosen
-// on.
+// How often `kolsky calibrate` passes a bench that is filed within its deviations, how often it
+// names what is off, and how often its intervals hold the truth:
+//   calibrate_rates [--repeats 100] [--seed 7000] [--shots 3] [--samples 2048] [--cases 5]
+// Seeds that nothing was chosen on.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processing/calibration/calibration.hpp"
@@ -32,11 +34,33 @@ const std::vector<Case> kCases = {
     {"E1 2 % off", {}, {"E1_Pa"}, 1.02},
 };
 
-testing::Campaign draw(std::uint64_t seed, const Case& wanted) {
+struct Wishes {
+  int repeats = 100;
+  std::uint64_t seed = 7000;
+  int shots = 3;
+  int samples = 2048;
+  std::size_t cases = kCases.size();
+};
+
+/// How the truth lies within what was stated.
+struct Coverage {
+  int inside = 0;
+  int all = 0;
+  double squares = 0.0;
+
+  void add(const Measured& stated, double truth) {
+    const double z = (stated.value - truth) / stated.sd;
+    inside += std::abs(z) < 1.96 ? 1 : 0;
+    squares += z * z;
+    ++all;
+  }
+};
+
+testing::Campaign draw(std::uint64_t seed, const Case& wanted, const Wishes& asked) {
   testing::CampaignWishes wishes;
   wishes.seed = seed;
-  wishes.shots = 3;
-  wishes.samples = 2048;
+  wishes.shots = asked.shots;
+  wishes.samples = asked.samples;
   wishes.rate_Hz = 5e5;
   wishes.tolerances = testing::Tolerances::filed;
   testing::Campaign made = testing::draw_campaign(wishes);
@@ -62,14 +86,16 @@ CalibrationOptions options_of(const testing::Campaign& made, const Case& wanted)
   return options;
 }
 
-void run(const Case& wanted, int repeats, std::uint64_t seed) {
+void run(const Case& wanted, const Wishes& asked, std::uint64_t seed) {
   int exactly = 0;
   int among = 0;
   int others = 0;
   int doubtful = 0;
   int undecided = 0;
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    const testing::Campaign made = draw(seed + static_cast<std::uint64_t>(repeat), wanted);
+  Coverage gains;
+  Coverage places;
+  for (int repeat = 0; repeat < asked.repeats; ++repeat) {
+    const testing::Campaign made = draw(seed + static_cast<std::uint64_t>(repeat), wanted, asked);
     const Calibration calibration = calibrate(testing::shots_of(made), options_of(made, wanted));
     std::vector<std::string> named;
     bool doubts = false;
@@ -79,6 +105,13 @@ void run(const Case& wanted, int repeats, std::uint64_t seed) {
           named.push_back(number.id);
         }
         doubts = doubts || number.standing == Standing::doubtful;
+        for (const testing::TrueGauge& gauge : made.world.gauges) {
+          if (gauge.name == number.gauge && number.of == CalibratedNumber::Of::gain) {
+            gains.add(number.combined, gauge.gain);
+          } else if (gauge.name == number.gauge && number.of == CalibratedNumber::Of::position) {
+            places.add(number.combined, gauge.position_m);
+          }
+        }
       }
     }
     std::vector<std::string> guilty = wanted.guilty;
@@ -99,28 +132,40 @@ void run(const Case& wanted, int repeats, std::uint64_t seed) {
     }
   }
   std::printf("%s: %d benches, exactly so %d, with others %d, not %d; doubtful %d, undecided %d\n",
-              wanted.name, repeats, exactly, among, others, doubtful, undecided);
+              wanted.name, asked.repeats, exactly, among, others, doubtful, undecided);
+  for (const auto& [what, coverage] : {std::pair{"gains", gains}, std::pair{"places", places}}) {
+    std::printf("  %s: %d of %d intervals hold the truth, mean square of deviations %.2f\n", what,
+                coverage.inside, coverage.all, coverage.squares / coverage.all);
+  }
   std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  int repeats = 100;
-  std::uint64_t seed = 7000;
+  Wishes asked;
   for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::strcmp(argv[i], "--repeats") == 0) {
-      repeats = std::atoi(argv[i + 1]);
-    } else if (std::strcmp(argv[i], "--seed") == 0) {
-      seed = std::strtoull(argv[i + 1], nullptr, 10);
+    const std::string name = argv[i];
+    const char* const value = argv[i + 1];
+    if (name == "--repeats") {
+      asked.repeats = std::atoi(value);
+    } else if (name == "--seed") {
+      asked.seed = std::strtoull(value, nullptr, 10);
+    } else if (name == "--shots") {
+      asked.shots = std::atoi(value);
+    } else if (name == "--samples") {
+      asked.samples = std::atoi(value);
+    } else if (name == "--cases") {
+      asked.cases = std::min(kCases.size(), static_cast<std::size_t>(std::atoi(value)));
     } else {
-      std::fprintf(stderr, "calibrate_rates [--repeats 100] [--seed 7000]\n");
+      std::fprintf(stderr,
+                   "calibrate_rates [--repeats 100] [--seed 7000] [--shots 3] [--samples 2048] "
+                   "[--cases 5]\n");
       return 2;
     }
   }
-  for (const Case& wanted : kCases) {
-    run(wanted, repeats, seed);
-    seed += static_cast<std::uint64_t>(repeats);
+  for (std::size_t i = 0; i < asked.cases; ++i) {
+    run(kCases[i], asked, asked.seed + i * static_cast<std::uint64_t>(asked.repeats));
   }
   return 0;
 }

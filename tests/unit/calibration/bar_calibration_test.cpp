@@ -13,8 +13,8 @@ namespace kolsky {
 namespace {
 
 /// Enough samples for what comes back from the far end to be in the records.
-constexpr int kLong = 2048;
-/// Enough for the pulse's first passage at every gauge, and half the price.
+constexpr int kLong = 1536;
+/// Enough for the pulse's first passage at every gauge, and less of the price.
 constexpr int kShort = 1024;
 
 testing::Campaign campaign(std::uint64_t seed, testing::Tolerances tolerances, int shots,
@@ -53,7 +53,7 @@ std::vector<std::string> named(const Calibration& calibration) {
 }
 
 TEST(BarCalibration, BenchFiledWithinItsDeviationsPasses) {
-  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 4, {}, kLong);
+  const testing::Campaign made = campaign(3, testing::Tolerances::filed, 3, {}, kLong);
   const Calibration calibration = calibrate(testing::shots_of(made), {});
   EXPECT_EQ(calibration.certificate, Certificate::pass);
   ASSERT_EQ(calibration.parts.size(), 1U);
@@ -70,7 +70,7 @@ TEST(BarCalibration, BenchFiledWithinItsDeviationsPasses) {
 
 TEST(BarCalibration, GaugeFiveMillimetresOffIsNamedWithItsPlace) {
   const testing::Campaign made =
-      campaign(3, testing::Tolerances::filed, 4, {"gauge-position:g3=0.005"});
+      campaign(3, testing::Tolerances::filed, 3, {"gauge-position:g3=0.005"});
   const Calibration calibration = calibrate(testing::shots_of(made), {});
   EXPECT_EQ(calibration.certificate, Certificate::fail);
   EXPECT_EQ(named(calibration), std::vector<std::string>{"gauge-position:g3"});
@@ -83,7 +83,7 @@ TEST(BarCalibration, GaugeFiveMillimetresOffIsNamedWithItsPlace) {
 
 TEST(BarCalibration, GainThreePerCentOffIsNamedWithItsFactor) {
   const testing::Campaign made =
-      campaign(5, testing::Tolerances::none, 4, {"gauge-factor:g2=0.03"});
+      campaign(5, testing::Tolerances::none, 3, {"gauge-factor:g2=0.03"});
   const Calibration calibration = calibrate(testing::shots_of(made), {});
   EXPECT_EQ(calibration.certificate, Certificate::fail);
   EXPECT_EQ(named(calibration), std::vector<std::string>{"gauge-factor:g2"});
@@ -98,7 +98,7 @@ TEST(BarCalibration, GainThreePerCentOffIsNamedWithItsFactor) {
 }
 
 TEST(BarCalibration, SeveralFaultsAreNamedTogether) {
-  const testing::Campaign made = campaign(5, testing::Tolerances::none, 4,
+  const testing::Campaign made = campaign(5, testing::Tolerances::none, 3,
                                           {"gauge-factor:g2=0.03", "channel-delay:g4=2e-6"}, kLong);
   const Calibration calibration = calibrate(testing::shots_of(made), {});
   EXPECT_EQ(named(calibration), (std::vector<std::string>{"gauge-factor:g2", "channel-delay:g4"}));

@@ -130,7 +130,8 @@ TEST_F(BrokenCatalogue, ACutOneIsReplaced) {
 
 TEST_F(BrokenCatalogue, ADamagedPageIsReplaced) {
   auto bytes = bytes_of(path_);
-  for (std::size_t i = 4096 * 3; i < 4096 * 4; ++i) {
+  constexpr std::size_t kPage = 4096;
+  for (std::size_t i = 3 * kPage; i < 4 * kPage; ++i) {
     bytes[i] = std::byte{0x5a};
   }
   write_bytes(path_, bytes);

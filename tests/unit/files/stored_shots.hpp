@@ -56,7 +56,7 @@ std::string expect_refused(const Action& action, const std::vector<std::string>&
   try {
     action();
   } catch (const InputError& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     for (const std::string& part : parts) {
       EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
     }

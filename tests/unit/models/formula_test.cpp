@@ -50,7 +50,6 @@ struct Case {
 };
 
 TEST(Formula, GivesWhatTheSameArithmeticInCxxGives) {
-  const Complex i(0.0, 1.0);
   const std::vector<Case> cases{
       {"D/(1 + s*tau)", [](Complex s) { return kD / (1.0 + s * kTau); }},
       {"D*(s*tau)^-0.3", [](Complex s) { return kD * std::pow(s * kTau, -0.3); }},

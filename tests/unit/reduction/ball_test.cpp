@@ -17,7 +17,6 @@ namespace {
 
 using kolsky::testing::ball_bench;
 using kolsky::testing::ball_shot;
-using kolsky::testing::BallRecording;
 using kolsky::testing::Push;
 
 constexpr double kSpeed_m_per_s = 31.1;

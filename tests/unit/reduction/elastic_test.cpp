@@ -7,10 +7,12 @@
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "tests/generators/elastic_shpb.hpp"
+#include "tests/unit/reduction/solved_bench.hpp"
 
 namespace kolsky {
 namespace {
 
+using testing::check_of;
 using testing::ElasticShpb;
 
 /// Largest difference between a reduced history and the truth, as a share of the truth's largest
@@ -26,15 +28,6 @@ double worst(const Reduction& r, const std::vector<double>& reduced,
     difference = std::max(difference, std::abs(reduced[n] - expected));
   }
   return difference / largest;
-}
-
-const Check& check_of(const Reduction& r, const std::string& name) {
-  for (const Check& check : r.quality.checks) {
-    if (check.name == name) {
-      return check;
-    }
-  }
-  throw std::out_of_range(name);
 }
 
 Shot noiseless(const ElasticShpb& model, const ElasticShpb::Records& records) {

@@ -69,6 +69,40 @@ TEST(FindFirstPulse, ASpikeIsNotAPulse) {
   EXPECT_EQ(rise->index, 899U);
 }
 
+/// A step after so many samples, of that share of the noise.
+std::vector<double> early_step(std::size_t quiet, double noise_rms) {
+  std::vector<double> record(1000);
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0.0, noise_rms);
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    record[n] = noise(random) + (n >= quiet && n < quiet + 10 ? 1.0 : 0.0);
+  }
+  return record;
+}
+
+// Slowly sampled records have little before their pulse.
+TEST(FindFirstPulse, FindsAPulseThatComesWithinTheFirstLook) {
+  for (const std::size_t quiet : {10U, 18U, 24U, 31U}) {
+    const auto rise = find_first_pulse(early_step(quiet, 0.01), 3, 10);
+    ASSERT_TRUE(rise) << quiet;
+    EXPECT_EQ(rise->index, quiet - 1);
+    EXPECT_FALSE(find_first_pulse(early_step(quiet, 0.5), 3, 10)) << "in the noise";
+  }
+  EXPECT_FALSE(find_first_pulse(early_step(4, 0.01), 3, 10)) << "nothing is known of the noise";
+}
+
+TEST(FindFirstPulse, NoiseAloneIsNoPulseHoweverLittleOfItIsLookedAt) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  for (int repeat = 0; repeat < 300; ++repeat) {
+    std::vector<double> record(1000);
+    for (double& value : record) {
+      value = noise(random);
+    }
+    EXPECT_FALSE(find_first_pulse(record, 3, 100)) << repeat;
+  }
+}
+
 TEST(FindFirstPulse, NothingInAConstantOrAnEmptyRecord) {
   EXPECT_FALSE(find_first_pulse(std::vector<double>(1000, 3.0), 5, 100));
   EXPECT_FALSE(find_first_pulse({}, 5, 100));

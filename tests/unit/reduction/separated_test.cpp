@@ -4,29 +4,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "drivers/simulated/bench_model.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "tests/generators/elastic_shpb.hpp"
+#include "tests/unit/reduction/solved_bench.hpp"
 
 namespace kolsky {
 namespace {
 
-constexpr double kStep_s = 0.1e-6;
-constexpr std::size_t kStepsPerSample = 10;
-constexpr std::size_t kPreSamples = 400;
-constexpr RodMaterial kPmma{
-    .density_kg_m3 = 1180, .E1_Pa = 5.66e9, .E2_Pa = 37.0e9, .eta2_Pa_s = 1.81e6};
-constexpr RodMaterial kCore{
-    .density_kg_m3 = 1140, .E1_Pa = 121e6, .E2_Pa = 143e6, .eta2_Pa_s = 2860};
-constexpr RodMaterial kAluminium{.density_kg_m3 = 2700, .E1_Pa = 70e9};
-constexpr RodMaterial kFoam{.density_kg_m3 = 300, .E1_Pa = 60e6};
+using testing::bench_of;
+using testing::BenchRecords;
+using testing::check_of;
+using testing::circle_m2;
+using testing::kAluminium;
+using testing::kCore;
+using testing::kFoam;
+using testing::kPmma;
+using testing::kPreSamples;
+using testing::kStep_s;
+using testing::records_of;
+using testing::SolvedShot;
+using testing::worst;
 
-double circle_m2(double diameter_m) {
-  return std::numbers::pi * diameter_m * diameter_m / 4.0;
-}
+constexpr double kRange = 0.02;
 
 struct LongShot {
   RodMaterial bars = kPmma;
@@ -41,49 +42,7 @@ struct LongShot {
   double noise_rms = 0.0;
 };
 
-struct Solved {
-  Shot shot;
-  SpecimenHistory truth;
-  double front_arrival_s = 0.0;
-};
-
-Gauge gauge_at(const std::string& bar, double position_m, std::size_t number) {
-  Gauge gauge;
-  gauge.name = "g" + std::to_string(number);
-  gauge.bar = bar;
-  gauge.position_m = {position_m};
-  gauge.unit = "strain";
-  return gauge;
-}
-
-Bench bench_of(const LongShot& set) {
-  Bench bench = testing::ElasticShpb{}.bench();
-  bench.input.length_m = {set.length_m};
-  bench.input.diameter_m = {0.015};
-  bench.input.density_kg_m3 = {set.bars.density_kg_m3};
-  bench.input.youngs_modulus_Pa.reset();
-  if (set.bars.elastic()) {
-    bench.input.youngs_modulus_Pa = Measured{set.bars.E1_Pa};
-  }
-  bench.output = bench.input;
-  bench.gauges.clear();
-  for (const double x : set.input_m) {
-    bench.gauges.push_back(gauge_at("input", x, bench.gauges.size() + 1));
-  }
-  for (const double x : set.output_m) {
-    bench.gauges.push_back(gauge_at("output", x, bench.gauges.size() + 1));
-  }
-  bench.specimen = Specimen{.length_m = {0.004}, .diameter_m = {0.012}};
-  bench.specimen->density_kg_m3 = Measured{set.specimen.density_kg_m3};
-  return bench;
-}
-
-struct Records {
-  std::vector<std::vector<double>> strains;
-  SpecimenHistory truth;
-};
-
-Records records_of(const LongShot& set) {
+BenchModel model_of(const LongShot& set) {
   BenchModel model;
   model.input = {set.length_m, circle_m2(0.015), set.bars};
   model.specimen = RodShape{0.004, circle_m2(0.012), set.specimen};
@@ -97,56 +56,18 @@ Records records_of(const LongShot& set) {
   for (const double x : set.output_m) {
     model.gauges.push_back({RodId::output, x});
   }
-  const BenchHistory history =
-      run_bench(model, kStep_s, static_cast<std::size_t>(set.record_s / kStep_s));
-  Records records;
-  for (const auto& strain : history.gauge_strain) {
-    records.strains.emplace_back(kPreSamples, 0.0);
-    for (std::size_t n = 0; n < strain.size(); n += kStepsPerSample) {
-      records.strains.back().push_back(strain[n]);
-    }
-  }
-  records.truth = *history.specimen;
-  return records;
+  return model;
 }
 
-Solved solve(const LongShot& set, unsigned seed = 1) {
-  const Records records = records_of(set);
-  return {testing::digitise(bench_of(set), records.strains, set.noise_rms,
-                            set.noise_rms > 0.0 ? 16 : 24, 0.02, seed),
-          records.truth, kPreSamples * 1e-6 + set.length_m / set.bars.front_speed_m_per_s()};
+SolvedShot solve(const LongShot& set) {
+  const BenchModel model = model_of(set);
+  return testing::shot_of(model, records_of(model, set.record_s), set.noise_rms, kRange);
 }
 
 /// The defaults, solved once.
-const Solved& plain_shot() {
-  static const Solved solved = solve({});
+const SolvedShot& plain_shot() {
+  static const SolvedShot solved = solve({});
   return solved;
-}
-
-/// Largest difference as a share of the truth's largest value.
-double worst(const Reduction& r, const std::vector<double>& reduced, const Solved& solved,
-             const std::vector<double>& exact) {
-  double largest = 0.0;
-  double difference = 0.0;
-  for (std::size_t n = 0; n < reduced.size(); ++n) {
-    const double t = r.time_s[n] + r.arrival_s - solved.front_arrival_s;
-    const double index = std::max(0.0, (t - solved.truth.time_s.front()) / kStep_s);
-    const auto i = std::min(static_cast<std::size_t>(index), exact.size() - 2);
-    const double share = index - static_cast<double>(i);
-    const double expected = exact[i] * (1.0 - share) + exact[i + 1] * share;
-    largest = std::max(largest, std::abs(expected));
-    difference = std::max(difference, std::abs(reduced[n] - expected));
-  }
-  return difference / largest;
-}
-
-const Check& check_of(const Reduction& r, const std::string& name) {
-  for (const Check& check : r.quality.checks) {
-    if (check.name == name) {
-      return check;
-    }
-  }
-  throw std::out_of_range(name);
 }
 
 Reduction reduced(const Shot& shot, Separation separation, double duration_s = 0.0) {
@@ -159,7 +80,7 @@ Reduction reduced(const Shot& shot, Separation separation, double duration_s = 0
 }
 
 TEST(SeparatedReduction, APulseThatOutlastsTheWindowIsFollowedToTheEndOfTheFirstLoading) {
-  const Solved& solved = plain_shot();
+  const SolvedShot& solved = plain_shot();
   const Reduction r = Reducer().reduce(solved.shot);
   ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
   EXPECT_EQ(r.separation, Separation::gauges);
@@ -176,7 +97,7 @@ TEST(SeparatedReduction, APulseThatOutlastsTheWindowIsFollowedToTheEndOfTheFirst
 }
 
 TEST(SeparatedReduction, WithoutItTheSameShotIsFarOffAndSaysSo) {
-  const Solved& solved = plain_shot();
+  const SolvedShot& solved = plain_shot();
   const Reduction r = reduced(solved.shot, Separation::never);
   EXPECT_EQ(check_of(r, "window_overlap").verdict, Verdict::fail);
   EXPECT_GT(worst(r, r.strain, solved, solved.truth.strain), 0.3);
@@ -196,7 +117,7 @@ TEST(SeparatedReduction, ElasticBarsWithMoreGaugesThanAreNeeded) {
   set.length_m = 1.0;
   set.input_m = {0.2, 0.45, 0.6};
   set.output_m = {0.05, 0.3};
-  const Solved solved = solve(set);
+  const SolvedShot solved = solve(set);
   const Reduction r = Reducer().reduce(solved.shot);
   EXPECT_EQ(r.separation, Separation::gauges);
   EXPECT_GT(r.time_s.back(), 1.2e-3);  // three returns behind each other
@@ -210,7 +131,7 @@ TEST(SeparatedReduction, ElasticBarsWithMoreGaugesThanAreNeeded) {
 TEST(SeparatedReduction, OneGaugeAndEquilibriumFollowALongPulseToo) {
   LongShot set;
   set.input_m = {0.35};
-  const Solved solved = solve(set);
+  const SolvedShot solved = solve(set);
   const Reduction r = reduced(solved.shot, Separation::equilibrium);
   ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
   EXPECT_GT(r.time_s.back(), 750e-6);
@@ -246,7 +167,7 @@ TEST(SeparatedReduction, APulseThatIsOverInTimeNeedsNoneAndKeepsItsBits) {
   EXPECT_EQ(r.strain, plain.strain);
   // Asked for, it finds the same specimen.
   set.noise_rms = 0.0;
-  const Solved solved = solve(set);
+  const SolvedShot solved = solve(set);
   const Reduction asked = reduced(solved.shot, Separation::gauges);
   EXPECT_EQ(asked.separation, Separation::gauges);
   EXPECT_LT(worst(asked, asked.strain, solved, solved.truth.strain), 1e-3);
@@ -286,15 +207,17 @@ TEST(SeparatedReduction, LaterLoadingsAreFollowed) {
 TEST(SeparatedReduction, NoiseIsWhatItsCheckSaysAndBlindFrequenciesAreNamed) {
   LongShot set;
   set.record_s = 1.5e-3;
-  const Records records = records_of(set);
-  const Bench bench = bench_of(set);
+  const BenchModel model = model_of(set);
+  const BenchRecords records = records_of(model, set.record_s);
+  const Bench bench = bench_of(model);
   ReductionOptions options;
   options.band_limit_Hz = 60e3;
   options.duration_s = 800e-6;
-  options.arrival_s = kPreSamples * 1e-6 + set.input_m[0] / kPmma.front_speed_m_per_s();
+  options.arrival_s =
+      kPreSamples * testing::kPeriod_s + set.input_m[0] / kPmma.front_speed_m_per_s();
   Reducer reducer(options);
   const Reduction truth =
-      reducer.reduce(testing::digitise(bench, records.strains, 0.0, 24, 0.02, 1));
+      reducer.reduce(testing::digitise(bench, records.strains, 0.0, 24, kRange, 1));
   double peak = 0.0;
   for (const double force : truth.force_front_N) {
     peak = std::max(peak, std::abs(force));
@@ -304,7 +227,7 @@ TEST(SeparatedReduction, NoiseIsWhatItsCheckSaysAndBlindFrequenciesAreNamed) {
   constexpr unsigned kShots = 100;
   for (unsigned seed = 1; seed <= kShots; ++seed) {
     const Reduction r =
-        reducer.reduce(testing::digitise(bench, records.strains, 4e-6, 16, 0.02, seed));
+        reducer.reduce(testing::digitise(bench, records.strains, 4e-6, 16, kRange, seed));
     ASSERT_EQ(r.time_s.size(), truth.time_s.size());
     squares += std::pow((r.force_front_N.back() - truth.force_front_N.back()) / peak, 2);
     stated += check_of(r, "separated_noise").value / kShots;

@@ -9,9 +9,12 @@
 #include "processing/reduction/reducer.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
+#include "tests/unit/reduction/solved_bench.hpp"
 
 namespace kolsky {
 namespace {
+
+using testing::check_of;
 
 /// Faces that differ by half until 40 us and by 2 % from then on; loaded until 100 us.
 Reduction by_hand() {
@@ -58,15 +61,6 @@ TEST(Validity, QuotesNothingWhereTheFacesNeverAgree) {
 
 Shot shot_of(const testing::LinearShpb& model, double noise) {
   return testing::digitise(model.bench(), model.solve(), noise, 16, 0.005, 1);
-}
-
-const Check& check_of(const Reduction& r, const std::string& name) {
-  for (const Check& check : r.quality.checks) {
-    if (check.name == name) {
-      return check;
-    }
-  }
-  throw std::out_of_range(name);
 }
 
 TEST(Validity, UsefulBandShrinksAsNoiseGrows) {

@@ -165,9 +165,12 @@ TEST(WaveSeparation, TwoGaugesForetellAThird) {
   truth.resize(sum.size());
   EXPECT_LT(rms_difference(sum, truth), 5e-3 * rms(truth));
   // Blind where they tell the waves' sum alone, and where half a wave fits between them.
-  ASSERT_GE(separation.blind().size(), 2U);
-  EXPECT_LT(separation.blind()[0].frequency_Hz, 100.0);
-  EXPECT_NEAR(separation.blind()[1].frequency_Hz, 2160.0 / 2.0 / 0.45, 100.0);
+  const auto blind =
+      blind_frequencies(bar, pmma, WaveTheory::elementary,
+                        {{0.2, shots.strain(0), 1.0}, {0.65, shots.strain(2), 1.0}}, {}, 60e3);
+  ASSERT_GE(blind.size(), 2U);
+  EXPECT_LT(blind[0].frequency_Hz, 100.0);
+  EXPECT_NEAR(blind[1].frequency_Hz, 2160.0 / 2.0 / 0.45, 100.0);
 }
 
 /// One gauge and the force at the far end, as a specimen passes it to the other bar: the same waves
@@ -238,13 +241,13 @@ TEST(WaveSeparation, BlindFrequenciesOfOneGaugeBeforeAFreeEnd) {
   const Bar bar = steel(1.0, 0.016);
   const ElasticSolid solid(206e9);
   const std::vector<double> silence(2000, 0.0);
-  const WaveSeparation separation(bar, solid, WaveTheory::elementary, {{0.25, silence, 0.0}},
-                                  {.start = false, .end = true}, 1e-6, 12e3);
+  const auto blind = blind_frequencies(bar, solid, WaveTheory::elementary, {{0.25, silence, 0.0}},
+                                       {.start = false, .end = true}, 12e3);
   // Nodes of strain: n c / (2 (L - x)).
   const double c = std::sqrt(206e9 / 7850.0);
-  ASSERT_GE(separation.blind().size(), 3U);
-  EXPECT_NEAR(separation.blind()[1].frequency_Hz, c / 1.5, 30.0);
-  EXPECT_NEAR(separation.blind()[2].frequency_Hz, 2.0 * c / 1.5, 30.0);
+  ASSERT_GE(blind.size(), 3U);
+  EXPECT_NEAR(blind[1].frequency_Hz, c / 1.5, 5.0);
+  EXPECT_NEAR(blind[2].frequency_Hz, 2.0 * c / 1.5, 5.0);
 }
 
 TEST(WaveSeparation, WhatDoesNotSufficeIsRefused) {
