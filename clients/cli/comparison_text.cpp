@@ -20,6 +20,25 @@ JsonValue band_limits(const ComparedBand& band) {
   return std::vector<double>{band.low_Hz, band.high_Hz};
 }
 
+struct Fades {
+  double in_s = 0.0;
+  double out_s = 0.0;
+};
+
+/// Half of a fade lies outside its window's limits.
+Fades fades_of(const ArrivalWindow& window, const WhiteResiduals& residuals, std::size_t shot) {
+  const double period_s = residuals.judged_period_s();
+  Fades fades;
+  for (std::size_t n = 0; n < window.weight.size(); ++n) {
+    const double t = residuals.judged_start_s(shot) + static_cast<double>(n) * period_s;
+    if (window.weight[n] > 0.0) {
+      fades.in_s += t < window.start_s ? 2.0 * period_s : 0.0;
+      fades.out_s += t > window.end_s ? 2.0 * period_s : 0.0;
+    }
+  }
+  return fades;
+}
+
 }  // namespace
 
 std::string band_text(const ComparedBand& band) {
@@ -79,6 +98,34 @@ JsonValue describe_regions(const Comparison& comparison, const Campaign& campaig
                               {"significant", region.significant}});
   }
   return list;
+}
+
+JsonValue describe_places(const Comparison& comparison, const Comparer& comparer, Study& study) {
+  JsonList bands;
+  for (const ComparedBand& band : comparison.bands) {
+    bands.push_back(band_limits(band));
+  }
+  JsonList shots;
+  JsonList windows;
+  const Campaign& campaign = study.campaign();
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const CampaignShot& shot = campaign.shots[n];
+    shots.push_back(shot.id);
+    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+      for (const ArrivalWindow& window : comparer.windows(n, j)) {
+        const Fades fades = fades_of(window, study.residuals(), n);
+        windows.push_back(JsonObject{{"shot", shot.id},
+                                     {"gauge", campaign.bench.gauges[j].name},
+                                     {"window", window.name},
+                                     {"start_s", window.start_s + shot.foot_s},
+                                     {"end_s", window.end_s + shot.foot_s},
+                                     {"fade_in_s", fades.in_s},
+                                     {"fade_out_s", fades.out_s}});
+      }
+    }
+  }
+  return JsonObject{
+      {"shots", std::move(shots)}, {"bands_Hz", std::move(bands)}, {"windows", std::move(windows)}};
 }
 
 std::string places_table(const Comparison& comparison, const Campaign& campaign) {

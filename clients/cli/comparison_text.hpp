@@ -18,6 +18,10 @@ namespace kolsky::cli {
 /// together) of what `kolsky compare --json` prints.
 [[nodiscard]] JsonValue describe_tiles(const Comparison& comparison, const Campaign& campaign);
 [[nodiscard]] JsonValue describe_regions(const Comparison& comparison, const Campaign& campaign);
+/// Member `places`: all that these tiles are taken from, failing or not. Times of a window are from
+/// its record's first sample; it fades in and out around them, over so long.
+[[nodiscard]] JsonValue describe_places(const Comparison& comparison, const Comparer& comparer,
+                                        Study& study);
 
 /// The places that fail, as a table.
 [[nodiscard]] std::string places_table(const Comparison& comparison, const Campaign& campaign);

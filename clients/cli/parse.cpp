@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "drivers/files/nearest_name.hpp"
 #include "processing/base/error.hpp"
@@ -32,11 +33,14 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// CLI11 indents the lines of a help text but does not break them.
+// CLI11 indents the lines of a help text but does not break them. Those that it has already stay.
 std::string broken_into_lines(const std::string& text) {
+  std::istringstream given(text);
   std::string lines;
-  for (const std::string& line : wrapped(text, kHelpColumns - kNameColumns)) {
-    lines += (lines.empty() ? "" : "\n") + line;
+  for (std::string own; std::getline(given, own);) {
+    for (const std::string& line : wrapped(own, kHelpColumns - kNameColumns)) {
+      lines += (lines.empty() ? "" : "\n") + line;
+    }
   }
   return lines;
 }

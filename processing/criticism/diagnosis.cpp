@@ -63,12 +63,13 @@ class Diagnostician {
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
     start_ = model;
-    Studied first = study_.fit(model);
+    Studied first =
+        study_.fit(model, options_.safeguards.fitted_noise ? LearnNoise::yes : LearnNoise::no);
     diagnosis_.before = first.misfit;
     Studied current = first;
     while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
     }
-    if (diagnosis_.effects.size() > 1) {
+    if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
       drop_unneeded(current, 1);  // the last was certified beside all others
       if (reconsider(current)) {
         drop_unneeded(current, 0);
@@ -83,7 +84,7 @@ class Diagnostician {
     options_.progress(diagnosis_.effects.empty()
                           ? "testing every effect of the library"
                           : "testing what remains after " + diagnosis_.effects.back());
-    Search search(study_, current, start_);
+    Search search(study_, current, start_, options_.safeguards);
     const bool first = diagnosis_.effects.empty();
     if (diagnosis_.candidates.empty()) {
       diagnosis_.candidates = first_order_table(
@@ -133,7 +134,10 @@ class Diagnostician {
       // Products of what each shot and each gauge has of its own are foretold by each other.
       const bool foretold =
           refit.products || (gain > 0.0 && 2 * better > study_.campaign().shots.size());
-      if (!foretold || !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) {
+      const Safeguards& safeguards = options_.safeguards;
+      if ((safeguards.held_out && !foretold) ||
+          (safeguards.shot_agreement &&
+           !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot))) {
         set_verdict(id, "rejected");
         continue;
       }
@@ -185,9 +189,11 @@ class Diagnostician {
   void take(Choice& choice, Studied& current) {
     // The noise shows better now.
     study_.residuals().freeze(choice.studied.composition, choice.studied.fit.theta);
-    Studied next = study_.refit(choice.studied);
-    study_.residuals().calibrate(next.composition, next.fit.theta);
-    current = study_.refit(next);
+    current = study_.refit(choice.studied);
+    if (options_.safeguards.fitted_noise) {
+      study_.residuals().calibrate(current.composition, current.fit.theta);
+      current = study_.refit(current);
+    }
     diagnosis_.tied_with[choice.id] = std::move(choice.ties);
   }
 
@@ -201,7 +207,7 @@ class Diagnostician {
       const Studied base = without(current, id);
       Model start = start_;
       std::erase_if(start.effects, [&](const EffectUse& use) { return use.id() == id; });
-      Search search(study_, base, start);
+      Search search(study_, base, start, options_.safeguards);
       std::optional<Choice> choice = choose(search, base, false);
       if (!choice || std::count(diagnosis_.effects.begin(), diagnosis_.effects.end(), choice->id) >
                          (choice->id == id ? 1 : 0)) {
@@ -248,7 +254,8 @@ class Diagnostician {
       const double noise = noise_of(current.misfit, study_.campaign().shots.size());
       const double loss = (left.fit.objective() - current.fit.objective()) / noise;
       if (equivalent_square(log_gain_tail(loss, 1.0, false)) < 16.0 ||
-          !own_strengths_confirmed(current, id, study_.campaign(), Claim::standing)) {
+          (options_.safeguards.own_strengths &&
+           !own_strengths_confirmed(current, id, study_.campaign(), Claim::standing))) {
         current = std::move(left);
         std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });
         diagnosis_.tied_with.erase(id);
@@ -274,9 +281,9 @@ class Diagnostician {
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     // Smooth distortions show that something is left; how much, all that repeats.
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
-    const bool rest = (diagnosis_.unexplained_log_p < options_.log_alpha &&
-                       excess > allowed_rest() * std::max(0.0, explained)) ||
-                      at_all_gauges_but_one();
+    const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
+                         excess > allowed_rest() * std::max(0.0, explained);
+    const bool rest = options_.safeguards.unknown && (remains || at_all_gauges_but_one());
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {

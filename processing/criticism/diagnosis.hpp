@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "processing/criticism/candidate_table.hpp"
+#include "processing/criticism/safeguards.hpp"
 
 namespace kolsky {
 
@@ -43,6 +44,7 @@ struct DiagnosisOptions {
   std::size_t most_effects = 3;
   double log_alpha = -5.8;  ///< ln of the chance of a false claim, or a false "unknown": 0.3 %
   std::function<void(const std::string&)> progress = [](const std::string&) {};
+  Safeguards safeguards{};
 };
 
 /// Finds what a model lacks (diagnosis.md). @throws InputError as read_campaign

@@ -29,16 +29,19 @@ bool at_one_gauge(const Candidate& a, const Candidate& b) {
 
 }  // namespace
 
-Search::Search(Study& study, const Studied& base, const Model& start)
+Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
     : study_(study),
       base_(base),
       start_(start),
+      safeguards_(safeguards),
       candidates_(candidates_for(base, study.campaign())),
       directions_(candidates_.size()) {
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     directions_[i] = direction_of(candidates_[i], base_, study_, worker);
   });
-  trials_ = independent_trials(base_, candidates_, directions_);
+  if (safeguards_.search_count) {
+    trials_ = independent_trials(base_, candidates_, directions_);
+  }
 }
 
 double Search::with_search(double log_p) const {
@@ -59,8 +62,9 @@ std::vector<Refit> Search::refits() {
   for (auto& own : done) {
     if (own && std::isfinite(own->studied.fit.objective()) &&
         !beyond_the_record(own->studied, *own) &&
-        own_strengths_confirmed(own->studied, candidates_[own->candidate].id(), study_.campaign(),
-                                Claim::fresh)) {
+        (!safeguards_.own_strengths ||
+         own_strengths_confirmed(own->studied, candidates_[own->candidate].id(), study_.campaign(),
+                                 Claim::fresh))) {
       list.push_back(std::move(*own));
     }
   }

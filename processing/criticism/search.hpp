@@ -6,6 +6,7 @@
 
 #include "processing/criticism/candidates.hpp"
 #include "processing/criticism/product_test.hpp"
+#include "processing/criticism/safeguards.hpp"
 
 namespace kolsky {
 
@@ -29,7 +30,7 @@ class Search {
  public:
   /// @param base   the model as fitted; outlives this
   /// @param start  the same before anything was fitted; outlives this
-  Search(Study& study, const Studied& base, const Model& start);
+  Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards = {});
 
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
   /// Of the candidates, one each.
@@ -60,6 +61,7 @@ class Search {
   Study& study_;
   const Studied& base_;
   const Model& start_;
+  Safeguards safeguards_;
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   double trials_ = 1.0;

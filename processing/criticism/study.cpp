@@ -57,15 +57,17 @@ Model Study::begun(Model model) {
   return model;
 }
 
-Studied Study::fit(const Model& model) {
+Studied Study::fit(const Model& model, LearnNoise learn) {
   const Model started = begun(model);
   Composition composition(started, campaign_);
   residuals_.freeze(composition, composition.start());
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
-  residuals_.calibrate(composition, fit.theta);
-  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  if (learn == LearnNoise::yes) {
+    residuals_.calibrate(composition, fit.theta);
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
   if (put_branches_in_order(composition, fit.theta)) {
     fit = fit_model(composition, residuals_, executor_, fit.theta);
   }

@@ -17,6 +17,9 @@ struct Studied {
   Misfit misfit;
 };
 
+/// Whether a fit's residuals say of the noise what the quiet before the pulses does not.
+enum class LearnNoise { yes, no };
+
 /// A campaign under study: its records ready, models fitted and compared one after the other.
 class Study {
  public:
@@ -27,7 +30,7 @@ class Study {
   /// Fits from wherever the model's moduli are. What was just added begins at the best of its
   /// auxiliary parameters' starts, and what is free to choose among a few is held at the best from
   /// then on.
-  [[nodiscard]] Studied fit(const Model& model);
+  [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
   /// The model as it is, nothing moved.

@@ -71,6 +71,18 @@ Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
                          quoted(files.folder / "found.toml"), analyser.more));
 }
 
+Answer compare_base(const Analyser& analyser, const CaseFiles& files) {
+  const std::filesystem::path fitted = files.folder / "base.toml";
+  const Answer fit = run(analyser, files, "fit-base",
+                         fmt::format("fit{} --model {} -o {} --json", captures_of(files),
+                                     quoted(files.folder / "model.toml"), quoted(fitted)));
+  if (fit.code != 0) {
+    return fit;
+  }
+  return run(analyser, files, "compare",
+             fmt::format("compare{} --model {} --json", captures_of(files), quoted(fitted)));
+}
+
 Answer refit(const Analyser& analyser, const CaseFiles& files) {
   return run(
       analyser, files, "fit",

@@ -22,6 +22,9 @@ struct Answer {
 /// Makes the paper's model for the case's bench and has the captures diagnosed.
 [[nodiscard]] Answer diagnose(const Analyser& analyser, const CaseFiles& files);
 
+/// Fits the paper's model, as diagnose() made it, and compares it.
+[[nodiscard]] Answer compare_base(const Analyser& analyser, const CaseFiles& files);
+
 /// Fits the model that the diagnosis wrote, with what it found in it. @return fit's answer
 [[nodiscard]] Answer refit(const Analyser& analyser, const CaseFiles& files);
 

@@ -19,6 +19,7 @@ struct Case {
   std::string id;
   CaseKind kind = CaseKind::null;
   testing::Campaign campaign;
+  testing::Campaign bare;         ///< with nothing hidden
   std::vector<double> multiples;  ///< one per effect
 };
 

@@ -100,7 +100,7 @@ Planted sized(const Identifiable& found, double multiple, Random& random) {
 }
 
 Case with(std::string id, CaseKind kind, Campaign campaign, const std::vector<Planted>& planted) {
-  Case made{std::move(id), kind, std::move(campaign), {}};
+  Case made{std::move(id), kind, campaign, std::move(campaign), {}};
   for (const Planted& one : planted) {
     testing::hide(made.campaign, one.effect);
     made.multiples.push_back(one.multiple);

@@ -3,11 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-
-#include "tests/hidden_effects/source_freedom.hpp"
-#include "tests/hidden_effects/whitening.hpp"
 
 namespace kolsky::scoring {
 
@@ -18,7 +14,6 @@ using testing::EffectKind;
 using testing::HiddenEffect;
 using testing::Readings;
 
-constexpr double kModulusStep = 5e-4;
 constexpr double kDetect = 6.0;
 constexpr double kAgainstRival = 5.0;
 // A size beyond this many typical ones is nothing a laboratory has.
@@ -27,41 +22,6 @@ constexpr double kBeyondReason = 10.0;
 constexpr double kMostOfBranch = 0.7;
 // Below this exponent the generator's own error is no longer small.
 constexpr double kMostFractional = 0.25;
-
-Whitening whitening_of(const Campaign& campaign) {
-  const double step =
-      campaign.bits > 0 ? std::ldexp(campaign.full_scale_strain, 1 - campaign.bits) : 0.0;
-  const double rms = campaign.wishes.noise_strain;
-  const double quantised = step / std::sqrt(12.0);
-  if (campaign.wishes.colour == testing::NoiseColour::white) {
-    return Whitening(std::hypot(rms, quantised));
-  }
-  std::mt19937_64 random(17);
-  std::vector<std::vector<double>> samples;
-  std::normal_distribution<double> rounding(0.0, quantised);
-  for (int i = 0; i < 64; ++i) {
-    samples.push_back(testing::noise(campaign.wishes.colour, rms, campaign.world.timing.period_s(),
-                                     4096, random, campaign.wishes.measured_noise));
-    for (double& value : samples.back()) {
-      value += rounding(random);
-    }
-  }
-  return Whitening(samples, 48);
-}
-
-Readings difference(const Readings& changed, const Readings& base, double step,
-                    const Whitening& whiten) {
-  Readings out = changed;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (std::size_t g = 0; g < out[i].size(); ++g) {
-      for (std::size_t n = 0; n < out[i][g].size(); ++n) {
-        out[i][g][n] = (out[i][g][n] - base[i][g][n]) / step;
-      }
-      out[i][g] = whiten(out[i][g]);
-    }
-  }
-  return out;
-}
 
 // Only one gauge's share of a change made at all gauges at once.
 Readings of_gauge(const Readings& all, std::size_t gauge) {
@@ -76,10 +36,6 @@ Readings of_gauge(const Readings& all, std::size_t gauge) {
   return out;
 }
 
-bool is_there_or_not(const std::string& id) {
-  return id == "geometric-dispersion" || id == "end-reflection" || id == "specimen-inertia";
-}
-
 // The mean over a gauge's length misses the middle by its square.
 double power_of(const EffectKind& kind) {
   return kind.id == "gauge-length" ? 2.0 : 1.0;
@@ -90,167 +46,6 @@ double bent(const Candidate& candidate, double linear) {
   const double probe = std::abs(candidate.effect.strength - candidate.null);
   return probe * std::pow(linear / probe, 1.0 / power_of(candidate.kind));
 }
-
-struct Direction {
-  Readings readings;
-  double prior_sd = 0.0;  // 0: free
-};
-
-class Prober {
- public:
-  explicit Prober(const Campaign& campaign)
-      : campaign_(campaign), whiten_(whitening_of(campaign)), base_(forward_.readings(campaign)) {}
-
-  std::vector<Direction> nuisances() {
-    std::vector<Direction> out;
-    if (campaign_.split) {
-      add_specimen(out);
-    }
-    const bool held = campaign_.split.has_value();
-    const auto filed = [&](const Measured& number) { return number.sd / number.value; };
-    const auto& bars = campaign_.filed_bars;
-    if (campaign_.world.material.elastic) {
-      add_modulus(out, &testing::TrueMaterial::E1_Pa, true,
-                  filed(*campaign_.bench.input.youngs_modulus_Pa));
-    } else {
-      add_modulus(out, &testing::TrueMaterial::E1_Pa, held, bars ? filed(bars->E1_Pa) : 0.0);
-      add_modulus(out, &testing::TrueMaterial::E2_Pa, held, bars ? filed(bars->E2_Pa) : 0.0);
-      add_modulus(out, &testing::TrueMaterial::eta2_Pa_s, held,
-                  bars ? filed(bars->eta2_Pa_s) : 0.0);
-    }
-    add_gauges(out);
-    return out;
-  }
-
-  Readings unit_change(const Candidate& candidate) {
-    const double step = candidate.effect.strength - candidate.null;
-    const auto at = [&](double share) {
-      Campaign changed_one = campaign_;
-      HiddenEffect effect = candidate.effect;
-      effect.strength = candidate.null + share * step;
-      testing::hide(changed_one, effect);
-      return changed_one;
-    };
-    return unit_change(at, step, differences_of(candidate.kind));
-  }
-
-  // The same change at every gauge, at the cost of one.
-  Readings unit_change_everywhere(const Candidate& candidate) {
-    const double step = candidate.effect.strength;
-    const auto at = [&](double share) {
-      Campaign changed_one = campaign_;
-      for (const testing::TrueGauge& gauge : campaign_.world.gauges) {
-        testing::hide(changed_one, {candidate.effect.id, gauge.name, share * step, {}});
-      }
-      return changed_one;
-    };
-    return unit_change(at, step, differences_of(candidate.kind));
-  }
-
-  SourceFreedom freedom() {
-    const testing::Timing& timing = campaign_.world.timing;
-    std::vector<std::vector<double>> bells;
-    const auto first = -static_cast<std::ptrdiff_t>(std::floor(timing.lead_s / timing.period_s()));
-    const std::size_t length = timing.samples + static_cast<std::size_t>(-first);
-    double largest = 0.0;
-    for (const std::vector<double>& bell : forward_.bell_records(campaign_, length)) {
-      for (const double value : bell) {
-        largest = std::max(largest, std::abs(value));
-      }
-      bells.push_back(whiten_(bell));
-    }
-    return {std::move(bells),        whiten_(std::vector<double>(timing.samples, 1.0)),
-            timing.samples,          first,
-            timing.periods_per_knot, 3e-3 / largest};
-  }
-
- private:
-  // Ties are exact to first order: differences must be better than that.
-  enum class Differences { central, one_sided, whole };
-
-  static Differences differences_of(const EffectKind& kind) {
-    // Bending adds what is proportional to it: no difference is more exact than another.
-    if (is_there_or_not(kind.id) || kind.id == "gauge-length" || kind.id == "bending") {
-      return Differences::whole;
-    }
-    return kind.one_sided ? Differences::one_sided : Differences::central;
-  }
-
-  Readings unit_change(const std::function<Campaign(double)>& at, double step,
-                       Differences differences) {
-    if (differences == Differences::central) {
-      return difference(forward_.readings(at(1.0)), forward_.readings(at(-1.0)), 2.0 * step,
-                        whiten_);
-    }
-    Readings out = difference(forward_.readings(at(1.0)), base_, step, whiten_);
-    if (differences == Differences::one_sided) {
-      const Readings half = difference(forward_.readings(at(0.5)), base_, 0.5 * step, whiten_);
-      for (std::size_t i = 0; i < out.size(); ++i) {
-        for (std::size_t g = 0; g < out[i].size(); ++g) {
-          for (std::size_t n = 0; n < out[i][g].size(); ++n) {
-            out[i][g][n] = 2.0 * half[i][g][n] - out[i][g][n];
-          }
-        }
-      }
-    }
-    return out;
-  }
-
-  // A modulus of the bars, free or within what is filed; held altogether where that is exact.
-  void add_modulus(std::vector<Direction>& out, double testing::TrueMaterial::*member, bool held,
-                   double relative_sd) {
-    if (held && relative_sd == 0.0) {
-      return;
-    }
-    const auto at = [&](double share) {
-      Campaign campaign = campaign_;
-      campaign.world.material.*member *= 1.0 + share * kModulusStep;
-      return campaign;
-    };
-    out.push_back({unit_change(at, kModulusStep, Differences::central), relative_sd});
-  }
-
-  void add_specimen(std::vector<Direction>& out) {
-    using S = testing::TrueSpecimen;
-    const Specimen& filed = *campaign_.bench.specimen;
-    for (const auto& [of_specimen, sd] :
-         {std::pair{&S::E1_Pa, 0.0},
-          {&S::E2_Pa, 0.0},
-          {&S::eta2_Pa_s, 0.0},
-          {&S::length_m, filed.length_m.sd / filed.length_m.value},
-          {&S::diameter_m, filed.diameter_m.sd / filed.diameter_m.value}}) {
-      const auto member = of_specimen;
-      if (sd > 0.0 || (member != &S::length_m && member != &S::diameter_m)) {
-        const auto at = [&](double share) {
-          Campaign campaign = campaign_;
-          campaign.split->specimen.*member *= 1.0 + share * kModulusStep;
-          return campaign;
-        };
-        out.push_back({unit_change(at, kModulusStep, Differences::central), sd});
-      }
-    }
-  }
-
-  void add_gauges(std::vector<Direction>& out) {
-    for (std::size_t g = 0; g < campaign_.world.gauges.size(); ++g) {
-      const Gauge& filed = campaign_.bench.gauges[g];
-      const std::string& name = campaign_.world.gauges[g].name;
-      if (filed.position_m.sd > 0.0) {
-        out.push_back(
-            {unit_change({{"gauge-position", name, 1e-4, {}}, {}, 0.0}), filed.position_m.sd});
-      }
-      if (filed.strain_per_V && filed.strain_per_V->sd > 0.0) {
-        out.push_back({unit_change({{"gauge-factor", name, 1e-3, {}}, {}, 0.0}),
-                       filed.strain_per_V->sd / filed.strain_per_V->value});
-      }
-    }
-  }
-
-  const Campaign& campaign_;
-  testing::CampaignForward forward_;
-  Whitening whiten_;
-  Readings base_;
-};
 
 // Strengths at which differences are taken: small, but for what is there or not.
 HiddenEffect probe_of(const EffectKind& kind, const std::string& gauge) {
@@ -366,8 +161,7 @@ Identifiability::Identifiability(const Campaign& campaign) : candidates_(all_can
   }
   Eigen::MatrixXd nuisance = information.topLeftCorner(nuisances, nuisances);
   for (Eigen::Index i = 0; i < nuisances; ++i) {
-    const double sd = directions[static_cast<std::size_t>(i)].prior_sd;
-    nuisance(i, i) += sd > 0.0 ? 1.0 / (sd * sd) : 0.0;
+    nuisance(i, i) += directions[static_cast<std::size_t>(i)].known();
   }
   const Eigen::Index wanted = count - nuisances;
   products_ = without(information.bottomRightCorner(wanted, wanted),

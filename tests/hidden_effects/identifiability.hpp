@@ -5,17 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/generators/campaign.hpp"
+#include "tests/hidden_effects/prober.hpp"
 
 namespace kolsky::scoring {
-
-/// One thing that could change the records, per unit of strength from its null.
-struct Candidate {
-  testing::HiddenEffect effect;  ///< with the strength at which the difference was taken
-  testing::EffectKind kind;
-  double null = 0.0;
-  double most = 0.0;  ///< strength from null that a laboratory may have and the generator can make
-};
 
 /// How well a bench could tell effects, computed from the generator alone.
 struct Identifiable {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <atomic>
 #include <exception>
 #include <fstream>
@@ -34,11 +35,17 @@ struct Settings {
   bool keep = false;
   bool refit = false;
   bool further = false;
+  bool safeguards = false;
 };
+
+/// As `kolsky diagnose --without` takes them.
+constexpr std::array kSafeguards{"search-count", "held-out", "shot-agreement", "own-strengths",
+                                 "fitted-noise", "backward", "unknown"};
 
 struct Scores {
   std::mutex mutex;
   std::vector<Verdict> verdicts;
+  BySafeguard by_safeguard;
   std::exception_ptr failure;  ///< what ended a worker
   int left_out = 0;
 };
@@ -73,7 +80,43 @@ std::optional<CaseFiles> written(const Settings& settings, const Case& drawn, Sc
   }
 }
 
-void score_case(const Settings& settings, const Case& drawn, Scores& scores) {
+/// Whether what it hides is large enough that the places must show it.
+bool asks_for_places(const Case& drawn) {
+  return drawn.kind == CaseKind::single && drawn.multiples.front() > 1.5;
+}
+
+/// @param bench  reckoned where it is needed first
+void score_places(const Settings& settings, const Case& drawn, const CaseFiles& files,
+                  std::optional<FailingPlaces>& bench, Verdict& verdict) {
+  const Answer compared = compare_base(settings.analyser, files);
+  if (compared.code != 0 || !compared.json.is_object()) {
+    verdict.error += "compare: " + compared.error.substr(0, 300);
+    return;
+  }
+  if (!bench) {
+    bench.emplace(drawn.bare);
+  }
+  verdict.places =
+      localisation(bench->of(drawn.campaign, places_of(compared.json)), marked_by(compared.json));
+}
+
+/// The same case without each of the safeguards.
+void score_safeguards(const Settings& settings, const Case& drawn, const CaseFiles& files,
+                      const Verdict& with_all, Scores& scores) {
+  BySafeguard own{{"all", {with_all}}};
+  for (const char* const name : kSafeguards) {
+    Analyser without = settings.analyser;
+    without.more += fmt::format(" --without {}", name);
+    own[name].push_back(judge(drawn, diagnose(without, files)));
+  }
+  const std::lock_guard lock(scores.mutex);
+  for (auto& [name, verdicts] : own) {
+    scores.by_safeguard[name].push_back(std::move(verdicts.front()));
+  }
+}
+
+void score_case(const Settings& settings, const Case& drawn, std::optional<FailingPlaces>& bench,
+                Scores& scores) {
   const std::optional<CaseFiles> drawn_files = written(settings, drawn, scores);
   if (!drawn_files) {
     return;
@@ -87,11 +130,16 @@ void score_case(const Settings& settings, const Case& drawn, Scores& scores) {
   if (settings.refit && verdict.exact) {
     judge_refit(verdict, drawn, refit(settings.analyser, files));
   }
+  if (settings.safeguards) {
+    score_safeguards(settings, drawn, files, verdict, scores);
+  } else if (asks_for_places(drawn)) {
+    score_places(settings, drawn, files, bench, verdict);
+  }
   if (settings.further && drawn.kind != CaseKind::two && verdict.found == 1 &&
       verdict.set_size > 1.0) {
     verdict.proposal = proposal_of(answer);
     if (const auto changed = changed_as_proposed(drawn.campaign, verdict.proposal)) {
-      const Case further{drawn.id + "-next", drawn.kind, *changed, drawn.multiples};
+      const Case further{drawn.id + "-next", drawn.kind, *changed, {}, drawn.multiples};
       const CaseFiles further_files = write_case(further, settings.out);
       verdict.tie_broken = judge(further, diagnose(settings.analyser, further_files)).exact;
       if (*verdict.tie_broken && !settings.keep) {
@@ -121,28 +169,50 @@ void work(const Settings& settings, std::atomic<int>& next, Scores& scores) {
       plan.singles_per_bench = plan.tied_per_bench = plan.doubles_per_bench = 0;
       plan.absorbed_per_bench = plan.withheld_per_bench = 0;
     }
-    for (const Case& drawn : draw_cases(plan, bench)) {
-      score_case(settings, drawn, scores);
+    const std::vector<Case> cases = draw_cases(plan, bench);
+    std::optional<FailingPlaces> places;
+    for (const Case& drawn : cases) {
+      score_case(settings, drawn, places, scores);
     }
   }
 }
 
-int report(const Settings& settings, std::vector<Verdict> verdicts, int left_out) {
+int report(const Settings& settings, Scores& scores) {
+  std::vector<Verdict>& verdicts = scores.verdicts;
   std::ranges::sort(verdicts, {}, &Verdict::id);
   nlohmann::json all = nlohmann::json::array();
   for (const Verdict& verdict : verdicts) {
     all.push_back(json_of(verdict));
   }
+  nlohmann::json places;
+  for (const auto& [effect, own] : places_by_effect(verdicts)) {
+    places[effect] = json_of(own);
+  }
   std::ofstream(std::filesystem::path(settings.out) / "scores.json")
-      << nlohmann::json{{"seed", settings.plan.seed}, {"cases", all}}.dump(1) << "\n";
+      << nlohmann::json{{"seed", settings.plan.seed}, {"cases", all}, {"places", places}}.dump(1)
+      << "\n";
+  if (settings.safeguards) {
+    nlohmann::json without;
+    for (auto& [name, own] : scores.by_safeguard) {
+      std::ranges::sort(own, {}, &Verdict::id);
+      for (const Verdict& verdict : own) {
+        without[name].push_back(json_of(verdict));
+      }
+    }
+    std::ofstream(std::filesystem::path(settings.out) / "safeguards.json")
+        << without.dump(1) << "\n";
+    std::cout << safeguards_text(scores.by_safeguard) << "\n";
+  }
   const std::vector<Measure> table = measures(verdicts);
   std::cout << table_text(table) << "\nhidden -> said\n"
             << confusion_text(verdicts)
             << "\nfound, by multiple of the smallest identifiable size\n"
-            << power_text(verdicts);
-  if (left_out > 0) {
+            << power_text(verdicts)
+            << "\nplaces where the model fails without the effect, and what compare marks\n"
+            << places_text(verdicts);
+  if (scores.left_out > 0) {
     std::cout << fmt::format("\n{} cases left out: the generator could not calculate them\n",
-                             left_out);
+                             scores.left_out);
   }
   return std::ranges::all_of(table, [](const Measure& one) { return !one.got || one.met; }) ? 0 : 1;
 }
@@ -170,7 +240,7 @@ int run(Settings& settings) {
   if (scores.failure) {
     std::rethrow_exception(scores.failure);
   }
-  return settings.draw_only ? 0 : report(settings, std::move(scores.verdicts), scores.left_out);
+  return settings.draw_only ? 0 : report(settings, scores);
 }
 
 }  // namespace
@@ -201,6 +271,8 @@ int main(int argc, char** argv) {
   app.add_flag("--split", settings.plan.split, "split bars in place of bars");
   app.add_flag("--refit", settings.refit, "fit again with what is named, judge the moduli");
   app.add_flag("--further", settings.further, "make the experiments proposed to break ties");
+  app.add_flag("--safeguards", settings.safeguards,
+               "every case without each of the diagnosis' safeguards, too");
   app.add_flag("--keep", settings.keep, "keep the folders of cases that went well");
   app.add_flag("--draw-only", settings.draw_only, "write the campaigns and stop");
   app.add_flag("--short", fast, "a few small campaigns");

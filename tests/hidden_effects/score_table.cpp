@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 
 namespace kolsky::scoring {
 
@@ -97,6 +97,23 @@ Measure uniformity_measure(const std::vector<Verdict>& verdicts) {
   return made;
 }
 
+Measure localisation_measure(const std::vector<Verdict>& verdicts) {
+  Localisation together;
+  std::size_t cases = 0;
+  for (const Verdict& verdict : verdicts) {
+    if (verdict.places) {
+      together += *verdict.places;
+      ++cases;
+    }
+  }
+  Measure made{"localisation of the failure, F1 over places", ">= 0.9", {}, cases, false};
+  if (cases > 0) {
+    made.got = together.all.f1();
+    made.met = *made.got >= 0.9;
+  }
+  return made;
+}
+
 std::string said(const Verdict& verdict) {
   if (verdict.named.empty()) {
     return verdict.answered;
@@ -183,6 +200,7 @@ std::vector<Measure> measures(const std::vector<Verdict>& verdicts) {
                   verdicts, [](const Verdict& v) { return v.tie_broken.has_value(); },
                   [](const Verdict& v) { return *v.tie_broken ? 1.0 : 0.0; }),
               0.90, Sense::at_least),
+      localisation_measure(verdicts),
       uniformity_measure(verdicts),
       measure("ended without failure or timeout",
               values(
@@ -222,6 +240,58 @@ std::string confusion_text(const std::vector<Verdict>& verdicts) {
     text += "\n";
   }
   return text;
+}
+
+std::map<std::string, Localisation> places_by_effect(const std::vector<Verdict>& verdicts) {
+  std::map<std::string, Localisation> rows;
+  for (const Verdict& verdict : verdicts) {
+    if (verdict.places) {
+      rows[hidden(verdict)] += *verdict.places;
+    }
+  }
+  return rows;
+}
+
+std::string places_text(const std::vector<Verdict>& verdicts) {
+  std::string text =
+      fmt::format("{:<28}{:>8}{:>8}{:>8}{:>11}{:>8}{:>7}{:>14}{:>8}\n", "", "failing", "marked",
+                  "both", "precision", "recall", "F1", "F1, touched", "ideal");
+  const auto row = [](const std::string& name, const Localisation& own) {
+    return fmt::format("{:<28}{:>8}{:>8}{:>8}{:>11.2f}{:>8.2f}{:>7.2f}{:>14.2f}{:>8.2f}\n", name,
+                       own.all.failing, own.all.marked, own.all.both, own.all.precision(),
+                       own.all.recall(), own.all.f1(), own.touched.f1(), own.ideal_f1());
+  };
+  Localisation together;
+  for (const auto& [effect, own] : places_by_effect(verdicts)) {
+    text += row(effect, own);
+    together += own;
+  }
+  return text + row("all", together);
+}
+
+std::string safeguards_text(const BySafeguard& verdicts) {
+  constexpr std::array kColumns{std::pair{"false claims", "false claim where nothing is hidden"},
+                                std::pair{"right class", "right class, single effect"},
+                                std::pair{"truth in set", "reported set holds the truth"},
+                                std::pair{"both of two", "both of two"},
+                                std::pair{"withheld named", "withheld effect falsely named"}};
+  std::string text = fmt::format("{:<18}", "without");
+  for (const auto& [title, name] : kColumns) {
+    text += fmt::format("{:>16}", title);
+  }
+  for (const auto& [safeguard, own] : verdicts) {
+    text += fmt::format("\n{:<18}", safeguard == "all" ? "(all there)" : safeguard);
+    const std::vector<Measure> table = measures(own);
+    for (const auto& [title, name] : kColumns) {
+      const auto found = std::ranges::find(table, name, &Measure::name);
+      const std::size_t cases = found->cases;
+      text += fmt::format(
+          "{:>16}",
+          found->got ? fmt::format("{:.0f} of {}", *found->got * static_cast<double>(cases), cases)
+                     : "-");
+    }
+  }
+  return text + "\n";
 }
 
 std::string power_text(const std::vector<Verdict>& verdicts) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+
 #include "tests/hidden_effects/verdict.hpp"
 
 namespace kolsky::scoring {
@@ -17,6 +19,14 @@ struct Measure {
 [[nodiscard]] std::string table_text(const std::vector<Measure>& measures);
 /// Rows: what was hidden; columns: what was said, most frequent first.
 [[nodiscard]] std::string confusion_text(const std::vector<Verdict>& verdicts);
+/// Where models without an effect fail, against what `compare` marks, per effect.
+[[nodiscard]] std::map<std::string, Localisation> places_by_effect(
+    const std::vector<Verdict>& verdicts);
+[[nodiscard]] std::string places_text(const std::vector<Verdict>& verdicts);
+/// Verdicts on the same cases: with every safeguard ("all") and without one of them.
+using BySafeguard = std::map<std::string, std::vector<Verdict>>;
+/// What the diagnosis claims without each of its safeguards.
+[[nodiscard]] std::string safeguards_text(const BySafeguard& verdicts);
 /// Share found over the multiple of the smallest identifiable size, per effect.
 [[nodiscard]] std::string power_text(const std::vector<Verdict>& verdicts);
 

@@ -3,7 +3,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <fstream>
+#include <numbers>
 #include <random>
 
 #include "drivers/files/capture.hpp"
@@ -11,6 +13,7 @@
 #include "tests/generators/campaign_files.hpp"
 #include "tests/generators/noise.hpp"
 #include "tests/hidden_effects/case_draw.hpp"
+#include "tests/hidden_effects/failing_places.hpp"
 #include "tests/hidden_effects/further_experiment.hpp"
 #include "tests/hidden_effects/identifiability.hpp"
 #include "tests/hidden_effects/score_table.hpp"
@@ -81,6 +84,13 @@ TEST(SourceFreedom, LeavesWhatADenseFitLeaves) {
   const Eigen::MatrixXd want = rest.transpose() * rest;
   EXPECT_LT((left - want).norm(), 1e-4 * want.norm());
   EXPECT_LT(want.norm(), 0.9 * (seen.transpose() * seen).norm());
+
+  const Records remainder = freedom.remainder(a);
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      EXPECT_NEAR(remainder[g][n], rest(static_cast<Eigen::Index>(g * kSamples + n), 0), 1e-3);
+    }
+  }
 }
 
 TEST(Whitening, MakesColouredNoiseWhite) {
@@ -172,8 +182,109 @@ TEST(Campaign, TablesAndCapturesHoldTheSame) {
   fs::remove_all(folder);
 }
 
+// Tables of the noncentral chi-square distribution, 5 % and 80 %.
+TEST(FailingPlaces, CountFromWhereATestFindsThem) {
+  EXPECT_NEAR(findable_excess(1.0), 7.849, 2e-3);
+  EXPECT_NEAR(findable_excess(2.0), 9.635, 2e-3);
+  EXPECT_NEAR(findable_excess(10.0), 16.24, 1e-2);
+}
+
+// On a bar without losses all gauges see one wave. A gain that is off at one of three leaves two
+// thirds of itself there, in noise of two thirds of its power, and a third of itself elsewhere.
+TEST(FailingPlaces, HaveTheEnergyThatAFreeSourceLeaves) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 11;
+  wishes.shots = 2;
+  wishes.gauges = 3;
+  wishes.rate_Hz = 1e6;
+  wishes.samples = 1000;
+  wishes.bits = 0;
+  wishes.elastic = true;
+  const testing::Campaign bare = testing::draw_campaign(wishes);
+  constexpr double kGain = 0.02;
+  testing::Campaign hidden = bare;
+  testing::hide(hidden, testing::parse_effect("gauge-factor:g2=0.02"));
+  Places places{{{1e3, 10e3}, {10e3, 30e3}}, {}};
+  for (const char* gauge : {"g1", "g2", "g3"}) {
+    places.stretches.push_back({gauge, "all", 0, 0.0, 1e-3, 0.0, 0.0, false});
+  }
+  FailingPlaces failing(bare);
+  std::vector<PlaceTruth> found = failing.of(hidden, places);
+  std::erase_if(found, [](const PlaceTruth& place) { return std::get<3>(place.place) == 0; });
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_TRUE(found[1].touched);
+  EXPECT_FALSE(found[0].touched);
+
+  const std::vector<double> reading = testing::CampaignForward().readings(bare)[0][1];
+  double energy = 0.0;
+  for (int f = 10; f < 30; ++f) {
+    std::complex<double> line = 0.0;
+    for (std::size_t n = 0; n < reading.size(); ++n) {
+      line += reading[n] * std::polar(1.0, -2e-3 * std::numbers::pi * f * static_cast<double>(n));
+    }
+    energy += 2.0 / 1000.0 * std::norm(line * kGain / wishes.noise_strain);
+  }
+  EXPECT_NEAR(found[1].freedom, 40.0, 10.0);  // twice as many as lines
+  EXPECT_NEAR(found[1].excess / energy, 2.0 / 3.0, 0.2);
+  EXPECT_NEAR(found[0].excess / energy, 1.0 / 6.0, 0.05);
+  EXPECT_TRUE(found[1].fails());
+}
+
+TEST(FailingPlaces, AreNoneWhereNothingIsHiddenOrNothingArrivesYet) {
+  const testing::Campaign bare = small_bench();
+  testing::Campaign hidden = bare;
+  testing::hide(hidden, testing::parse_effect("gauge-factor:g2=0.01"));
+  const testing::Timing& timing = bare.world.timing;
+  const double pulse_s = static_cast<double>(timing.pretrigger) * timing.period_s() - 40e-6;
+  Places places{{{5e3, 10e3}, {10e3, 20e3}}, {}};
+  places.stretches = {{"g2", "before the pulse", 0, 0.0, pulse_s, 0.0, 20e-6, true},
+                      {"g2", "incident pulse", 0, pulse_s, 8e-4, 20e-6, 20e-6, false}};
+  FailingPlaces failing(bare);
+  for (const PlaceTruth& place : failing.of(bare, places)) {
+    EXPECT_LT(place.excess, 1e-12);
+  }
+  for (const PlaceTruth& place : failing.of(hidden, places)) {
+    EXPECT_EQ(place.fails(), std::get<1>(place.place) == "incident pulse");
+  }
+}
+
+TEST(Localisation, CountsWhatIsMarkedOfWhatFails) {
+  const auto compared = nlohmann::json::parse(R"({
+    "places": {"shots": ["a", "b"], "bands_Hz": [[1e3, 2e3], [2e3, 4e3]],
+      "windows": [{"shot": "b", "gauge": "g1", "window": "before the pulse", "start_s": 0.0,
+                   "end_s": 1e-4, "fade_in_s": 0.0, "fade_out_s": 2e-5}]},
+    "where": [{"gauge": "g1", "window": "later", "shot": "b", "band_Hz": [2e3, 4e3],
+               "significant": true},
+              {"gauge": "g2", "window": "later", "shot": "a", "band_Hz": [1e3, 2e3],
+               "significant": true}]})");
+  const Places places = places_of(compared);
+  ASSERT_EQ(places.stretches.size(), 1U);
+  EXPECT_EQ(places.stretches[0].shot, 1U);
+  EXPECT_TRUE(places.stretches[0].quiet);
+  EXPECT_EQ(places.bands_Hz[1], (std::pair{2e3, 4e3}));
+
+  const std::vector<PlaceTruth> truth{{{"g1", "later", 1, 1}, 100.0, 4.0, true},
+                                      {{"g1", "later", 0, 1}, 100.0, 4.0, true},
+                                      {{"g1", "later", 1, 0}, 1.0, 4.0, true},
+                                      {{"g2", "later", 0, 0}, 0.0, 4.0, false}};
+  const Localisation found = localisation(truth, marked_by(compared));
+  EXPECT_EQ(found.all.failing, 2U);
+  EXPECT_EQ(found.all.marked, 2U);
+  EXPECT_EQ(found.all.both, 1U);
+  EXPECT_DOUBLE_EQ(found.all.f1(), 0.5);
+  EXPECT_DOUBLE_EQ(found.touched.precision(), 1.0);
+  EXPECT_DOUBLE_EQ(found.touched.recall(), 0.5);
+  EXPECT_NEAR(found.ideal_both, 2.0, 1e-3);
+
+  std::vector<Verdict> verdicts(1);
+  verdicts[0].places = found;
+  const std::string table = table_text(measures(verdicts));
+  const std::size_t line = table.find("localisation of the failure");
+  EXPECT_NE(table.find("0.500       1  SHORT", line), std::string::npos);
+}
+
 Case single(const std::string& effect) {
-  Case made{"b0", CaseKind::single, {}, {2.0}};
+  Case made{"b0", CaseKind::single, {}, {}, {2.0}};
   made.campaign.effects = {testing::parse_effect(effect)};
   return made;
 }
@@ -204,7 +315,7 @@ TEST(Verdict, CountsSetsExactNamesAndStrengths) {
 TEST(Verdict, CountsAFiledNumbersWholeError) {
   testing::CampaignWishes wishes;
   wishes.tolerances = testing::Tolerances::filed;
-  Case made{"b0", CaseKind::single, testing::draw_campaign(wishes), {2.0}};
+  Case made{"b0", CaseKind::single, testing::draw_campaign(wishes), {}, {2.0}};
   const double drawn = made.campaign.world.gauges[1].position_m;
   testing::hide(made.campaign, testing::parse_effect("gauge-position:g2=0.004"));
   const double found = drawn + 0.004 - made.campaign.bench.gauges[1].position_m;

@@ -85,6 +85,30 @@ Eigen::VectorXd SourceFreedom::onto_unknowns(
   return out;
 }
 
+std::vector<std::vector<double>> SourceFreedom::remainder(
+    std::vector<std::vector<double>> direction) const {
+  Eigen::VectorXd unknowns = onto_unknowns(direction);
+  factor_.triangularView<Eigen::Lower>().solveInPlace(unknowns);
+  factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(unknowns);
+  for (std::size_t g = 0; g < responses_.size(); ++g) {
+    const double* const h = responses_[g].data();
+    const auto length = static_cast<std::ptrdiff_t>(responses_[g].size());
+    double* const v = direction[g].data();
+    for (Eigen::Index k = 0; k < bells_; ++k) {
+      const std::ptrdiff_t start = first_ + k * stride_;
+      for (std::ptrdiff_t n = std::max<std::ptrdiff_t>(0, start);
+           n < std::min(samples_, start + length); ++n) {
+        v[n] -= unknowns[k] * h[n - start];
+      }
+    }
+    for (std::ptrdiff_t n = 0; n < samples_; ++n) {
+      v[n] -=
+          unknowns[bells_ + static_cast<Eigen::Index>(g)] * offset_[static_cast<std::size_t>(n)];
+    }
+  }
+  return direction;
+}
+
 Eigen::MatrixXd SourceFreedom::remaining_products(
     const std::vector<const std::vector<std::vector<double>>*>& directions) const {
   const auto count = static_cast<Eigen::Index>(directions.size());

@@ -21,6 +21,11 @@ class SourceFreedom {
   /// What remains of the products between directions of one shot, each [gauge][sample], whitened.
   [[nodiscard]] Eigen::MatrixXd remaining_products(
       const std::vector<const std::vector<std::vector<double>>*>& directions) const;
+  /// What remains of one direction itself.
+  [[nodiscard]] std::vector<std::vector<double>> remainder(
+      std::vector<std::vector<double>> direction) const;
+  /// The whitened constant of one.
+  [[nodiscard]] const std::vector<double>& offset() const { return offset_; }
 
  private:
   [[nodiscard]] Eigen::VectorXd onto_unknowns(

@@ -194,6 +194,9 @@ Json json_of(const Verdict& verdict) {
   if (verdict.tie_broken) {
     json["tie_broken"] = *verdict.tie_broken;
   }
+  if (verdict.places) {
+    json["places"] = json_of(*verdict.places);
+  }
   if (verdict.null_p) {
     json["null_p"] = *verdict.null_p;
   }

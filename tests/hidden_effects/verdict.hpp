@@ -3,7 +3,7 @@
 #include <optional>
 #include <set>
 
-#include "tests/hidden_effects/analyser.hpp"
+#include "tests/hidden_effects/localisation.hpp"
 
 namespace kolsky::scoring {
 
@@ -24,6 +24,7 @@ struct Verdict {
   std::vector<double> moduli_in_sd;         ///< after adding: (fitted - true)/sd
   std::string proposal;                     ///< what would break the tie, as it says
   std::optional<bool> tie_broken;           ///< by doing that; none where it cannot be made
+  std::optional<Localisation> places;       ///< those that `compare` marks
   std::optional<double> null_p;             ///< p-value of one candidate drawn by the case's number
   double seconds = 0.0;
   std::string error;

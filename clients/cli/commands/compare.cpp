@@ -102,6 +102,7 @@ int run(const Settings& settings, Context& context) {
                                       {"misfit", describe(studied.misfit)},
                                       {"where", describe_tiles(comparison, campaign)},
                                       {"regions", describe_regions(comparison, campaign)},
+                                      {"places", describe_places(comparison, comparer, study)},
                                       {"fitted_first", fit_first},
                                       {"converged", studied.fit.converged},
                                       {"parameters", describe_parameters(studied.model)},

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
+#include "drivers/files/nearest_name.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/diagnosis.hpp"
@@ -30,6 +32,7 @@ struct Settings {
   std::optional<std::string> report;
   std::optional<std::string> note;
   std::optional<double> band_limit_Hz;
+  std::vector<std::string> without;  ///< safeguards, by name
 };
 
 JsonValue describe(const CandidateResult& candidate) {
@@ -48,7 +51,7 @@ JsonValue describe(const CandidateResult& candidate) {
                     {"verdict", candidate.verdict}};
 }
 
-JsonValue describe(const Diagnosis& diagnosis) {
+JsonObject describe(const Diagnosis& diagnosis) {
   JsonObject ties;
   for (const auto& [id, others] : diagnosis.tied_with) {
     ties.push_back({id, others});
@@ -132,16 +135,57 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
   return diagnosis;
 }
 
-Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
+std::vector<std::string> safeguard_names() {
+  std::vector<std::string> names;
+  for (const NamedSafeguard& one : named_safeguards()) {
+    names.push_back(one.name);
+  }
+  return names;
+}
+
+/// All but those named.
+Safeguards safeguards_without(const std::vector<std::string>& names) {
+  Safeguards safeguards;
+  for (const std::string& name : names) {
+    const auto& all = named_safeguards();
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const NamedSafeguard& one) { return one.name == name; });
+    if (found == all.end()) {
+      throw InputError("kolsky diagnose: --without", "there is no safeguard \"" + name + "\"",
+                       "the nearest is " + nearest_name(name, safeguard_names()) +
+                           "; see kolsky diagnose --help");
+    }
+    safeguards.*found->member = false;
+  }
+  return safeguards;
+}
+
+std::string without_help() {
+  std::string text =
+      "for experts: leaves a safeguard out, to see what it is good for; what is claimed so is not "
+      "certified. May be given again. NAME is one of";
+  for (const NamedSafeguard& one : named_safeguards()) {
+    text += "\n" + one.name + ": " + one.purpose;
+  }
+  return text;
+}
+
+Diagnosis examine(const Settings& settings, const Model& model, const Safeguards& safeguards,
+                  bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
   if (auto verdict = verdict_without_fit(shots)) {
     return *std::move(verdict);
   }
   DiagnosisOptions options;
+  options.safeguards = safeguards;
   if (progress) {
     options.progress = [](const std::string& step) { std::cerr << "kolsky: " << step << "\n"; };
   }
   if (model.kind == BenchKind::impact) {
+    if (!settings.without.empty()) {
+      throw InputError("kolsky diagnose: --without", "is for bars and split bars",
+                       "leave it out for a ball");
+    }
     return examine_impacts(settings, model, shots, options);
   }
   const Campaign campaign = read_campaign(shots);
@@ -154,9 +198,23 @@ Diagnosis examine(const Settings& settings, const Model& model, bool progress) {
   return diagnosis;
 }
 
+/// The ledger, too, says what was left out.
+std::string noted(const Settings& settings, const std::vector<std::string>& without) {
+  std::string note = settings.note.value_or("");
+  for (const std::string& name : without) {
+    note += (note.empty() ? "" : "; ") + ("without " + name);
+  }
+  return note;
+}
+
 int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  const Diagnosis diagnosis = examine(settings, file.model, !context.json);
+  const Safeguards safeguards = safeguards_without(settings.without);
+  Diagnosis diagnosis = examine(settings, file.model, safeguards, !context.json);
+  const std::vector<std::string> without = left_out(safeguards);
+  for (const std::string& name : without) {
+    diagnosis.notes.push_back("without the safeguard " + name + ": nothing of this is certified");
+  }
   if (settings.output && diagnosis.model) {
     std::string added;
     for (const std::string& id : diagnosis.effects) {
@@ -166,7 +224,7 @@ int run(const Settings& settings, Context& context) {
                "diagnose:" + (added.empty() ? " " + kolsky::name_of(diagnosis.verdict) : added),
                utc_now());
     file.history.back().data_sha256 = digest_of(settings.captures);
-    file.history.back().note = settings.note.value_or("");
+    file.history.back().note = noted(settings, without);
     keep(diagnosis, count_of(settings.captures), file.history.back());
     if (diagnosis.verdict != DiagnosisVerdict::unknown) {
       // What was tried and rejected has no place in the model.
@@ -174,7 +232,15 @@ int run(const Settings& settings, Context& context) {
     }
     replace_file(*settings.output, format_model(file));
   }
-  context.out << (context.json ? to_text(describe(diagnosis)) + "\n" : report(diagnosis));
+  if (!context.json) {
+    context.out << report(diagnosis);
+    return kDone;
+  }
+  JsonObject answer = describe(diagnosis);
+  if (!without.empty()) {
+    answer.push_back({"without", without});
+  }
+  context.out << to_text(std::move(answer)) << "\n";
   return kDone;
 }
 
@@ -201,7 +267,8 @@ Command diagnose_command() {
       option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
              &s.report),
       option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz),
+      option("--without", "NAME", without_help(), &s.without)};
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

@@ -100,6 +100,53 @@ TEST_F(SimulatedBar, KeepsTheLedgerOfADiagnosisAndRevertsIt) {
   EXPECT_EQ(json_of(kolsky({"model", "history", file("m2.toml"), "--json"}))["history"].size(), 2U);
 }
 
+// Of all places, those that do not fail too: bands without gaps, windows one after the other.
+TEST_F(SimulatedBar, SaysWhichPlacesAreCompared) {
+  const json compared =
+      json_of(kolsky({"compare", file("shots"), "--model", file("m.toml"), "--json"}));
+  const json& places = compared["places"];
+  EXPECT_EQ(places["shots"].size(), 4U);
+  const json& bands = places["bands_Hz"];
+  for (std::size_t b = 1; b < bands.size(); ++b) {
+    EXPECT_EQ(bands[b][0], bands[b - 1][1]);
+  }
+  const json* before = nullptr;
+  for (const json& window : places["windows"]) {
+    EXPECT_LE(window["start_s"], window["end_s"]);
+    EXPECT_GE(window["start_s"], 0.0);
+    if (before != nullptr && (*before)["shot"] == window["shot"] &&
+        (*before)["gauge"] == window["gauge"]) {
+      EXPECT_EQ(window["start_s"], (*before)["end_s"]);
+    }
+    before = &window;
+  }
+  ASSERT_FALSE(compared["where"].empty());
+  for (const json& tile : compared["where"]) {
+    EXPECT_NE(std::find(bands.begin(), bands.end(), tile["band_Hz"]), bands.end());
+  }
+}
+
+TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
+  const std::vector<std::string> words{"diagnose", file("shots"), "--model", file("m.toml"),
+                                       "--json"};
+  EXPECT_FALSE(json_of(kolsky(words)).contains("without"));
+  std::vector<std::string> fewer = words;
+  fewer.insert(fewer.end(),
+               {"-o", file("m2.toml"), "--without", "unknown", "--without", "search-count"});
+  EXPECT_EQ(json_of(kolsky(fewer))["without"], json({"search-count", "unknown"}));
+  EXPECT_NE(content(file("m2.toml")).find("without search-count; without unknown"),
+            std::string::npos);
+  EXPECT_TRUE(refused(
+      kolsky({"diagnose", file("shots"), "--model", file("m.toml"), "--without", "heldout"}),
+      {"\"heldout\"", "the nearest is held-out"}));
+  const std::string help = kolsky({"diagnose", "--help"}).out;
+  for (const char* name : {"search-count:", "held-out:", "shot-agreement:", "own-strengths:",
+                           "fitted-noise:", "backward:", "unknown:"}) {
+    EXPECT_NE(help.find("\n                            " + std::string(name)), std::string::npos)
+        << name;
+  }
+}
+
 TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
   EXPECT_TRUE(refused(kolsky({"model", "diff", file("m.toml") + "@3", file("m.toml")}),
                       {"names no step", "from 0 to 0"}));

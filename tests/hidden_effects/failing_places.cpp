@@ -1,0 +1,261 @@
+#include "tests/hidden_effects/failing_places.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <unsupported/Eigen/FFT>
+
+namespace kolsky::scoring {
+
+namespace {
+
+using testing::Campaign;
+using testing::Readings;
+using Records = std::vector<std::vector<double>>;
+
+// What is commonly asked of a test: false in one of twenty cases, found in four of five.
+constexpr double kLevel = 0.05;
+constexpr double kPower = 0.8;
+constexpr int kNoiseDraws = 200;
+// What the whole change has less of than this share at a gauge is rounding.
+constexpr double kUntouched = 1e-9;
+
+double risen(double time_s, double at_s, double fade_s) {
+  const double place = fade_s > 0.0     ? std::clamp(2.0 * (time_s - at_s) / fade_s, -1.0, 1.0)
+                       : time_s >= at_s ? 1.0
+                                        : -1.0;
+  return std::sin(std::numbers::pi / 4.0 * (place + 1.0));
+}
+
+std::vector<double> weights_of(const Stretch& stretch, double period_s, std::size_t samples) {
+  std::vector<double> weights(samples);
+  for (std::size_t n = 0; n < samples; ++n) {
+    const double t = static_cast<double>(n) * period_s;
+    const double gone = risen(t, stretch.end_s, stretch.fade_out_s);
+    weights[n] =
+        risen(t, stretch.start_s, stretch.fade_in_s) * std::sqrt(std::max(0.0, 1.0 - gone * gone));
+  }
+  return weights;
+}
+
+double square_of(const std::vector<double>& record) {
+  double sum = 0.0;
+  for (const double value : record) {
+    sum += value * value;
+  }
+  return sum;
+}
+
+// What is constant is not judged: zero on average before the pulse.
+std::vector<double> level(const std::vector<double>& record, const std::vector<double>& quiet,
+                          const std::vector<double>& offset) {
+  double cross = 0.0;
+  double square = 0.0;
+  for (std::size_t n = 0; n < quiet.size(); ++n) {
+    cross += quiet[n] * quiet[n] * record[n] * offset[n];
+    square += quiet[n] * quiet[n] * offset[n] * offset[n];
+  }
+  std::vector<double> out = record;
+  for (std::size_t n = 0; square > 0.0 && n < out.size(); ++n) {
+    out[n] -= cross / square * offset[n];
+  }
+  return out;
+}
+
+// Energies of a record in bands, once it is weighted.
+class Bands {
+ public:
+  Bands(const std::vector<std::pair<double, double>>& bands_Hz, double period_s)
+      : bands_Hz_(bands_Hz), period_s_(period_s) {
+    transform_.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  }
+
+  std::vector<double> energies(const std::vector<double>& record,
+                               const std::vector<double>& weights) {
+    std::vector<double> part(record.size());
+    for (std::size_t n = 0; n < part.size(); ++n) {
+      part[n] = record[n] * weights[n];
+    }
+    transform_.fwd(lines_, part);
+    const double width_Hz = 1.0 / (period_s_ * static_cast<double>(part.size()));
+    std::vector<double> out(bands_Hz_.size(), 0.0);
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      // What lies below the lowest is there by the windows' fading alone, and counts to it.
+      const double from_Hz = b == 0 ? 0.0 : bands_Hz_[b].first;
+      for (auto f = static_cast<std::size_t>(std::ceil(from_Hz / width_Hz - 1e-6));
+           f < lines_.size() && static_cast<double>(f) * width_Hz < bands_Hz_[b].second; ++f) {
+        out[b] += (f == 0 ? 0.5 : 1.0) * std::norm(lines_[f]);
+      }
+    }
+    return out;
+  }
+
+ private:
+  const std::vector<std::pair<double, double>>& bands_Hz_;
+  double period_s_;
+  Eigen::FFT<double> transform_;
+  std::vector<std::complex<double>> lines_;
+};
+
+// Of a place's energy under noise.
+struct Moments {
+  double mean = 0.0;
+  double variance = 0.0;
+};
+
+std::vector<Moments> moments_of(const std::vector<std::vector<double>>& draws) {
+  std::vector<Moments> out(draws.front().size());
+  const auto count = static_cast<double>(draws.size());
+  for (std::size_t b = 0; b < out.size(); ++b) {
+    for (const std::vector<double>& draw : draws) {
+      out[b].mean += draw[b] / count;
+    }
+    for (const std::vector<double>& draw : draws) {
+      const double off = draw[b] - out[b].mean;
+      out[b].variance += off * off / (count - 1.0);
+    }
+  }
+  return out;
+}
+
+std::vector<bool> touched_gauges(const Readings& change) {
+  std::vector<double> energy(change.front().size(), 0.0);
+  for (const Records& shot : change) {
+    for (std::size_t g = 0; g < shot.size(); ++g) {
+      energy[g] += square_of(shot[g]);
+    }
+  }
+  const double most = *std::ranges::max_element(energy);
+  std::vector<bool> touched;
+  for (const double own : energy) {
+    touched.push_back(own > kUntouched * most);
+  }
+  return touched;
+}
+
+std::vector<Records> draw_noise(const SourceFreedom& freedom, std::size_t gauges,
+                                std::size_t samples) {
+  std::mt19937_64 random(29);
+  std::normal_distribution<double> normal;
+  std::vector<Records> draws;
+  for (int i = 0; i < kNoiseDraws; ++i) {
+    Records records(gauges, std::vector<double>(samples));
+    for (std::vector<double>& record : records) {
+      std::ranges::generate(record, [&] { return normal(random); });
+    }
+    draws.push_back(freedom.remainder(std::move(records)));
+  }
+  return draws;
+}
+
+}  // namespace
+
+double findable_excess(double freedom) {
+  const double limit =
+      boost::math::quantile(boost::math::complement(boost::math::chi_squared(freedom), kLevel));
+  return boost::math::non_central_chi_squared::find_non_centrality(freedom, limit, 1.0 - kPower);
+}
+
+bool PlaceTruth::fails() const {
+  return freedom > 0.0 && excess > findable_excess(freedom);
+}
+
+FailingPlaces::FailingPlaces(const Campaign& bare)
+    : bare_(bare),
+      prober_(bare),
+      freedom_(prober_.freedom()),
+      nuisances_(prober_.nuisances()),
+      noise_(draw_noise(freedom_, bare.world.gauges.size(), bare.world.timing.samples)) {
+  const auto count = static_cast<Eigen::Index>(nuisances_.size());
+  information_ = Eigen::MatrixXd::Zero(count, count);
+  for (std::size_t shot = 0; shot < bare.world.shots.size(); ++shot) {
+    std::vector<const Records*> of_shot;
+    for (const Direction& direction : nuisances_) {
+      of_shot.push_back(&direction.readings[shot]);
+    }
+    information_ += freedom_.remaining_products(of_shot);
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Direction& direction = nuisances_[static_cast<std::size_t>(i)];
+    information_(i, i) += direction.known();
+    for (Records& shot : direction.readings) {
+      shot = freedom_.remainder(std::move(shot));
+    }
+  }
+}
+
+Readings FailingPlaces::left_by_fit(const Readings& change) const {
+  Readings left;
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(information_.rows());
+  for (std::size_t shot = 0; shot < change.size(); ++shot) {
+    left.push_back(freedom_.remainder(change[shot]));
+    for (std::size_t i = 0; i < nuisances_.size(); ++i) {
+      const Records& own = nuisances_[i].readings[shot];
+      for (std::size_t g = 0; g < own.size(); ++g) {
+        for (std::size_t n = 0; n < own[g].size(); ++n) {
+          pull[static_cast<Eigen::Index>(i)] += own[g][n] * change[shot][g][n];
+        }
+      }
+    }
+  }
+  const Eigen::VectorXd taken = information_.ldlt().solve(pull);
+  for (std::size_t i = 0; i < nuisances_.size(); ++i) {
+    for (std::size_t shot = 0; shot < left.size(); ++shot) {
+      for (std::size_t g = 0; g < left[shot].size(); ++g) {
+        for (std::size_t n = 0; n < left[shot][g].size(); ++n) {
+          left[shot][g][n] -=
+              taken[static_cast<Eigen::Index>(i)] * nuisances_[i].readings[shot][g][n];
+        }
+      }
+    }
+  }
+  return left;
+}
+
+std::vector<PlaceTruth> FailingPlaces::of(const Campaign& hidden, const Places& places) {
+  const Readings change = prober_.whole_change(hidden);
+  const Readings left = left_by_fit(change);
+  const std::vector<bool> touched = touched_gauges(change);
+  const testing::Timing& timing = bare_.world.timing;
+  Bands bands(places.bands_Hz, timing.period_s());
+  std::vector<PlaceTruth> out;
+  for (std::size_t g = 0; g < touched.size(); ++g) {
+    const std::string& gauge = bare_.world.gauges[g].name;
+    std::vector<std::vector<double>> quiet(change.size());
+    for (const Stretch& stretch : places.stretches) {
+      if (stretch.gauge == gauge && stretch.quiet) {
+        quiet[stretch.shot] = weights_of(stretch, timing.period_s(), timing.samples);
+      }
+    }
+    for (const Stretch& stretch : places.stretches) {
+      if (stretch.gauge != gauge) {
+        continue;
+      }
+      const std::vector<double> weights = weights_of(stretch, timing.period_s(), timing.samples);
+      const auto energies = [&](const std::vector<double>& record) {
+        return bands.energies(level(record, quiet[stretch.shot], freedom_.offset()), weights);
+      };
+      const std::vector<double> found = energies(left[stretch.shot][g]);
+      std::vector<std::vector<double>> draws;
+      for (const Records& draw : noise_) {
+        draws.push_back(energies(draw[g]));
+      }
+      const std::vector<Moments> noise = moments_of(draws);
+      for (std::size_t b = 0; b < found.size(); ++b) {
+        PlaceTruth truth{{gauge, stretch.window, stretch.shot, b}, 0.0, 0.0, touched[g]};
+        if (noise[b].variance > 0.0) {
+          truth.freedom = 2.0 * noise[b].mean * noise[b].mean / noise[b].variance;
+          truth.excess = found[b] * truth.freedom / noise[b].mean;
+        }
+        out.push_back(std::move(truth));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace kolsky::scoring

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/hidden_effects/prober.hpp"
+
+namespace kolsky::scoring {
+
+/// A stretch of one gauge's record in one shot, as a comparison divides it; seconds from the
+/// record's first sample. It fades in and out around its ends, over so long.
+struct Stretch {
+  std::string gauge;
+  std::string window;
+  std::size_t shot = 0;  ///< from 0
+  double start_s = 0.0;
+  double end_s = 0.0;
+  double fade_in_s = 0.0;
+  double fade_out_s = 0.0;
+  bool quiet = false;  ///< before the pulse
+};
+
+/// All places that a comparison reports on: every stretch in every band.
+struct Places {
+  std::vector<std::pair<double, double>> bands_Hz;
+  std::vector<Stretch> stretches;
+};
+
+/// Gauge, window, shot and band.
+using Place = std::tuple<std::string, std::string, std::size_t, std::size_t>;
+
+/// What a hidden effect leaves in one place.
+struct PlaceTruth {
+  Place place;
+  double excess = 0.0;   ///< energy over what noise has per degree of freedom
+  double freedom = 0.0;  ///< of the noise there
+  bool touched = false;  ///< whether the effect changes this gauge's records at all
+  /// Whether a test of this place alone, at 5 %, finds the excess in four cases of five.
+  [[nodiscard]] bool fails() const;
+};
+
+/// The excess that a chi-square test at 5 % finds in four cases of five.
+[[nodiscard]] double findable_excess(double freedom);
+
+/// Where a model without an effect fails, from the generator alone: the change of the noise-free
+/// records, whitened with the noise drawn; sources, offsets, moduli and known unknowns at their
+/// best; then its energy in each place.
+class FailingPlaces {
+ public:
+  /// @param bare  the campaign with nothing hidden; outlives this
+  explicit FailingPlaces(const testing::Campaign& bare);
+
+  /// @param hidden  the same with an effect
+  [[nodiscard]] std::vector<PlaceTruth> of(const testing::Campaign& hidden, const Places& places);
+
+ private:
+  using Records = std::vector<std::vector<double>>;
+
+  [[nodiscard]] testing::Readings left_by_fit(const testing::Readings& change) const;
+
+  const testing::Campaign& bare_;
+  Prober prober_;
+  SourceFreedom freedom_;
+  std::vector<Direction> nuisances_;  ///< what sources and offsets leave of them
+  Eigen::MatrixXd information_;       ///< of the nuisances, priors in it
+  std::vector<Records> noise_;        ///< draws, less what sources and offsets take up
+};
+
+}  // namespace kolsky::scoring
