@@ -13,7 +13,7 @@ class SpecimenNonlinearity final : public Effect {
             .definition = "spring E1 -> E1 (1 + b strain)",
             .reference = "effects.md",
             .kinds = {BenchKind::shpb},
-            .parameters = {{"b", "-", 0.0, -5.0, 50.0, 0.2, {}}},
+            .parameters = {{"b", "-", 0.0, -20.0, 50.0, 0.2, {}}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
