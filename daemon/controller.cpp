@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "daemon/log.hpp"
@@ -220,7 +222,22 @@ void Controller::fire() {
   if (!station_.acquirer().armed()) {
     throw InputError("fire", "the daemon is disarmed and would not see the shot", "arm first");
   }
+  wait_for_trigger();
   station_.digitiser().fire();
+}
+
+/// After a shot the trigger holds off and learns anew: a pulse of that time would be lost.
+void Controller::wait_for_trigger() const {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kLongest(3);
+  const Clock::time_point until = Clock::now() + kLongest;
+  while (!station_.acquirer().watching()) {
+    if (Clock::now() > until) {
+      throw InputError("fire", "the trigger is still held off or learning, and would miss the shot",
+                       "fire again when it is quiet, or shorten trigger.hold_off_samples");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 void Controller::reload() {

@@ -44,6 +44,7 @@ class Controller : public ControlHandler {
   [[nodiscard]] PreflightFacts facts();
   void fill_channels(v1::Status& status);
   void fill_criticism(v1::Status& status);
+  void wait_for_trigger() const;
   void need_stream(const char* command) const;
 
   Station& station_;

@@ -484,6 +484,7 @@ void Acquirer::show_trigger_level(AtomicLevel& level) {
   level.baseline.store(trigger.baseline_codes(), std::memory_order_relaxed);
   level.noise.store(trigger.noise_codes(), std::memory_order_relaxed);
   level.level.store(trigger.level_codes(), std::memory_order_relaxed);
+  watching_.store(trigger.ready(), std::memory_order_release);
   if (trigger.ready()) {  // stays so: in the hold-off after a trigger they are still known
     level.learned.store(true, std::memory_order_relaxed);
   }

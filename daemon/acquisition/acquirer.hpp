@@ -50,6 +50,8 @@ class Acquirer {
   // From any thread.
   void arm(bool armed) noexcept { armed_.store(armed, std::memory_order_release); }
   [[nodiscard]] bool armed() const noexcept { return armed_.load(std::memory_order_acquire); }
+  /// Whether a pulse would be found now: the trigger is neither learning nor in its hold-off.
+  [[nodiscard]] bool watching() const noexcept { return watching_.load(std::memory_order_acquire); }
   /// Opens a window at the next block, armed or not.
   void force() noexcept { force_.store(true, std::memory_order_release); }
   /// Takes another trigger and window from the next block on; the trigger learns anew.
@@ -164,6 +166,7 @@ class Acquirer {
   std::atomic<Watch*> retired_watch_{nullptr};
   std::atomic<bool> stop_{false};
   std::atomic<bool> armed_{false};
+  std::atomic<bool> watching_{false};
   std::atomic<bool> force_{false};
   std::atomic<bool> connected_{true};
   std::atomic<bool> ended_{false};

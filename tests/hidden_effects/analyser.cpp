@@ -73,7 +73,7 @@ Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
 
 Answer compare_base(const Analyser& analyser, const CaseFiles& files) {
   const std::filesystem::path fitted = files.folder / "base.toml";
-  const Answer fit = run(analyser, files, "fit-base",
+  Answer fit = run(analyser, files, "fit-base",
                          fmt::format("fit{} --model {} -o {} --json", captures_of(files),
                                      quoted(files.folder / "model.toml"), quoted(fitted)));
   if (fit.code != 0) {
