@@ -74,8 +74,8 @@ Answer diagnose(const Analyser& analyser, const CaseFiles& files) {
 Answer compare_base(const Analyser& analyser, const CaseFiles& files) {
   const std::filesystem::path fitted = files.folder / "base.toml";
   Answer fit = run(analyser, files, "fit-base",
-                         fmt::format("fit{} --model {} -o {} --json", captures_of(files),
-                                     quoted(files.folder / "model.toml"), quoted(fitted)));
+                   fmt::format("fit{} --model {} -o {} --json", captures_of(files),
+                               quoted(files.folder / "model.toml"), quoted(fitted)));
   if (fit.code != 0) {
     return fit;
   }
