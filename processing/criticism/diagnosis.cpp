@@ -58,7 +58,8 @@ namespace {
 
 class Diagnostician {
  public:
-  Diagnostician(Study& study, const DiagnosisOptions& options) : study_(study), options_(options) {}
+  Diagnostician(Study& study, const DiagnosisOptions& options)
+      : study_(study), options_(options), log_alpha_(options.log_alpha) {}
 
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
@@ -68,6 +69,9 @@ class Diagnostician {
     diagnosis_.before = first.misfit;
     Studied current = first;
     while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
+    }
+    if (diagnosis_.effects.empty() && something_remains(current)) {
+      recognise(current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
       drop_unneeded(current, 1);  // the last was certified beside all others
@@ -100,6 +104,32 @@ class Diagnostician {
     return true;
   }
 
+  [[nodiscard]] bool something_remains(const Studied& current) {
+    left_ = unexplained(study_, current);
+    return left_->log_p < options_.log_alpha;
+  }
+
+  /// That something is missing is certain without any candidate. Then one that is nearly good
+  /// enough to be named for itself is what is missing, if nothing remains beside it.
+  void recognise(Studied& current) {
+    const Studied before = current;
+    const Model start = start_;
+    log_alpha_ = options_.log_alpha + std::log(kRivalChance);
+    const bool added = add_one(current);
+    log_alpha_ = options_.log_alpha;
+    if (added && something_remains(current)) {
+      left_.reset();
+      set_verdict(diagnosis_.effects.front(), "rejected");
+      diagnosis_.effects.clear();
+      diagnosis_.tied_with.clear();
+      start_ = start;
+      if (options_.safeguards.fitted_noise) {
+        study_.residuals().calibrate(before.composition, before.fit.theta);
+      }
+      current = study_.refit(before);
+    }
+  }
+
   /// What one search certifies: the best, and what cannot be told from it.
   struct Choice {
     std::string id;
@@ -130,10 +160,8 @@ class Diagnostician {
         break;
       }
       const std::string id = search.candidates()[refit.candidate].id();
-      const auto [gain, better] = held_out[i];
       // Products of what each shot and each gauge has of its own are foretold by each other.
-      const bool foretold =
-          refit.products || (gain > 0.0 && 2 * better > study_.campaign().shots.size());
+      const bool foretold = refit.products || (held_out[i].gain > 0.0 && held_out[i].share > 0.5);
       const Safeguards& safeguards = options_.safeguards;
       if ((safeguards.held_out && !foretold) ||
           (safeguards.shot_agreement &&
@@ -159,7 +187,7 @@ class Diagnostician {
   }
 
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
-    return search.with_search(refit.log_p) <= options_.log_alpha;
+    return search.with_search(refit.log_p) <= log_alpha_;
   }
 
   /// Too little to be named by itself, enough not to be told from what is named with hardly more.
@@ -173,14 +201,16 @@ class Diagnostician {
     const auto leading = std::find_if(refits.begin(), refits.end(),
                                       [&](const Refit& refit) { return claimable(search, refit); });
     std::vector<Certification> held_out;
+    const std::size_t per_shot = study_.residuals().per_shot();
     const std::vector<double> before = held_out_of(base);
     for (const Refit& refit : refits) {
       const bool near = leading != refits.end() && plausible(search, refit) &&
                         refit.evidence > leading->evidence - 2.0 * kTie;
       const Studied& own = refit.studied;
       held_out.push_back(certification(
-          before, near ? held_out_of(own) : held_out_squares(own, study_.residuals().per_shot()),
-          base.fit.penalty - own.fit.penalty));
+          before, near ? held_out_of(own) : held_out_squares(own, per_shot),
+          base.fit.penalty - own.fit.penalty,
+          shot_strengths(own, search.candidates()[refit.candidate].id(), per_shot).weight));
     }
     return held_out;
   }
@@ -269,7 +299,7 @@ class Diagnostician {
 
   void conclude(const Studied& first, const Studied& current) {
     options_.progress("looking for what nothing explains");
-    const Unexplained left = unexplained(study_, current);
+    const Unexplained left = left_ ? *left_ : unexplained(study_, current);
     diagnosis_.unexplained_log_p = left.log_p;
     diagnosis_.after = current.misfit;
     // Both by the same measure of the noise.
@@ -357,7 +387,9 @@ class Diagnostician {
 
   Study& study_;
   const DiagnosisOptions& options_;
-  Model start_;  ///< unfitted, with the effects found so far
+  double log_alpha_;                 ///< what a claim needs, the search counted
+  std::optional<Unexplained> left_;  ///< by the model as it is now, where that was looked for
+  Model start_;                      ///< unfitted, with the effects found so far
   Diagnosis diagnosis_;
 };
 
