@@ -58,8 +58,7 @@ namespace {
 
 class Diagnostician {
  public:
-  Diagnostician(Study& study, const DiagnosisOptions& options)
-      : study_(study), options_(options), log_alpha_(options.log_alpha) {}
+  Diagnostician(Study& study, const DiagnosisOptions& options) : study_(study), options_(options) {}
 
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
@@ -69,9 +68,6 @@ class Diagnostician {
     diagnosis_.before = first.misfit;
     Studied current = first;
     while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
-    }
-    if (diagnosis_.effects.empty() && something_remains(current)) {
-      recognise(current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
       drop_unneeded(current, 1);  // the last was certified beside all others
@@ -102,32 +98,6 @@ class Diagnostician {
     start_ = with(start_, search.candidates()[choice->candidate], true);
     take(*choice, current);
     return true;
-  }
-
-  [[nodiscard]] bool something_remains(const Studied& current) {
-    left_ = unexplained(study_, current);
-    return left_->log_p < options_.log_alpha;
-  }
-
-  /// That something is missing is certain without any candidate. Then one that is nearly good
-  /// enough to be named for itself is what is missing, if nothing remains beside it.
-  void recognise(Studied& current) {
-    const Studied before = current;
-    const Model start = start_;
-    log_alpha_ = options_.log_alpha + std::log(kRivalChance);
-    const bool added = add_one(current);
-    log_alpha_ = options_.log_alpha;
-    if (added && something_remains(current)) {
-      left_.reset();
-      set_verdict(diagnosis_.effects.front(), "rejected");
-      diagnosis_.effects.clear();
-      diagnosis_.tied_with.clear();
-      start_ = start;
-      if (options_.safeguards.fitted_noise) {
-        study_.residuals().calibrate(before.composition, before.fit.theta);
-      }
-      current = study_.refit(before);
-    }
   }
 
   /// What one search certifies: the best, and what cannot be told from it.
@@ -187,7 +157,7 @@ class Diagnostician {
   }
 
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
-    return search.with_search(refit.log_p) <= log_alpha_;
+    return search.with_search(refit.log_p) <= options_.log_alpha;
   }
 
   /// Too little to be named by itself, enough not to be told from what is named with hardly more.
@@ -299,7 +269,7 @@ class Diagnostician {
 
   void conclude(const Studied& first, const Studied& current) {
     options_.progress("looking for what nothing explains");
-    const Unexplained left = left_ ? *left_ : unexplained(study_, current);
+    const Unexplained left = unexplained(study_, current);
     diagnosis_.unexplained_log_p = left.log_p;
     diagnosis_.after = current.misfit;
     // Both by the same measure of the noise.
@@ -387,9 +357,7 @@ class Diagnostician {
 
   Study& study_;
   const DiagnosisOptions& options_;
-  double log_alpha_;                 ///< what a claim needs, the search counted
-  std::optional<Unexplained> left_;  ///< by the model as it is now, where that was looked for
-  Model start_;                      ///< unfitted, with the effects found so far
+  Model start_;  ///< unfitted, with the effects found so far
   Diagnosis diagnosis_;
 };
 
