@@ -7,6 +7,7 @@
 #include "processing/identification/bar_identification.hpp"
 #include "processing/waves/bar_modes.hpp"
 #include "processing/waves/transform.hpp"
+#include "tests/bench/bound.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/table4.hpp"
 
@@ -33,6 +34,7 @@ void fit_ten_shots(benchmark::State& state, WaveTheory theory) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(fit_bar(shots, {.theory = theory}));
   }
+  hold_to(state, 0.05);
 }
 BENCHMARK_CAPTURE(fit_ten_shots, elementary, WaveTheory::elementary)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(fit_ten_shots, exact, WaveTheory::exact)->Unit(benchmark::kMillisecond);
@@ -74,6 +76,7 @@ void exact_dispersion_to_60_kHz(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(bar_modes(WaveTheory::exact, bar, pmma, path));
   }
+  hold_to(state, 0.02);
   state.counters["frequencies"] = static_cast<double>(path.size());
 }
 BENCHMARK(exact_dispersion_to_60_kHz)->Unit(benchmark::kMillisecond);
