@@ -119,12 +119,17 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] double force_per_strain_N() const;
 
  private:
-  /// What gauges read of a group's two calculated impacts, on a fine grid from `kFineGridLead_s`
-  /// before the first touch on.
+  /// What gauges read of one impact, on a fine grid from `kFineGridLead_s` before the first touch.
+  struct Reading {
+    std::vector<std::vector<double>> strain;  ///< by gauge
+    double rebound_m_per_s = 0.0;
+  };
+  /// The same of a group's two calculated impacts.
   struct Readings {
     std::vector<std::vector<double>> low, high;  ///< by gauge
     double rebound_low = 0.0;
     double rebound_high = 0.0;
+    [[nodiscard]] Reading at(double share) const;
   };
   struct Anchor {
     BallRun fine;    ///< at the prepared numbers
@@ -145,6 +150,14 @@ class ImpactResiduals : public ShotResiduals {
       std::size_t worker) const;
   [[nodiscard]] std::vector<std::vector<double>> recorded(std::vector<std::vector<double>> strain,
                                                           double bridge_b) const;
+  [[nodiscard]] Readings readings_of(const BallScene& ball, std::size_t group,
+                                     const std::vector<std::vector<Complex>>& transfer,
+                                     double bridge_b, std::size_t worker);
+  [[nodiscard]] double share_of(std::size_t shot) const;
+  void foretell_shot(std::size_t n, const Reading& strain, const Eigen::VectorXd& record,
+                     Foretold& out) const;
+  [[nodiscard]] double aligned(std::size_t n, const Reading& strain, const Eigen::VectorXd& record,
+                               Eigen::VectorXd& reading) const;
   void set_whitening(const Foretold& foretold, const Composition& composition,
                      const std::vector<double>& theta);
   [[nodiscard]] Eigen::VectorXd at_judged(std::size_t group, const Foretold& foretold,

@@ -59,8 +59,9 @@ class ImpactStudy {
         executor_(std::move(executor)),
         residuals_(campaign, whole, cutoff_Hz, executor_, meshes) {}
 
-  /// From where the model is, noise and speeds' deviation corrected by the shots' scatter.
-  [[nodiscard]] Studied fit(const Model& model);
+  /// From where the model is, auxiliary parameters without a strength yet at the best of their
+  /// starts, noise and speeds' deviation corrected by the shots' scatter.
+  [[nodiscard]] Studied fit(const Model& begun);
   /// With the noise and the fine forces as they are by now.
   [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
   /// The same, from where the model is and from where another fit left what both hold.

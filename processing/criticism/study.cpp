@@ -1,25 +1,9 @@
 #include "processing/criticism/study.hpp"
 
-#include <cmath>
-
+#include "processing/criticism/auxiliary_starts.hpp"
 #include "processing/criticism/branch_order.hpp"
 
 namespace kolsky {
-
-namespace {
-
-/// All strengths of an effect are at null: its auxiliary parameters mean nothing yet.
-bool is_null(const EffectUse& use) {
-  const std::vector<EffectParameter>& parameters = use.effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (!parameters[p].auxiliary() && use.values[p].value != parameters[p].null_value) {
-      return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
 
 Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
     : campaign_(campaign),
@@ -28,33 +12,13 @@ Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
 
 Model Study::begun(Model model) {
   start_moduli(model, campaign_, residuals_);
-  for (std::size_t u = 0; u < model.effects.size(); ++u) {
-    const std::vector<EffectParameter>& parameters = model.effects[u].effect->about().parameters;
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      if (!model.effects[u].values[p].free || !parameters[p].auxiliary() ||
-          (!parameters[p].chosen && !is_null(model.effects[u]))) {
-        continue;
-      }
-      Model best = model;
-      double least = HUGE_VAL;
-      for (const double start : parameters[p].starts) {
-        ModelValue& value = model.effects[u].values[p];
-        value.value = start;
-        value.free = !parameters[p].chosen;
-        const Composition composition(model, campaign_);
-        if (least == HUGE_VAL) {
-          residuals_.freeze(composition, composition.start());
-        }
-        const double objective = fit_model(composition, residuals_, executor_).objective();
-        if (objective < least) {
-          least = objective;
-          best = model;
-        }
-      }
-      model = std::move(best);
-    }
-  }
-  return model;
+  return at_best_starts(std::move(model), campaign_,
+                        [&](const Composition& composition, bool first) {
+                          if (first) {
+                            residuals_.freeze(composition, composition.start());
+                          }
+                          return fit_model(composition, residuals_, executor_).objective();
+                        });
 }
 
 Studied Study::fit(const Model& model, LearnNoise learn) {
