@@ -16,12 +16,13 @@ constexpr double kSettled_s = 1e-11;
 }  // namespace
 
 ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz,
-                                 const Workers& executor, const BallMeshes& meshes)
+                                 const Workers& executor, const BallMeshes& meshes,
+                                 std::shared_ptr<BallRuns> runs)
     : campaign_(campaign),
       executor_(executor),
       meshes_(meshes),
       records_(read_impact_records(campaign, whole, cutoff_Hz)),
-      runs_(campaign.bench) {
+      runs_(runs ? std::move(runs) : std::make_shared<BallRuns>(campaign.bench)) {
   const ImpactWindow& window = records_.window;
   const double judged_s = window.period_s * static_cast<double>(window.samples);
   const auto samples =

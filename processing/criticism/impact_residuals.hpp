@@ -36,8 +36,9 @@ inline constexpr double kSolverDoubt = 6.0;
 class ImpactResiduals : public ShotResiduals {
  public:
   /// @param whole  judge beyond the far end's reflection
+  /// @param runs   impacts on this bench that others calculate too; none: its own
   ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz, const Workers& executor,
-                  const BallMeshes& meshes = {});
+                  const BallMeshes& meshes = {}, std::shared_ptr<BallRuns> runs = nullptr);
 
   /// Takes from this model the fine forces, the arrivals and the whitener.
   /// @throws InputError what the solver refuses there
@@ -173,7 +174,7 @@ class ImpactResiduals : public ShotResiduals {
   Workers executor_;
   BallMeshes meshes_;
   ImpactRecords records_;
-  BallRuns runs_;
+  std::shared_ptr<BallRuns> runs_;
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
   std::vector<double> anchored_at_;
   std::unique_ptr<ImpactWhitening> whitening_;
