@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "processing/base/workers.hpp"
@@ -167,6 +168,8 @@ class ImpactResiduals : public ShotResiduals {
                                      const std::vector<std::vector<double>>& low,
                                      const std::vector<std::vector<double>>& high) const;
   [[nodiscard]] Eigen::VectorXd measured(std::size_t shot, const RecordScene& record) const;
+  [[nodiscard]] std::pair<std::vector<Eigen::VectorXd>, double> scatter_of(
+      std::size_t g, const std::vector<Eigen::VectorXd>& residual) const;
   void fill_unsaid_rebounds(Foretold& foretold) const;
   [[nodiscard]] Eigen::MatrixXd noise_matrix() const;
 
