@@ -61,9 +61,10 @@ bool signalled() {
 }
 
 void run(const Arguments& arguments) {
-  const kolsky::DaemonConfig config = kolsky::read_config(arguments.config);
+  kolsky::DaemonConfig config = kolsky::read_config(arguments.config);
   if (arguments.check) {
-    std::fputs(kolsky::check_report(config, kolsky::read_apparatus(config)).c_str(), stdout);
+    const kolsky::Apparatus apparatus = kolsky::read_apparatus(config);
+    std::fputs(kolsky::check_report(config, apparatus).c_str(), stdout);
     return;
   }
   if (arguments.exit_at_end && !config.digitiser.uri.starts_with("replay:")) {

@@ -44,6 +44,7 @@ void finish(Kind kind, std::vector<std::byte>& record) {
   const auto payload = std::span<const std::byte>(record).subspan(kHeaderBytes);
   const Header header{static_cast<std::uint32_t>(kind), payload.size(), hash_of(payload)};
   std::vector<std::byte> front;
+  front.reserve(kHeaderBytes);
   ByteWriter writer(front);
   writer.put_bytes(std::as_bytes(std::span(kMagic)));
   writer.put(header.kind);

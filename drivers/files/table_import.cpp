@@ -162,13 +162,17 @@ double full_scale_of(const Gauge& gauge, const Bench& bench) {
   }
 }
 
-ChannelRecord record_of(const Channel& channel, const BenchChannel& gauge, double full_scale) {
+ChannelRecord record_of(const Channel& channel, const BenchChannel& gauge, double full_scale,
+                        const EvenTimes& even) {
   std::vector<double> values = channel.column->values;
   const double factor = unit_factor(channel, gauge);
   for (double& value : values) {
     value *= factor;
   }
   require_plausible(channel, gauge, values);
+  if (farthest_off(*channel.table, even) > 0.0) {
+    values = interpolated(channel.table->time_s, values, even);
+  }
   QuantisedValues quantised = quantise(values, full_scale);
   ChannelRecord record;
   record.gauge = gauge.name;
@@ -203,7 +207,8 @@ std::string digits(double value) {
 }
 
 std::set<std::string> reserved_meta() {
-  return {"source_file", "source_sha256", "measured_rate_Hz", "first_sample_s", "ignored_columns"};
+  return {"source_file",    "source_sha256",   "measured_rate_Hz",
+          "first_sample_s", "ignored_columns", kInterpolatedFrom};
 }
 
 bool has_control_character(const std::string& text) {
@@ -249,6 +254,13 @@ void file_source(const std::vector<ScopeTable>& tables, double rate_Hz, Shot& sh
   shot.meta["source_sha256"] = listed(digests);
   shot.meta["measured_rate_Hz"] = digits(rate_Hz);
   shot.meta["first_sample_s"] = digits(tables.front().time_s.front());
+}
+
+// A record has the bench's rate; where a table has another, the values at its times are meant.
+void file_interpolated(const std::vector<ScopeTable>& tables, const EvenTimes& even, Shot& shot) {
+  double farthest = 0.0;
+  for (const ScopeTable& table : tables) farthest = std::max(farthest, farthest_off(table, even));
+  if (farthest > 0.0) shot.meta[kInterpolatedFrom] = digits(farthest);
 }
 
 void file_ignored(const std::vector<Channel>& channels, const std::vector<Channel>& chosen,
@@ -302,12 +314,14 @@ Shot import_tables(const TableImport& request) {
   Shot shot;
   shot.meta = request.meta;
   file_source(tables, agreed_rate_Hz(tables, bench.bench.sampling_frequency_Hz), shot);
+  const EvenTimes even = even_times(tables.front(), bench.bench.sampling_frequency_Hz);
+  file_interpolated(tables, even, shot);
   file_ignored(channels, chosen, shot);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const double full_scale = i < bench.bench.gauges.size()
                                   ? full_scale_of(bench.bench.gauges[i], bench.bench)
                                   : kPhotoSensorRange_V;
-    shot.channels.push_back(record_of(chosen[i], wanted[i], full_scale));
+    shot.channels.push_back(record_of(chosen[i], wanted[i], full_scale, even));
   }
   shot.id = id_from(tables.front().stem);
   shot.rate = SampleRate::from_Hz(bench.bench.sampling_frequency_Hz);

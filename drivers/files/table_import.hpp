@@ -11,6 +11,9 @@
 
 namespace kolsky {
 
+/// Meta of a record whose table was not even in time: how far, in samples.
+inline constexpr const char* kInterpolatedFrom = "interpolated_from_samples_off";
+
 /// What `kolsky import csv` takes.
 struct TableImport {
   std::vector<std::filesystem::path> tables;  ///< one with all gauges, or one per gauge
@@ -28,11 +31,13 @@ struct TableImport {
 /// order, and then the counts must be equal. A column without a unit is in its gauge's. Several
 /// tables must agree in their time axis.
 ///
-/// The shot's rate is the bench's; meta gains `measured_rate_Hz`, `first_sample_s` (time of sample
-/// 0), `source_file`, `source_sha256` (per file, in order) and, if any, `ignored_columns`. Values
-/// are kept as 32-bit codes with a power of two as scale, so that rounding stays below 5e-10 of the
-/// full scale; where the column is in other units (mV, microstrain) its header says so and it is
-/// converted.
+/// The shot's rate is the bench's. Where the time column has a rate of its own, so that samples
+/// come to lie more than 5 % of a step off the bench's, values are interpolated to even times and
+/// meta gains `interpolated_from_samples_off` (the farthest). Meta gains `measured_rate_Hz`,
+/// `first_sample_s` (time of sample 0), `source_file`, `source_sha256` (per file, in order) and, if
+/// any, `ignored_columns`. Values are kept as 32-bit codes with a power of two as scale, so that
+/// rounding stays below 5e-10 of the full scale; where the column is in other units (mV,
+/// microstrain) its header says so and it is converted.
 /// @throws InputError: file, line and column, mend. The rate 1 % off the bench's and a step 5 % off
 /// are
 ///   refused.

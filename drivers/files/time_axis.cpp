@@ -40,6 +40,20 @@ double mean_step_s(const ScopeTable& table) {
          static_cast<double>(table.time_s.size() - 1);
 }
 
+// Lagrange's polynomial through `nodes` samples from `first`.
+double through(const std::vector<double>& time_s, const std::vector<double>& values,
+               std::size_t first, std::size_t nodes, double at_s) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + nodes; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = first; j < first + nodes; ++j) {
+      if (j != i) weight *= (at_s - time_s[j]) / (time_s[i] - time_s[j]);
+    }
+    sum += weight * values[i];
+  }
+  return sum;
+}
+
 }  // namespace
 
 double measured_rate_Hz(const ScopeTable& table) {
@@ -74,6 +88,36 @@ void require_same_time_axis(const ScopeTable& first, const ScopeTable& other) {
                        "same start");
     }
   }
+}
+
+EvenTimes even_times(const ScopeTable& table, double rate_Hz) {
+  const double steps = (table.time_s.back() - table.time_s.front()) * rate_Hz;
+  return {table.time_s.front(), 1.0 / rate_Hz,
+          static_cast<std::size_t>(std::floor(steps + kStepTolerance)) + 1};
+}
+
+double farthest_off(const ScopeTable& table, const EvenTimes& even) {
+  double farthest_s = 0.0;
+  for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+    farthest_s = std::max(farthest_s, std::abs(table.time_s[i] - even.at(i)));
+  }
+  return farthest_s > kStepTolerance * even.step_s ? farthest_s / even.step_s : 0.0;
+}
+
+std::vector<double> interpolated(const std::vector<double>& time_s,
+                                 const std::vector<double>& values, const EvenTimes& even) {
+  constexpr std::size_t kNodes = 6;
+  const std::size_t nodes = std::min(kNodes, time_s.size());
+  std::vector<double> at_even;
+  at_even.reserve(even.samples);
+  std::size_t next = 0;  // the first sample after the time asked for
+  for (std::size_t sample = 0; sample < even.samples; ++sample) {
+    const double at_s = even.at(sample);
+    while (next < time_s.size() && time_s[next] <= at_s) ++next;
+    const std::size_t first = std::min(next - std::min(next, nodes / 2), time_s.size() - nodes);
+    at_even.push_back(through(time_s, values, first, nodes, at_s));
+  }
+  return at_even;
 }
 
 }  // namespace kolsky

@@ -11,6 +11,10 @@
 
 namespace kolsky {
 
+/// Codes as 32 bits each.
+void copy_widened(std::span<const std::int16_t> codes, std::int32_t* to) noexcept;
+void copy_widened(std::span<const std::int32_t> codes, std::int32_t* to) noexcept;
+
 /// The last so many codes of one channel, by tick.
 class CodeHistory {
  public:
@@ -22,9 +26,8 @@ class CodeHistory {
     const auto newest = codes.last(kept);
     const std::size_t start = slot(first_tick + static_cast<Tick>(codes.size() - kept));
     const std::size_t before_wrap = std::min(kept, codes_.size() - start);
-    std::copy_n(newest.begin(), before_wrap, codes_.begin() + static_cast<std::ptrdiff_t>(start));
-    std::copy_n(newest.begin() + static_cast<std::ptrdiff_t>(before_wrap), kept - before_wrap,
-                codes_.begin());
+    copy_widened(newest.first(before_wrap), codes_.data() + start);
+    copy_widened(newest.subspan(before_wrap), codes_.data());
   }
   [[nodiscard]] std::int32_t at(Tick tick) const { return codes_[slot(tick)]; }
 

@@ -83,6 +83,7 @@ struct Histories {
   std::vector<double> tool_input_velocity, tool_output_velocity, tool_stress, tool_strain;
   std::size_t loaded =
       0;  ///< samples until the specimen, past its peak, carries less than a tenth of it
+  std::size_t first_loaded = 0;  ///< the same of the first loading
 };
 
 Bar bar_of(const Set& set) {
@@ -136,6 +137,19 @@ std::vector<double> with_inertia(const std::vector<double>& back, const Separate
   return mean;
 }
 
+/// Samples until the stress, once a fifth of its largest, falls below a tenth of what it had.
+std::size_t first_release(const std::vector<double>& stress) {
+  const double largest = *std::max_element(stress.begin(), stress.end());
+  double most = 0.0;
+  for (std::size_t n = 0; n < stress.size(); ++n) {
+    most = std::max(most, stress[n]);
+    if (most > 0.2 * largest && stress[n] < 0.1 * most) {
+      return n;
+    }
+  }
+  return stress.size();
+}
+
 Histories histories(const Set& set, const std::filesystem::path& folder) {
   const Columns records = read_table(folder / "gauge_strain_records.csv");
   const Columns tool = read_table(folder / "stress_strain_rate.csv");
@@ -173,6 +187,7 @@ Histories histories(const Set& set, const std::filesystem::path& folder) {
   const auto released =
       std::find_if(peak, all.stress.end(), [&](double stress) { return stress < 0.1 * *peak; });
   all.loaded = static_cast<std::size_t>(released - all.stress.begin());
+  all.first_loaded = first_release(all.stress);
   const double c = std::sqrt(kSteelModulus / kSteelDensity);
   const auto tool_velocity = [&](const std::string& end) {
     auto right = even(waves, end + "_right_going");
@@ -290,11 +305,15 @@ std::pair<double, std::string> widening(const Histories& all, const std::vector<
 
 void add(const Set& set, const std::filesystem::path& folder, Section& section) {
   const Histories all = histories(set, folder);
+  const auto row_until = [&](std::size_t end, const std::string& quantity,
+                             const std::vector<double>& ours, const std::vector<double>& tool,
+                             const std::vector<double>& truth) {
+    section.rows.push_back({set.folder, quantity, off(shortened(ours, end), shortened(truth, end)),
+                            off(shortened(tool, end), shortened(truth, end))});
+  };
   const auto row = [&](const std::string& quantity, const std::vector<double>& ours,
                        const std::vector<double>& tool, const std::vector<double>& truth) {
-    section.rows.push_back({set.folder, quantity,
-                            off(shortened(ours, all.loaded), shortened(truth, all.loaded)),
-                            off(shortened(tool, all.loaded), shortened(truth, all.loaded))});
+    row_until(all.loaded, quantity, ours, tool, truth);
   };
   row("output bar's end, velocity", all.output.velocity_m_per_s, all.tool_output_velocity,
       all.output_velocity);
@@ -328,6 +347,10 @@ void add(const Set& set, const std::filesystem::path& folder, Section& section) 
   }
   const auto strain = strain_between(all.input.velocity_m_per_s, all.output.velocity_m_per_s, set);
   row("strain, against the ends' velocities", strain, all.tool_strain, all.ends_strain);
+  if (all.first_loaded < all.loaded) {
+    row_until(all.first_loaded, "the same, first loading alone", strain, all.tool_strain,
+              all.ends_strain);
+  }
   row("strain, against the specimen's own mean", strain, all.tool_strain, all.strain);
 }
 

@@ -75,6 +75,11 @@ int run(const Settings& settings, Context& context) {
   context.out << fmt::format("{}: {} samples of {} at {}, {}\n", settings.output, shot.samples(),
                              joined(channels), with_unit(shot.rate.Hz(), "Hz"),
                              with_unit(length_s, "s"));
+  if (const auto off = shot.meta.find(kInterpolatedFrom); off != shot.meta.end()) {
+    context.out << fmt::format(
+        "the table's times are up to {:.2g} of a sample off even ones: values are interpolated\n",
+        std::stod(off->second));
+  }
   return kDone;
 }
 

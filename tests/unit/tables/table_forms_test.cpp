@@ -4,7 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <span>
+#include <string>
 
 #include "drivers/files/sha256.hpp"
 #include "tests/unit/tables/table_bench.hpp"
@@ -238,8 +240,7 @@ TEST(TableForms, IdsAreFileNames) {
   EXPECT_EQ(bench.import({{std::string(200, 'x') + ".csv", text}}).id, std::string(100, 'x'));
 }
 
-// The rate is the bench's as long as the table agrees within 1 %, from its ends and not from one
-// step.
+// A table at a rate of its own, from its ends and not from one step.
 TEST(TableForms, RateComesFromTheWholeAxis) {
   std::string text = "time_s,g1\n";
   for (int i = 0; i < 1000; ++i) {
@@ -250,6 +251,50 @@ TEST(TableForms, RateComesFromTheWholeAxis) {
   const Shot shot = TableBench(1).import({{"a.csv", text}});
   EXPECT_EQ(shot.rate, (SampleRate{1'000'000, 1}));
   EXPECT_NEAR(std::stod(shot.meta.at("measured_rate_Hz")), 999 / (999 * 1.005e-6 - 0.04e-6), 10.0);
+}
+
+double bell(double time_s) {
+  return 1e-3 * std::exp(-0.5 * std::pow((time_s - 500e-6) / 20e-6, 2));
+}
+
+std::string table_of_bell(int samples, const std::function<double(int)>& time_s) {
+  std::string text = "time_s,g1\n";
+  for (int i = 0; i < samples; ++i) {
+    std::array<char, 64> row{};
+    std::snprintf(row.data(), row.size(), "%.15e,%.15e\n", time_s(i), bell(time_s(i)));
+    text += row.data();
+  }
+  return text;
+}
+
+void expect_bell(const Shot& shot, double first_s) {
+  const ChannelRecord& channel = shot.channels[0];
+  for (std::size_t n = 0; n < channel.codes.size(); ++n) {
+    const double time_s = first_s + 1e-6 * static_cast<double>(n);
+    EXPECT_NEAR(channel.scale * channel.codes[n], bell(time_s), 2e-9) << n;
+  }
+}
+
+// Values belong to the times beside them: at half a per cent off the bench's rate the record has
+// what the signal was at the bench's times.
+TEST(TableForms, AnotherRateIsInterpolatedToTheBenchs) {
+  const auto slower = [](int i) { return 1.005e-6 * i; };
+  const Shot shot = TableBench(1).import({{"a.csv", table_of_bell(1001, slower)}});
+  EXPECT_EQ(shot.samples(), 1006U);
+  EXPECT_NEAR(std::stod(shot.meta.at(kInterpolatedFrom)), 5.0, 1e-6);
+  expect_bell(shot, 0.0);
+}
+
+// What times scatter by within their tolerance is theirs: the samples stay what they are.
+TEST(TableForms, ScatteredTimesLeaveTheSamplesAlone) {
+  const auto scattered = [](int i) { return 1e-6 * i + 0.02e-6 * std::sin(2.0 * i); };
+  const Shot shot = TableBench(1).import({{"a.csv", table_of_bell(1001, scattered)}});
+  EXPECT_FALSE(shot.meta.contains(kInterpolatedFrom));
+  const ChannelRecord& channel = shot.channels[0];
+  for (int i = 0; i < 1001; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    EXPECT_NEAR(channel.scale * channel.codes[n], bell(scattered(i)), 1e-11) << i;
+  }
 }
 
 TEST(TableForms, FourTablesOfFiftyThousandRowsAreQuick) {

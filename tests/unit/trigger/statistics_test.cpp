@@ -84,6 +84,25 @@ void expect_copied(const std::vector<Code>& codes) {
   EXPECT_EQ(to.back(), kGuard);
 }
 
+// Copies count from the first code while the others are near it: up to 1023 at any length, here at
+// that limit, just beyond it and at the rails.
+TEST(RunStatistics, WhileCopyingHoldAboutEveryFirstCode) {
+  for (const int first : {-32768, -32000, 0, 31744, 32767}) {
+    for (const int reach : {1, 1023, 1024, 2047, 32767}) {
+      for (const std::size_t size : {2U, 16U, 2047U, 2048U, 2049U, 5000U}) {
+        for (const int side : {-1, 1}) {
+          const int other = std::clamp(first + side * reach, -32768, 32767);
+          std::vector<std::int16_t> codes(size, static_cast<std::int16_t>(other));
+          codes[0] = static_cast<std::int16_t>(first);
+          std::vector<std::int16_t> to(size);
+          expect_like(copy_with_statistics(codes, std::span<std::int16_t>(to)), codes);
+          EXPECT_EQ(to, codes);
+        }
+      }
+    }
+  }
+}
+
 TEST(RunStatistics, ComeWithTheCopyAndNothingBesideItIsTouched) {
   for (const std::size_t size : {1UL, 7UL, 64UL, 129UL, 4096UL, 10'001UL}) {
     expect_copied(random_codes<std::int16_t>(size, -32768, 32767));
