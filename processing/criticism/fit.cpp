@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "processing/criticism/fit_steps.hpp"
 #include "processing/reduction/first_pulse.hpp"
 
 namespace kolsky {
@@ -12,36 +12,9 @@ namespace {
 
 constexpr int kMostIterations = 25;
 constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
-
-/// How far theta is from the middle of the priors, in scales.
-Eigen::VectorXd from_priors(const Composition& composition, const std::vector<double>& theta) {
-  Eigen::VectorXd off(static_cast<Eigen::Index>(theta.size()));
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    const FreeNumber& number = composition.numbers()[i];
-    off[static_cast<Eigen::Index>(i)] = theta[i] - number.theta_of(number.prior_mean);
-  }
-  return off;
-}
-
-double penalty_of(const Composition& composition, const Eigen::MatrixXd& precision,
-                  const std::vector<double>& theta) {
-  const Eigen::VectorXd off = from_priors(composition, theta);
-  return off.dot(precision * off);
-}
-
-void keep_inside(const Composition& composition, std::vector<double>& theta) {
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    const FreeNumber& number = composition.numbers()[i];
-    theta[i] = number.inside(theta[i]);
-  }
-}
-
-bool at_bound(const FreeNumber& number, double theta, double downhill) {
-  const double value = number.value_at(theta);
-  const double reach = 1e-9 * (number.upper - number.lower);
-  return (value <= number.lower + reach && downhill < 0.0) ||
-         (value >= number.upper - reach && downhill > 0.0);
-}
+/// The same where residuals are calculated and rough by as much (a contact grows by nodes), and a
+/// square of a deviate counts over several.
+constexpr double kNear = 0.05;
 
 }  // namespace
 
@@ -91,81 +64,39 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
 ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
                    const Workers& executor, std::vector<double> start,
                    const Eigen::MatrixXd* chord) {
-  ModelFit fit;
-  fit.theta = start.empty() ? composition.start() : std::move(start);
-  keep_inside(composition, fit.theta);
-  const auto count = static_cast<Eigen::Index>(fit.theta.size());
-  const Eigen::MatrixXd precision = composition.prior_precision();
-  std::vector<std::size_t> all(fit.theta.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  fit.residual = residuals.evaluate(composition, fit.theta, executor.first);
-  fit.chi2 = fit.residual.squaredNorm();
-  fit.penalty = penalty_of(composition, precision, fit.theta);
-  if (count == 0) {
-    // Nothing is free: the model is what it is.
-    fit.jacobian.resize(fit.residual.size(), 0);
-    fit.converged = true;
-    return fit;
+  FitSteps steps(composition, residuals, executor, std::move(start));
+  if (steps.nothing_free()) {
+    return steps.done(true);
   }
   double damping = 0.0;
   bool fresh = false;
   bool short_before = false;  ///< the last step gained as little
+  bool converged = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     if (chord != nullptr && !fresh) {
-      fit.jacobian = *chord;
+      steps.borrow(*chord);
     } else {
-      fit.jacobian = derivatives(composition, residuals, fit.theta, fit.residual, all, executor);
+      steps.derive();
       fresh = true;
-    }
-    fit.information = fit.jacobian.transpose() * fit.jacobian;
-    Eigen::VectorXd downhill = -fit.jacobian.transpose() * fit.residual;
-    fit.information += precision;
-    downhill -= precision * from_priors(composition, fit.theta);
-    // A number that is held by its bound takes no part in this step.
-    Eigen::MatrixXd information = fit.information;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (at_bound(composition.numbers()[at], fit.theta[at], downhill[i])) {
-        downhill[i] = 0.0;
-        information.row(i).setZero();
-        information.col(i).setZero();
-        information(i, i) = 1.0;
-      }
     }
     bool better = false;
     double gain = 0.0;
     for (int attempt = 0; attempt < 12 && !better; ++attempt) {
-      Eigen::MatrixXd damped = information;
-      damped.diagonal() +=
-          damping * information.diagonal() +
-          Eigen::VectorXd::Constant(count, 1e-12 * information.diagonal().maxCoeff());
-      const Eigen::VectorXd step = damped.ldlt().solve(downhill);
-      std::vector<double> moved = fit.theta;
-      for (Eigen::Index i = 0; i < count; ++i) {
-        moved[static_cast<std::size_t>(i)] += step[i];
-      }
-      keep_inside(composition, moved);
-      const Eigen::VectorXd residual = residuals.evaluate(composition, moved, executor.first);
-      const double chi2 = residual.squaredNorm();
-      const double penalty = penalty_of(composition, precision, moved);
-      gain = fit.objective() - chi2 - penalty;
-      if (std::isfinite(chi2) && gain > -1e-6) {
-        better = true;
-        fit.theta = std::move(moved);
-        fit.residual = residual;
-        fit.chi2 = chi2;
-        fit.penalty = penalty;
+      FitSteps::Step step = steps.tried(damping);
+      gain = step.gain;
+      better = step.better();
+      if (better) {
+        steps.take(std::move(step));
         damping = damping > 1e-6 ? damping / 10.0 : 0.0;
       } else {
         damping = std::max(1e-4, damping * 10.0);
       }
     }
-    // What a full step would gain if the residuals were straight.
-    const double promised = downhill.dot(information.ldlt().solve(downhill));
+    const double promised = steps.promised();
     if (chord != nullptr && !fresh) {
       // The borrowed derivatives serve as long as what they promise comes true.
       if (better && gain < kSettled) {
-        fit.converged = true;
+        converged = true;
         break;
       }
       fresh = !better || gain < 0.5 * promised;
@@ -176,24 +107,65 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
     const bool at_rest = gain < kSettled && (damping == 0.0 || promised < kSettled || short_before);
     short_before = gain < kSettled;
     if (!better || at_rest) {
-      fit.converged = better || damping > 1e3;
+      converged = better || damping > 1e3;
       break;
     }
   }
-  // Numbers that neither data nor prior hold are left out of the inverse.
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(fit.information);
-  if (count > 0) {
-    Eigen::VectorXd inverse = solver.eigenvalues();
-    const double least = 1e-13 * inverse.maxCoeff();
-    for (Eigen::Index i = 0; i < count; ++i) {
-      inverse[i] = 1.0 / std::max(inverse[i], least);
-    }
-    fit.covariance =
-        solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
-  } else {
-    fit.covariance.resize(0, 0);
+  return steps.done(converged);
+}
+
+ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals,
+                        const Workers& executor, std::vector<double> start,
+                        const Eigen::MatrixXd* chord) {
+  FitSteps steps(composition, residuals, executor, std::move(start));
+  if (steps.nothing_free()) {
+    return steps.done(true);
   }
-  return fit;
+  bool fresh = chord == nullptr;  // derivatives made, and no step taken since
+  if (fresh) {
+    steps.derive();
+  } else {
+    steps.borrow(*chord);
+  }
+  double damping = 0.0;
+  int refused = 0;
+  bool converged = false;
+  constexpr int kMostSteps = 40;
+  constexpr int kMostRefused = 4;
+  for (int n = 0; n < kMostSteps && !converged; ++n) {
+    const double promised = steps.promised();
+    if (fresh && promised < kNear) {
+      converged = true;
+      break;
+    }
+    FitSteps::Step step = steps.tried(damping);
+    if (std::isfinite(step.chi2) && step.gain > 0.0) {
+      // What is learned serves as long as what it promises comes true.
+      const bool serves = step.gain > std::max(kNear, 0.1 * promised);
+      converged = fresh && step.gain < kNear;
+      if (serves) {
+        steps.learn(step);
+      }
+      steps.take(std::move(step));
+      damping = damping > 1e-2 ? damping / 10.0 : 0.0;
+      refused = 0;
+      if (serves) {
+        steps.go_on();
+      } else if (!converged) {
+        steps.derive();
+      }
+      fresh = !serves;
+    } else if (fresh) {
+      // Short steps gain less than the residuals' own roughness.
+      damping = std::max(1e-2, damping * 10.0);
+      converged = ++refused > kMostRefused;
+    } else {
+      steps.derive();
+      fresh = true;
+      damping = 0.0;
+    }
+  }
+  return steps.done(converged);
 }
 
 namespace {

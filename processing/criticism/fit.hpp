@@ -33,6 +33,13 @@ struct ModelFit {
                                  const Workers& executor, std::vector<double> start = {},
                                  const Eigen::MatrixXd* chord = nullptr);
 
+/// The same where residuals are dear: steps teach the derivatives (Broyden's method), which are
+/// made anew only where these stop coming true, and at the end.
+/// @param chord  derivatives from nearby to begin with; none: made where the fit starts
+[[nodiscard]] ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals,
+                                      const Workers& executor, std::vector<double> start = {},
+                                      const Eigen::MatrixXd* chord = nullptr);
+
 /// Derivatives of the residuals by some of the free numbers, by differences.
 [[nodiscard]] Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& residuals,
                                           const std::vector<double>& theta,

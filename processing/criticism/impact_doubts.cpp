@@ -145,6 +145,37 @@ Eigen::MatrixXd ImpactResiduals::doubt_of(const Eigen::MatrixXd& jacobian,
          by_mesh * by_mesh.transpose();
 }
 
+/// How the residuals of one speed's shots differ, and how many of them are free in that. What grows
+/// along their speeds repeats, as a model's misfit does; two shots do not tell it from noise.
+std::pair<std::vector<Eigen::VectorXd>, double> ImpactResiduals::scatter_of(
+    std::size_t g, const std::vector<Eigen::VectorXd>& residual) const {
+  const SpeedGroup& group = records_.groups[g];
+  const auto count = static_cast<double>(group.shots.size());
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(residual[group.shots[0]].size());
+  for (const std::size_t n : group.shots) {
+    mean += residual[n] / count;
+  }
+  const auto faster = [&](std::size_t n) {
+    return *campaign_.shots[n].facts.incident_speed_m_per_s - group.speed_m_per_s;
+  };
+  Eigen::VectorXd trend = Eigen::VectorXd::Zero(mean.size());
+  double squares = 0.0;
+  for (const std::size_t n : group.shots) {
+    trend += faster(n) * (residual[n] - mean);
+    squares += faster(n) * faster(n);
+  }
+  const bool told = group.shots.size() > 2 && squares > 0.0;
+  std::vector<Eigen::VectorXd> offs;
+  offs.reserve(group.shots.size());
+  for (const std::size_t n : group.shots) {
+    offs.emplace_back(residual[n] - mean);
+    if (told) {
+      offs.back() -= trend * (faster(n) / squares);
+    }
+  }
+  return {std::move(offs), count - (told ? 2.0 : 1.0)};
+}
+
 void ImpactResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {
   const Foretold foretold = foretell(composition, theta, executor_.first);
   // Scatter along V dm/dV, clear of arrival and offset, is the speeds'; the rest is noise.
@@ -161,28 +192,27 @@ void ImpactResiduals::calibrate(const Composition& composition, const std::vecto
     if (group.shots.size() < 2) {
       continue;
     }
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size + 1);
     Eigen::VectorXd reading = Eigen::VectorXd::Zero(size);
     for (const std::size_t n : group.shots) {
-      mean += foretold.residual[n] / count;
       reading += foretold.reading[n].head(size) / count;
     }
+    const auto [offs, left_free] = scatter_of(g, foretold.residual);
     // The force grows with the speed nearly in its own shape: arrivals and offsets are in `own`.
     const Eigen::MatrixXd inverse =
         symmetric_power(whitening_->own(g).topLeftCorner(size, size), -1.0);
     const Eigen::VectorXd direction = inverse * reading;
     const double information = reading.dot(direction);
-    for (const std::size_t n : group.shots) {
-      const Eigen::VectorXd off = foretold.residual[n] - mean;
+    for (std::size_t i = 0; i < offs.size(); ++i) {
+      const Eigen::VectorXd& off = offs[i];
       const double along = direction.dot(off.head(size)) / information;
       scatter += along * along;
       const Eigen::VectorXd left = off.head(size) - along * reading;
       rest += left.dot(inverse * left);
-      rebounds += std::pow(off[size] / foretold.reading[n][size], 2);
+      rebounds += std::pow(off[size] / foretold.reading[group.shots[i]][size], 2);
     }
-    expected += (count - 1.0) / information;
-    freedom += count - 1.0;
-    rest_freedom += (count - 1.0) * (static_cast<double>(size) - eliminated() - 1.0);
+    expected += left_free / information;
+    freedom += left_free;
+    rest_freedom += left_free * (static_cast<double>(size) - eliminated() - 1.0);
   }
   if (freedom < 1.0) {
     return;

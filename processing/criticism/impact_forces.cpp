@@ -18,7 +18,7 @@ BallRun ImpactResiduals::force(const BallScene& ball, std::size_t group, bool hi
   const SpeedGroup& own = records_.groups[group];
   const double speed = high ? own.high_m_per_s : own.low_m_per_s;
   const Anchor& anchor = anchors_[group][high ? 1 : 0];
-  const BallRun coarse = *runs_.run(ball, own.speed_m_per_s, meshes_.coarse);
+  const BallRun coarse = *runs_->run(ball, own.speed_m_per_s, meshes_.coarse);
   const double growth = std::pow(speed / own.speed_m_per_s, kChangeBySpeed);
   const BallRun moved = sum_of(anchor.fine, growth, sum_of(coarse, -1.0, anchor.coarse));
   return sum_of(moved, ball.cauchy_share, anchor.law);
@@ -45,7 +45,7 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   std::stable_sort(tasks.begin(), tasks.end(),
                    [](const Task& a, const Task& b) { return a.elements > b.elements; });
   const auto run = [&](const Task& task) {
-    return runs_.run(ball, task.speed_m_per_s, task.elements, task.cauchy);
+    return runs_->run(ball, task.speed_m_per_s, task.elements, task.cauchy);
   };
   executor_.run(tasks.size(),
                 [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
@@ -69,11 +69,13 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
 
 void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {
   anchor(composition, theta);
-  const Foretold foretold = foretell(composition, theta, executor_.first);
+  Foretold foretold = foretell(composition, theta, executor_.first);
   if (!foretold.sound) {
     throw InputError("model", "has a ball that the solver refuses", "bring its numbers nearer");
   }
   touch_s_ = foretold.arrival_s;
+  records_.judge_from(touch_s_);
+  foretold = foretell(composition, theta, executor_.first);
   set_whitening(foretold, composition, theta);
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "processing/base/error.hpp"
+#include "processing/criticism/fine_grid.hpp"
 #include "processing/impact/filter.hpp"
 
 namespace kolsky {
@@ -161,6 +162,24 @@ std::size_t ImpactRecords::unsaid_rebounds() const {
   return static_cast<std::size_t>(std::count(rebound.begin(), rebound.end(), std::nullopt));
 }
 
+void ImpactRecords::judge_from(const std::vector<double>& touch_s) {
+  const auto shots = static_cast<double>(touch_s.size());
+  double after_touch_s = 0.0;
+  for (std::size_t n = 0; n < touch_s.size(); ++n) {
+    after_touch_s += (first_s[n] - touch_s[n]) / shots;
+  }
+  for (std::size_t n = 0; n < touch_s.size(); ++n) {
+    first_s[n] = touch_s[n] + after_touch_s;
+    for (std::size_t j = 0; j < low_passed[n].size(); ++j) {
+      for (std::size_t k = 0; k < window.samples; ++k) {
+        const double time_s = first_s[n] + static_cast<double>(k) * window.period_s;
+        judged[n][j * window.samples + k] =
+            between_samples(low_passed[n][j], time_s / sample_period_s, sample_period_s).value;
+      }
+    }
+  }
+}
+
 ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double cutoff_Hz) {
   if (!campaign.bench.input.youngs_modulus_Pa) {
     throw InputError("bars.input.youngs_modulus_Pa", "is missing: the ball strikes an elastic bar",
@@ -168,6 +187,7 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
   }
   ImpactRecords records;
   const double period_s = campaign.period_s;
+  records.sample_period_s = period_s;
   constexpr double kSamplesOfCutoff = 8.0;
   ImpactWindow& window = records.window;
   window.to_far_end_only = !whole;
@@ -209,16 +229,18 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
     const auto first =
         static_cast<std::size_t>(std::lround((shot.foot_s - window.lead_s) / period_s));
     std::vector<double> judged;
+    std::vector<std::vector<double>> own;
     double peak = 0.0;
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-      const std::vector<double> filtered =
-          impact::low_passed(shot.strain[j], period_s, window.cutoff_Hz);
+      std::vector<double> filtered = impact::low_passed(shot.strain[j], period_s, window.cutoff_Hz);
       for (std::size_t k = 0; k < window.samples; ++k) {
         judged.push_back(filtered[std::min(first + k * step, filtered.size() - 1)]);
         peak = std::max(peak, std::abs(judged.back()));
       }
       meters[j].add(shot.strain[j], filtered, std::min(shot.quiet_samples, filtered.size()));
+      own.push_back(std::move(filtered));
     }
+    records.low_passed.push_back(std::move(own));
     records.judged.push_back(std::move(judged));
     records.first_s.push_back(static_cast<double>(first) * period_s);
     records.peak.push_back(peak);

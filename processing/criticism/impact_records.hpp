@@ -29,8 +29,11 @@ struct ImpactWindow {
 /// The judged records of a campaign of impacts and their noise.
 struct ImpactRecords {
   ImpactWindow window;
-  std::vector<SpeedGroup> groups;           ///< by rising speed
-  std::vector<std::size_t> group_of;        ///< by shot
+  std::vector<SpeedGroup> groups;     ///< by rising speed
+  std::vector<std::size_t> group_of;  ///< by shot
+  /// By shot and gauge: the whole record, low-passed [strain].
+  std::vector<std::vector<std::vector<double>>> low_passed;
+  double sample_period_s = 0.0;
   std::vector<std::vector<double>> judged;  ///< by shot: gauge after gauge [strain]
   std::vector<double> first_s;              ///< by shot: time of the first judged sample
   std::vector<std::vector<double>> noise;   ///< by gauge: autocovariance, judged samples apart
@@ -43,6 +46,12 @@ struct ImpactRecords {
   /// common to all (the distance of the beams that timed them).
   double own_speed_sd = 0.0;
   double common_speed_sd = 0.0;
+
+  /// Judges all shots at the same times after their first touch. What a model misses is the same in
+  /// the shots of one speed only there: seen some microseconds earlier or later, a ripple of the
+  /// contact scatters as noise does.
+  /// @param touch_s  by shot, from the record's start
+  void judge_from(const std::vector<double>& touch_s);
 
   /// A group's incident speed as `rebound` counts speeds.
   [[nodiscard]] double incident(std::size_t group) const {

@@ -16,12 +16,13 @@ constexpr double kSettled_s = 1e-11;
 }  // namespace
 
 ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz,
-                                 const Workers& executor, const BallMeshes& meshes)
+                                 const Workers& executor, const BallMeshes& meshes,
+                                 std::shared_ptr<BallRuns> runs)
     : campaign_(campaign),
       executor_(executor),
       meshes_(meshes),
       records_(read_impact_records(campaign, whole, cutoff_Hz)),
-      runs_(campaign.bench) {
+      runs_(runs ? std::move(runs) : std::make_shared<BallRuns>(campaign.bench)) {
   const ImpactWindow& window = records_.window;
   const double judged_s = window.period_s * static_cast<double>(window.samples);
   const auto samples =
@@ -59,9 +60,6 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
                                                     const std::vector<double>& theta,
                                                     std::size_t worker) {
   Foretold out;
-  const std::size_t gauges = campaign_.gauges();
-  const std::size_t samples = records_.window.samples;
-  const auto size = static_cast<Eigen::Index>(of_gauges());
   const std::size_t shots = campaign_.shots.size();
   out.reading.resize(shots);
   out.residual.resize(shots);
@@ -69,75 +67,99 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
   out.rebound_m_per_s.resize(shots);
   std::vector<std::vector<Complex>> transfer;
   BallScene ball;
-  std::size_t shaped = shots;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
     Readings readings;
     for (const std::size_t n : group.shots) {
-      const bool first = shaped == shots || composition.differs_by_shot();
-      if (first) {
+      if (transfer.empty() || composition.differs_by_shot()) {
         transfer = transfers(composition, theta, n, ball);
-        shaped = n;
       }
       const RecordScene record = record_of(composition, theta, n);
       if (readings.low.empty() || composition.differs_by_shot()) {
         try {
-          const BallRun low = force(ball, g, false);
-          const BallRun high = force(ball, g, true);
-          readings = {recorded(read(low, transfer, worker), record.bridge_b),
-                      recorded(read(high, transfer, worker), record.bridge_b), low.rebound_m_per_s,
-                      high.rebound_m_per_s};
+          readings = readings_of(ball, g, transfer, record.bridge_b, worker);
         } catch (const InputError&) {
           out.sound = false;
           return out;
         }
       }
-      const double share = (*campaign_.shots[n].facts.incident_speed_m_per_s - group.low_m_per_s) /
-                           (group.high_m_per_s - group.low_m_per_s);
-      std::vector<std::vector<double>> strain(gauges);
-      for (std::size_t j = 0; j < gauges; ++j) {
-        strain[j].resize(readings.low[j].size());
-        for (std::size_t i = 0; i < strain[j].size(); ++i) {
-          strain[j][i] = (1.0 - share) * readings.low[j][i] + share * readings.high[j][i];
-        }
-      }
-      // The arrival where it fits best, by the noise alone.
-      const Eigen::VectorXd record_n = measured(n, record);
-      double touch_s = touch_s_[n];
-      Eigen::VectorXd reading(size);
-      Eigen::VectorXd slope(size);
-      for (int iteration = 0; iteration < 12; ++iteration) {
-        for (std::size_t j = 0; j < gauges; ++j) {
-          for (std::size_t k = 0; k < samples; ++k) {
-            const double time_s =
-                records_.first_s[n] + static_cast<double>(k) * records_.window.period_s - touch_s;
-            const Interpolated own = on_fine_grid(strain[j], time_s);
-            reading[static_cast<Eigen::Index>(j * samples + k)] = own.value;
-            slope[static_cast<Eigen::Index>(j * samples + k)] = own.slope_per_s;
-          }
-        }
-        const Eigen::VectorXd weighted =
-            noise_inverse_.size() == 0 ? slope : Eigen::VectorXd(noise_inverse_ * slope);
-        constexpr double kLongestStep_s = 20e-6;
-        const double step_s = std::clamp(-weighted.dot(record_n - reading) / weighted.dot(slope),
-                                         -kLongestStep_s, kLongestStep_s);
-        if (!std::isfinite(step_s) || std::abs(step_s) < kSettled_s) {
-          break;
-        }
-        touch_s += step_s;
-      }
-      out.arrival_s[n] = touch_s;
-      out.rebound_m_per_s[n] = (1.0 - share) * readings.rebound_low + share * readings.rebound_high;
-      const double rebound = out.rebound_m_per_s[n] / records_.wave_speed_m_per_s;
-      const auto& said = records_.rebound[n];
-      out.reading[n].resize(size + 1);
-      out.reading[n] << reading, rebound;
-      out.residual[n].resize(size + 1);
-      out.residual[n] << record_n - reading, said ? *said - rebound : 0.0;
+      foretell_shot(n, readings.at(share_of(n)), measured(n, record), out);
     }
   }
   fill_unsaid_rebounds(out);
   return out;
+}
+
+ImpactResiduals::Readings ImpactResiduals::readings_of(
+    const BallScene& ball, std::size_t group, const std::vector<std::vector<Complex>>& transfer,
+    double bridge_b, std::size_t worker) {
+  const BallRun low = force(ball, group, false);
+  const BallRun high = force(ball, group, true);
+  return {recorded(read(low, transfer, worker), bridge_b),
+          recorded(read(high, transfer, worker), bridge_b), low.rebound_m_per_s,
+          high.rebound_m_per_s};
+}
+
+ImpactResiduals::Reading ImpactResiduals::Readings::at(double share) const {
+  Reading between{low, (1.0 - share) * rebound_low + share * rebound_high};
+  for (std::size_t j = 0; j < low.size(); ++j) {
+    for (std::size_t i = 0; i < low[j].size(); ++i) {
+      between.strain[j][i] = (1.0 - share) * low[j][i] + share * high[j][i];
+    }
+  }
+  return between;
+}
+
+/// How far a shot's speed is from its group's lower one to the upper one.
+double ImpactResiduals::share_of(std::size_t shot) const {
+  const SpeedGroup& group = records_.groups[records_.group_of[shot]];
+  return (*campaign_.shots[shot].facts.incident_speed_m_per_s - group.low_m_per_s) /
+         (group.high_m_per_s - group.low_m_per_s);
+}
+
+void ImpactResiduals::foretell_shot(std::size_t n, const Reading& strain,
+                                    const Eigen::VectorXd& record, Foretold& out) const {
+  const auto size = static_cast<Eigen::Index>(of_gauges());
+  Eigen::VectorXd reading(size);
+  out.arrival_s[n] = aligned(n, strain, record, reading);
+  out.rebound_m_per_s[n] = strain.rebound_m_per_s;
+  const double rebound = strain.rebound_m_per_s / records_.wave_speed_m_per_s;
+  const auto& said = records_.rebound[n];
+  out.reading[n].resize(size + 1);
+  out.reading[n] << reading, rebound;
+  out.residual[n].resize(size + 1);
+  out.residual[n] << record - reading, said ? *said - rebound : 0.0;
+}
+
+/// Moves a reading to where it fits a shot's record best, by the noise alone.
+/// @return time of the first touch
+double ImpactResiduals::aligned(std::size_t n, const Reading& strain, const Eigen::VectorXd& record,
+                                Eigen::VectorXd& reading) const {
+  constexpr int kMostSteps = 12;
+  constexpr double kLongestStep_s = 20e-6;
+  const std::size_t samples = records_.window.samples;
+  double touch_s = touch_s_[n];
+  Eigen::VectorXd slope(reading.size());
+  for (int iteration = 0; iteration < kMostSteps; ++iteration) {
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      for (std::size_t k = 0; k < samples; ++k) {
+        const double time_s =
+            records_.first_s[n] + static_cast<double>(k) * records_.window.period_s - touch_s;
+        const Interpolated own = on_fine_grid(strain.strain[j], time_s);
+        reading[static_cast<Eigen::Index>(j * samples + k)] = own.value;
+        slope[static_cast<Eigen::Index>(j * samples + k)] = own.slope_per_s;
+      }
+    }
+    const Eigen::VectorXd weighted =
+        noise_inverse_.size() == 0 ? slope : Eigen::VectorXd(noise_inverse_ * slope);
+    const double step_s = std::clamp(-weighted.dot(record - reading) / weighted.dot(slope),
+                                     -kLongestStep_s, kLongestStep_s);
+    if (!std::isfinite(step_s) || std::abs(step_s) < kSettled_s) {
+      break;
+    }
+    touch_s += step_s;
+  }
+  return touch_s;
 }
 
 /// A group's mean rebound is that of the shots that say one.

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "processing/base/workers.hpp"
@@ -36,8 +37,9 @@ inline constexpr double kSolverDoubt = 6.0;
 class ImpactResiduals : public ShotResiduals {
  public:
   /// @param whole  judge beyond the far end's reflection
+  /// @param runs   impacts on this bench that others calculate too; none: its own
   ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz, const Workers& executor,
-                  const BallMeshes& meshes = {});
+                  const BallMeshes& meshes = {}, std::shared_ptr<BallRuns> runs = nullptr);
 
   /// Takes from this model the fine forces, the arrivals and the whitener.
   /// @throws InputError what the solver refuses there
@@ -119,12 +121,17 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] double force_per_strain_N() const;
 
  private:
-  /// What gauges read of a group's two calculated impacts, on a fine grid from `kFineGridLead_s`
-  /// before the first touch on.
+  /// What gauges read of one impact, on a fine grid from `kFineGridLead_s` before the first touch.
+  struct Reading {
+    std::vector<std::vector<double>> strain;  ///< by gauge
+    double rebound_m_per_s = 0.0;
+  };
+  /// The same of a group's two calculated impacts.
   struct Readings {
     std::vector<std::vector<double>> low, high;  ///< by gauge
     double rebound_low = 0.0;
     double rebound_high = 0.0;
+    [[nodiscard]] Reading at(double share) const;
   };
   struct Anchor {
     BallRun fine;    ///< at the prepared numbers
@@ -145,6 +152,14 @@ class ImpactResiduals : public ShotResiduals {
       std::size_t worker) const;
   [[nodiscard]] std::vector<std::vector<double>> recorded(std::vector<std::vector<double>> strain,
                                                           double bridge_b) const;
+  [[nodiscard]] Readings readings_of(const BallScene& ball, std::size_t group,
+                                     const std::vector<std::vector<Complex>>& transfer,
+                                     double bridge_b, std::size_t worker);
+  [[nodiscard]] double share_of(std::size_t shot) const;
+  void foretell_shot(std::size_t n, const Reading& strain, const Eigen::VectorXd& record,
+                     Foretold& out) const;
+  [[nodiscard]] double aligned(std::size_t n, const Reading& strain, const Eigen::VectorXd& record,
+                               Eigen::VectorXd& reading) const;
   void set_whitening(const Foretold& foretold, const Composition& composition,
                      const std::vector<double>& theta);
   [[nodiscard]] Eigen::VectorXd at_judged(std::size_t group, const Foretold& foretold,
@@ -153,6 +168,8 @@ class ImpactResiduals : public ShotResiduals {
                                      const std::vector<std::vector<double>>& low,
                                      const std::vector<std::vector<double>>& high) const;
   [[nodiscard]] Eigen::VectorXd measured(std::size_t shot, const RecordScene& record) const;
+  [[nodiscard]] std::pair<std::vector<Eigen::VectorXd>, double> scatter_of(
+      std::size_t g, const std::vector<Eigen::VectorXd>& residual) const;
   void fill_unsaid_rebounds(Foretold& foretold) const;
   [[nodiscard]] Eigen::MatrixXd noise_matrix() const;
 
@@ -160,7 +177,7 @@ class ImpactResiduals : public ShotResiduals {
   Workers executor_;
   BallMeshes meshes_;
   ImpactRecords records_;
-  BallRuns runs_;
+  std::shared_ptr<BallRuns> runs_;
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
   std::vector<double> anchored_at_;
   std::unique_ptr<ImpactWhitening> whitening_;

@@ -94,7 +94,7 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
         there[i] = number.inside(number.theta_of(filed.prior_mean + deviations * filed.prior_sd));
       }
     }
-    ModelFit other = fit_model(composition, residuals, executor, there);
+    ModelFit other = fit_by_secants(composition, residuals, executor, there);
     if (std::isfinite(other.objective()) && !(fit.objective() <= other.objective())) {
       fit = std::move(other);
     }
@@ -169,13 +169,13 @@ std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, std::size_t wo
   const Composition composition(model, study_.campaign());
   const Workers alone = serial_on(worker);
   const Eigen::MatrixXd chord = borrowed(candidate, directions_[index], base_, composition);
-  ModelFit fit = fit_model(composition, study_.residuals(), alone,
-                           begin_near(candidate, directions_[index], base_, composition),
-                           chord.size() > 0 ? &chord : nullptr);
+  ModelFit fit = fit_by_secants(composition, study_.residuals(), alone,
+                                begin_near(candidate, directions_[index], base_, composition),
+                                chord.size() > 0 ? &chord : nullptr);
   if (!std::isfinite(fit.objective())) {
     // First order led to a ball that the solver refuses: begin at null.
-    fit = fit_model(composition, study_.residuals(), alone,
-                    carry(base_.composition, base_.fit.theta, composition));
+    fit = fit_by_secants(composition, study_.residuals(), alone,
+                         carry(base_.composition, base_.fit.theta, composition));
   }
   if (is_filed_number(candidate)) {
     fit = from_afar(candidate, std::move(fit), composition,

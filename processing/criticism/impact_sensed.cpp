@@ -23,7 +23,7 @@ ImpactResiduals::Sensed ImpactResiduals::sensed(const Composition& composition,
   const SpeedGroup& group = records_.groups[g];
   const auto run = [&](bool high) {
     const double speed = high ? group.high_m_per_s : group.low_m_per_s;
-    return sum_of(*runs_.run(ball, speed, meshes_.middle), ball.cauchy_share,
+    return sum_of(*runs_->run(ball, speed, meshes_.middle), ball.cauchy_share,
                   anchors_[g][high ? 1 : 0].law);
   };
   const BallRun low = run(false);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/criticism/effect_starts.hpp"
 #include "processing/criticism/candidates.hpp"
 #include "processing/criticism/statistics.hpp"
 
@@ -111,33 +112,40 @@ bool judges_whole(const Model& model) {
   return model.find("end-reflection") != nullptr;
 }
 
-Studied ImpactStudy::fit(const Model& model) {
+Studied ImpactStudy::fit(const Model& begun) {
+  const Model model =
+      at_best_starts(begun, campaign_, [&](const Composition& composition, bool first) {
+        if (first) {
+          residuals_.prepare(composition, composition.start());
+        }
+        return fit_by_secants(composition, residuals_, executor_).objective();
+      });
   Composition composition(model, campaign_);
   residuals_.prepare(composition, composition.start());
-  ModelFit fit = fit_model(composition, residuals_, executor_);
+  ModelFit fit = fit_by_secants(composition, residuals_, executor_);
   residuals_.calibrate(composition, fit.theta);
-  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  fit = fit_by_secants(composition, residuals_, executor_, fit.theta);
   return finish(model, std::move(composition), std::move(fit));
 }
 
 Studied ImpactStudy::refit(const Model& model, const Workers& executor) {
   Composition composition(model, campaign_);
-  ModelFit fit = fit_model(composition, residuals_, executor);
+  ModelFit fit = fit_by_secants(composition, residuals_, executor);
   return finish(model, std::move(composition), std::move(fit));
 }
 
 Studied ImpactStudy::refit_near(const Model& model, const Studied& other) {
   Composition composition(model, campaign_);
-  ModelFit near = fit_model(composition, residuals_, executor_,
-                            carry(other.composition, other.fit.theta, composition));
-  ModelFit own = fit_model(composition, residuals_, executor_);
+  ModelFit near = fit_by_secants(composition, residuals_, executor_,
+                                 carry(other.composition, other.fit.theta, composition));
+  ModelFit own = fit_by_secants(composition, residuals_, executor_);
   const bool better = !(near.objective() <= own.objective());
   return finish(model, std::move(composition), better ? std::move(own) : std::move(near));
 }
 
 Studied ImpactStudy::settled(const Studied& studied) {
   residuals_.anchor(studied.composition, studied.fit.theta);
-  ModelFit fit = fit_model(studied.composition, residuals_, executor_, studied.fit.theta);
+  ModelFit fit = fit_by_secants(studied.composition, residuals_, executor_, studied.fit.theta);
   return finish(studied.model, studied.composition, std::move(fit));
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processing/criticism/impact_residuals.hpp"
@@ -53,14 +55,16 @@ class ImpactStudy {
  public:
   /// @param whole   judge beyond the far end's reflection, as a model with end-reflection asks for
   /// @param meshes  other than these cost more or say less; the documented figures are of these
+  /// @param runs    impacts on this bench that other studies calculate too
   ImpactStudy(const Campaign& campaign, bool whole, double cutoff_Hz, Workers executor,
-              const BallMeshes& meshes = {})
+              const BallMeshes& meshes = {}, std::shared_ptr<BallRuns> runs = nullptr)
       : campaign_(campaign),
         executor_(std::move(executor)),
-        residuals_(campaign, whole, cutoff_Hz, executor_, meshes) {}
+        residuals_(campaign, whole, cutoff_Hz, executor_, meshes, std::move(runs)) {}
 
-  /// From where the model is, noise and speeds' deviation corrected by the shots' scatter.
-  [[nodiscard]] Studied fit(const Model& model);
+  /// From where the model is, auxiliary parameters without a strength yet at the best of their
+  /// starts, noise and speeds' deviation corrected by the shots' scatter.
+  [[nodiscard]] Studied fit(const Model& begun);
   /// With the noise and the fine forces as they are by now.
   [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
   /// The same, from where the model is and from where another fit left what both hold.

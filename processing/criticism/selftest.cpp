@@ -60,7 +60,7 @@ class Run {
       : last_gauge_(shots.empty() ? "" : shots.front().bench.gauges.back().name),
         options_(options),
         workers_(workers),
-        ground_(ground_of(shots, model, options.band_limit_Hz, workers)) {}
+        ground_(ground_of(shots, model, options.band_limit_Hz, options.meshes, workers)) {}
 
   Selftest operator()() {
     const Diagnosis untouched = ground_->untouched();

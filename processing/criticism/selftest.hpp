@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processing/base/shot.hpp"
+#include "processing/criticism/ball_runs.hpp"
 #include "processing/criticism/diagnosis.hpp"
 
 namespace kolsky {
@@ -19,6 +20,7 @@ struct SelftestOptions {
   std::size_t nulls = 6;  ///< campaigns of fresh noise in which nothing is
   std::uint64_t seed = 1;
   double band_limit_Hz = 0.0;
+  BallMeshes meshes;  ///< of a ball
   /// After each diagnosis; may come from several workers at once.
   std::function<void(std::size_t done, std::size_t all)> progress = [](std::size_t, std::size_t) {};
 };

@@ -53,22 +53,24 @@ class BarGround final : public SelftestGround {
 class BallGround final : public SelftestGround {
  public:
   BallGround(const std::vector<Shot>& shots, const Model& model, double band_limit_Hz,
-             const Workers& workers)
+             const BallMeshes& meshes, const Workers& workers)
       : model_(model),
         band_limit_Hz_(band_limit_Hz),
+        meshes_(meshes),
         workers_(workers),
         campaign_(read_campaign(shots)),
-        study_(campaign_, judges_whole(model), band_limit_Hz, workers),
+        runs_(std::make_shared<BallRuns>(campaign_.bench)),
+        study_(campaign_, judges_whole(model), band_limit_Hz, workers, meshes, runs_),
         studied_(study_.settled(study_.fit(model))),
         planter_(shots, study_, studied_) {}
 
   [[nodiscard]] Diagnosis untouched() const override {
-    ImpactStudy study(campaign_, judges_whole(model_), band_limit_Hz_, workers_);
+    ImpactStudy study(campaign_, judges_whole(model_), band_limit_Hz_, workers_, meshes_, runs_);
     return diagnose_impacts(study, model_, {});
   }
   [[nodiscard]] Diagnosis diagnosed(const std::vector<Shot>& shots) const override {
     const Campaign campaign = read_campaign(shots);
-    ImpactStudy study(campaign, judges_whole(model_), band_limit_Hz_, Workers{});
+    ImpactStudy study(campaign, judges_whole(model_), band_limit_Hz_, Workers{}, meshes_, runs_);
     return diagnose_impacts(study, model_, {});
   }
   [[nodiscard]] std::string impossible_because(const EffectUse& use) const override {
@@ -85,8 +87,11 @@ class BallGround final : public SelftestGround {
  private:
   const Model& model_;
   double band_limit_Hz_;
+  BallMeshes meshes_;
   const Workers& workers_;
   Campaign campaign_;
+  /// Every diagnosis begins with the same balls at the same speeds.
+  std::shared_ptr<BallRuns> runs_;
   ImpactStudy study_;
   Studied studied_;
   BallPlanter planter_;
@@ -95,13 +100,14 @@ class BallGround final : public SelftestGround {
 }  // namespace
 
 std::unique_ptr<SelftestGround> ground_of(const std::vector<Shot>& shots, const Model& model,
-                                          double band_limit_Hz, const Workers& workers) {
+                                          double band_limit_Hz, const BallMeshes& meshes,
+                                          const Workers& workers) {
   if (!shots.empty() && shots.front().bench.kind != model.kind) {
     throw InputError("model", "is of another kind of bench than the captures",
                      "make one with `kolsky model new --kind`");
   }
   if (model.kind == BenchKind::impact) {
-    return std::make_unique<BallGround>(shots, model, band_limit_Hz, workers);
+    return std::make_unique<BallGround>(shots, model, band_limit_Hz, meshes, workers);
   }
   return std::make_unique<BarGround>(shots, model, band_limit_Hz, workers);
 }

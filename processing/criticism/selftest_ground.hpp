@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processing/base/shot.hpp"
+#include "processing/criticism/ball_runs.hpp"
 #include "processing/criticism/diagnosis.hpp"
 
 namespace kolsky {
@@ -33,9 +34,11 @@ class SelftestGround {
 };
 
 /// @param shots, model, workers  outlive it
+/// @param meshes  of a ball
 /// @throws InputError as read_campaign
 [[nodiscard]] std::unique_ptr<SelftestGround> ground_of(const std::vector<Shot>& shots,
                                                         const Model& model, double band_limit_Hz,
+                                                        const BallMeshes& meshes,
                                                         const Workers& workers);
 
 }  // namespace kolsky

@@ -42,9 +42,6 @@ class Study {
 
  private:
   [[nodiscard]] Model begun(Model model);
-  /// With one of its numbers where the fit from there is best.
-  [[nodiscard]] Model best_of(Model model, std::size_t use, std::size_t parameter,
-                              const std::vector<double>& starts);
 
   const Campaign& campaign_;
   Workers executor_;

@@ -142,6 +142,7 @@ TEST(ImpactSelftest, FindsWhatWasPlantedLarge) {
   options.effects = {"core-nonlinearity"};
   options.sizes = {2.0};
   options.nulls = 0;
+  options.meshes = testing::light_meshes();
   const Selftest result = selftest(testing::impact_shots(own), paper_model(BenchKind::impact, true),
                                    options, Workers{});
   EXPECT_EQ(result.untouched, DiagnosisVerdict::adequate);

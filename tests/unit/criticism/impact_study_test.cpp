@@ -133,6 +133,35 @@ TEST(ImpactResiduals, ReboundSpeedsAreData) {
   EXPECT_GT(chi2(1.03), chi2(1.0) + 60.0);
 }
 
+/// What a model misses is alike in the shots of one speed, wherever in a record they begin: their
+/// scatter is the noise's. Seen by each record's own foot it came to several times that power.
+TEST(ImpactResiduals, WhatRepeatsIsNotTakenForNoise) {
+  testing::ImpactWishes own = two_speeds(22, 6);
+  own.across = 6;
+  own.core_b = 0.9;
+  own.noise_strain = 3e-7;
+  own.speeds_m_per_s = {51.0};
+  ThrownBalls balls(testing::impact_shots(own), {240, 512, 512});
+  const Studied linear = balls.study.as_it_is(paper_with({}));
+  EXPECT_GT(linear.misfit.chi2_reduced, 1.5) << "there is misfit";
+  // 5 x 22 degrees of freedom: a deviation of 0.13.
+  EXPECT_LT(balls.study.residuals().noise_scale(), 1.6);
+}
+
+/// Free auxiliary parameters of an effect without a strength mean nothing: where they stand in the
+/// file does not decide where the fit ends.
+TEST(ImpactStudy, AnEffectJustAddedBeginsAtTheBestOfItsStarts) {
+  const std::vector<Shot> shots = a_few();
+  std::vector<double> ends;
+  for (const double tau_s : {2e-6, 2e-3}) {
+    ThrownBalls balls(shots, {240, 512, 512});
+    Model model = paper_with({"core-second-relaxation"});
+    model.find("core-second-relaxation")->values[1].value = tau_s;
+    ends.push_back(balls.study.fit(model).fit.objective());
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
 TEST(ImpactCampaign, PhotoSensorsThatSeeNothingAreRefusedAsTheReductionRefusesThem) {
   std::vector<Shot> shots = a_few();
   shots.resize(1);
