@@ -50,8 +50,8 @@ std::string cut(const std::string& line, int columns) {
   return line.find('\x1b') == std::string::npos ? kept : kept + "\x1b[0m";
 }
 
-Range range_of(const std::vector<double>& minimum, const std::vector<double>& maximum,
-               double noise_rms) {
+AxisRange range_of(const std::vector<double>& minimum, const std::vector<double>& maximum,
+                   double noise_rms) {
   const double low = *std::min_element(minimum.begin(), minimum.end());
   const double high = *std::max_element(maximum.begin(), maximum.end());
   const double middle = 0.5 * (low + high);
@@ -60,7 +60,7 @@ Range range_of(const std::vector<double>& minimum, const std::vector<double>& ma
   return {middle - half, middle + half};
 }
 
-std::string view_text(Range range, const std::string& unit, double span_s) {
+std::string view_text(AxisRange range, const std::string& unit, double span_s) {
   const DisplayUnit shown = display_unit(unit, std::max(std::abs(range.low), std::abs(range.high)));
   return fmt::format(" · {}: {:.3g} to {:.3g} {}", with_unit(span_s, "s"), range.low * shown.factor,
                      range.high * shown.factor, shown.name);
@@ -84,7 +84,7 @@ std::vector<std::string> LiveView::trace_lines(const Terminal& terminal) const {
     }
     const std::vector<double> low(trace->second.minimum.begin(), trace->second.minimum.end());
     const std::vector<double> high(trace->second.maximum.begin(), trace->second.maximum.end());
-    const Range range = range_of(low, high, channel.noise_rms());
+    const AxisRange range = range_of(low, high, channel.noise_rms());
     lines.push_back(label + view_text(range, trace->second.unit,
                                       trace->second.step_s * static_cast<double>(low.size())));
     append(lines, lines_of(envelope_text(low, high, range, {terminal.columns, kTraceRows},

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <map>
 
+#include "clients/cli/captures.hpp"
 #include "drivers/files/capture.hpp"
 #include "drivers/files/model_file.hpp"
 #include "processing/base/error.hpp"
@@ -37,21 +39,43 @@ std::string name_of_parameter(const Model& model, const EffectUse& use,
   return use.id() + "." + parameter.name;
 }
 
+struct Strained {
+  std::string name;
+  double deviations;
+};
+
+std::vector<Strained> strained_numbers(const Model& model) {
+  constexpr double kMost = 3.0;
+  std::vector<Strained> list;
+  for (const EffectUse& use : model.effects) {
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      const double off =
+          value.prior_sd > 0.0 ? (value.value - value.prior_mean) / value.prior_sd : 0.0;
+      if (std::abs(off) > kMost) {
+        list.push_back({name_of_parameter(model, use, use.effect->about().parameters[p]), off});
+      }
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
-  const auto files = files_of(captures);
+  std::vector<Shot> shots = captured_shots(captures);
+  const auto name_of_file = [](const Shot& shot) {
+    return std::filesystem::path(shot.id).filename().string();
+  };
   std::map<std::string, std::size_t> called;
-  for (const auto& file : files) {
-    ++called[file.filename().string()];
+  for (const Shot& shot : shots) {
+    ++called[name_of_file(shot)];
   }
+  // Of two folders one name may stand for two captures: then as they were given.
   const bool ambiguous =
       std::any_of(called.begin(), called.end(), [](const auto& name) { return name.second > 1; });
-  std::vector<Shot> shots;
-  for (const auto& file : files) {
-    shots.push_back(read_capture(file));
-    // Of two folders one name may stand for two captures: then as they were given.
-    shots.back().id = ambiguous ? file.string() : file.filename().string();
+  for (Shot& shot : shots) {
+    shot.id = ambiguous ? shot.id : name_of_file(shot);
   }
   return shots;
 }
@@ -133,6 +157,25 @@ std::string model_table(const Model& model) {
     }
   }
   return text;
+}
+
+JsonValue describe_strained(const Model& model) {
+  JsonList list;
+  for (const Strained& number : strained_numbers(model)) {
+    list.push_back(JsonObject{{"name", number.name}, {"deviations", number.deviations}});
+  }
+  return list;
+}
+
+std::string strained_text(const Model& model) {
+  std::string text;
+  for (const Strained& number : strained_numbers(model)) {
+    text += fmt::format("{}{} {:+.1f}", text.empty() ? "" : ", ", number.name, number.deviations);
+  }
+  return text.empty() ? ""
+                      : "strained, in filed deviations: " + text +
+                            "\nthey are not as filed, or stand in for what the model lacks; "
+                            "`kolsky diagnose` tells which\n";
 }
 
 BenchKind bench_kind(const std::string& name) {

@@ -36,6 +36,13 @@ namespace kolsky::cli {
 /// A table of a model's effects for people.
 [[nodiscard]] std::string model_table(const Model& model);
 
+/// Filed numbers that a fit holds more than three of their deviations off: {"name", "deviations"}
+/// each. Either they are not as filed, or they stand in for what the model lacks.
+[[nodiscard]] JsonValue describe_strained(const Model& model);
+
+/// The same in a line for people; empty where there are none.
+[[nodiscard]] std::string strained_text(const Model& model);
+
 [[nodiscard]] BenchKind bench_kind(const std::string& name);
 [[nodiscard]] std::string name_of(BenchKind kind);
 

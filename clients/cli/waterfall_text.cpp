@@ -128,8 +128,10 @@ std::string drops_text(const Waterfall& fall) {
     text += fmt::format("  {}: {} {:.1f} of chi2 on held-out {}, better in {} of {}", name_of(step),
                         step.gain >= 0.0 ? "takes off" : "adds", std::abs(step.gain), fall.fold,
                         step.better, fall.folds);
-    text += step.relief > kRelieved ? fmt::format("; filed numbers pull {:.1f} less\n", step.relief)
-                                    : "\n";
+    text += std::abs(step.relief) > kRelieved
+                ? fmt::format("; filed numbers pull {:.1f} {}\n", std::abs(step.relief),
+                              step.relief > 0.0 ? "less" : "more")
+                : "\n";
     text += strengths.empty() ? "" : "      " + strengths + "\n";
   }
   return text;

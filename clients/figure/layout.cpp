@@ -47,8 +47,9 @@ std::string label_of(double value, double step) {
 }
 
 template <typename Coordinate>
-Range span_of(const Panel& panel, Coordinate coordinate) {
-  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+AxisRange span_of(const Panel& panel, Coordinate coordinate) {
+  AxisRange range{std::numeric_limits<double>::infinity(),
+                  -std::numeric_limits<double>::infinity()};
   for (const Series& series : panel.series) {
     const std::size_t points = std::min(series.x.size(), series.y.size());
     for (std::size_t i = 0; i < points; ++i) {
@@ -92,7 +93,7 @@ std::string with_unit(double value, const std::string& unit) {
   return shown.name.empty() || shown.name == "1" ? text : text + " " + shown.name;
 }
 
-AxisLayout lay_out(const Axis& axis, Range range, int most_marks) {
+AxisLayout lay_out(const Axis& axis, AxisRange range, int most_marks) {
   const DisplayUnit shown =
       display_unit(axis.unit, std::max(std::abs(range.low), std::abs(range.high)));
   const double step = step_for((range.high - range.low) * shown.factor, most_marks);
@@ -111,11 +112,11 @@ AxisLayout lay_out(const Axis& axis, Range range, int most_marks) {
   return layout;
 }
 
-Range x_range(const Panel& panel) {
+AxisRange x_range(const Panel& panel) {
   return span_of(panel, [](const Series& series, std::size_t i) { return series.x[i]; });
 }
 
-Range y_range(const Panel& panel) {
+AxisRange y_range(const Panel& panel) {
   return span_of(panel, [](const Series& series, std::size_t i) { return series.y[i]; });
 }
 

@@ -7,7 +7,7 @@
 
 namespace kolsky {
 
-struct Range {
+struct AxisRange {
   double low = 0.0;
   double high = 1.0;
 
@@ -36,19 +36,19 @@ struct AxisMark {
 
 /// An axis ready to draw.
 struct AxisLayout {
-  Range range;
+  AxisRange range;
   std::vector<AxisMark>
       marks;          ///< at 1, 2 or 5 times a power of ten of the display unit, all inside `range`
   std::string title;  ///< "stress [MPa]"
 };
 
 /// @param most_marks  at most so many marks, at least two are aimed at
-[[nodiscard]] AxisLayout lay_out(const Axis& axis, Range range, int most_marks);
+[[nodiscard]] AxisLayout lay_out(const Axis& axis, AxisRange range, int most_marks);
 
 /// What the finite points of a panel span; never empty: a flat span is widened, no point at all
 /// gives 0 to 1.
 /// Zero is taken in where it is near.
-[[nodiscard]] Range x_range(const Panel& panel);
-[[nodiscard]] Range y_range(const Panel& panel);
+[[nodiscard]] AxisRange x_range(const Panel& panel);
+[[nodiscard]] AxisRange y_range(const Panel& panel);
 
 }  // namespace kolsky

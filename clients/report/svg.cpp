@@ -34,7 +34,7 @@ struct Frame {
   [[nodiscard]] double bottom() const { return top + height; }
 };
 
-Range padded(Range range) {
+AxisRange padded(AxisRange range) {
   const double margin = kPadding * (range.high - range.low);
   return {range.low - margin, range.high + margin};
 }

@@ -35,7 +35,8 @@ int place(double fraction, int count) {
   return static_cast<int>(std::lround(std::clamp(fraction, -2.0, 3.0) * (count - 1)));
 }
 
-void draw(BrailleCanvas& canvas, const Series& series, Range x, Range y, Ink ink, Dashes dashes) {
+void draw(BrailleCanvas& canvas, const Series& series, AxisRange x, AxisRange y, Ink ink,
+          Dashes dashes) {
   Pen pen(canvas, ink, dashes.on, dashes.off);
   const std::size_t points = std::min(series.x.size(), series.y.size());
   for (std::size_t i = 0; i < points; ++i) {
@@ -135,7 +136,7 @@ std::string plot_text(const Panel& panel, PlotSize size, bool colour) {
 }
 
 std::string envelope_text(std::span<const double> minimum, std::span<const double> maximum,
-                          Range range, PlotSize size, bool colour) {
+                          AxisRange range, PlotSize size, bool colour) {
   BrailleCanvas canvas(std::max(1, size.columns), std::max(1, size.rows));
   const std::size_t pairs = std::min(minimum.size(), maximum.size());
   const auto width = static_cast<std::size_t>(canvas.width());

@@ -22,7 +22,7 @@ struct PlotSize {
 /// stream.
 /// @param minimum, maximum  same length; squeezed to the width
 [[nodiscard]] std::string envelope_text(std::span<const double> minimum,
-                                        std::span<const double> maximum, Range range, PlotSize size,
-                                        bool colour);
+                                        std::span<const double> maximum, AxisRange range,
+                                        PlotSize size, bool colour);
 
 }  // namespace kolsky

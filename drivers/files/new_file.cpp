@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -53,6 +54,20 @@ int rename_without_overwriting(const std::filesystem::path& from, const std::fil
 
 bool is_abandoned_name(const std::string& name) {
   return name.size() > kSuffix.size() && name.front() == '.' && name.ends_with(kSuffix);
+}
+
+// A model, a page and a picture each begin in their own way.
+void refuse_other_kind(const std::filesystem::path& path, const std::string& text) {
+  constexpr std::size_t kTelling = 5;
+  std::ifstream there(path, std::ios::binary);
+  std::string begin(kTelling, '\0');
+  if (!there || !there.read(begin.data(), kTelling)) {
+    return;  // nothing is lost
+  }
+  if (text.compare(0, kTelling, begin) != 0) {
+    throw InputError(path.string(), "is there already and something else; it is not overwritten",
+                     "give another name");
+  }
 }
 
 }  // namespace
@@ -110,6 +125,7 @@ void NewFile::publish(mode_t mode) {
 }
 
 void replace_file(const std::filesystem::path& path, const std::string& text) {
+  refuse_other_kind(path, text);
   const std::filesystem::path folder = folder_of(path);
   std::string name = (folder / ".kolsky-replacing-XXXXXX").string();
   const int file = ::mkostemp(name.data(), O_CLOEXEC);

@@ -38,8 +38,9 @@ class NewFile {
 };
 
 /// Puts a text under a name, in the place of what was there: whole or not at all.
-/// For what people revise (models, reports); stored shots are never replaced.
-/// @throws InputError if the folder cannot be written
+/// For what people revise (models, reports); nothing else is ever replaced.
+/// @throws InputError if the folder cannot be written, or what is there does not begin as this text
+///   does and so is something else (a capture, a bench file)
 void replace_file(const std::filesystem::path& path, const std::string& text);
 
 /// Makes a folder's entries durable. @throws InputError

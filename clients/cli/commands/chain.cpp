@@ -11,13 +11,13 @@
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/captures.hpp"
 #include "clients/cli/chain_run.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/bench_file.hpp"
-#include "drivers/files/capture.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
 
@@ -52,17 +52,6 @@ void say_to_a_person(const std::string& text) {
   if (terminal_of(2).interactive) {
     say(text);
   }
-}
-
-std::vector<Shot> read_shots(const std::vector<std::string>& places) {
-  std::vector<Shot> shots;
-  for (const std::string& place : places) {
-    for (const auto& path : captures_in(place)) {
-      shots.push_back(read_capture(path));
-      shots.back().id = path.string();
-    }
-  }
-  return shots;
 }
 
 void require_kind(const std::vector<Shot>& shots, BenchKind kind, const char* option,
@@ -122,7 +111,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
         "as the specimens' captures have them: elastic, their own bar model, or the paper's PMMA";
     return {};
   }
-  const std::vector<Shot> shots = read_shots(settings.bar_shots);
+  const std::vector<Shot> shots = captured_shots(settings.bar_shots);
   require_kind(shots, BenchKind::bar, "--bar-shots", "bar");
   say_to_a_person(fmt::format("identifying the bar from {} shots", shots.size()));
   run.bar = identify_bar(shots, {});
@@ -422,9 +411,9 @@ void add_remarks(ChainRun& run) {
 int run_command(const Settings& settings, Context& context) {
   ChainRun run;
   run.options = options_of(settings);
-  const std::vector<Shot> core = read_shots(settings.core_shots);
-  const std::vector<Shot> cover = read_shots(settings.cover_shots);
-  const std::vector<Shot> balls = read_shots(settings.ball_shots);
+  const std::vector<Shot> core = captured_shots(settings.core_shots);
+  const std::vector<Shot> cover = captured_shots(settings.cover_shots);
+  const std::vector<Shot> balls = captured_shots(settings.ball_shots);
   require_kind(core, BenchKind::shpb, "--core-shots", "shpb");
   require_kind(cover, BenchKind::shpb, "--cover-shots", "shpb");
   require_kind(balls, BenchKind::impact, "--ball-shots", "impact");

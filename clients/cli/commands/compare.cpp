@@ -68,12 +68,14 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
                                       {"converged", studied.fit.converged},
                                       {"parameters", describe_parameters(studied.model)},
                                       {"effects", describe_effects(studied.model)},
+                                      {"strained", describe_strained(studied.model)},
                                       {"notes", std::vector<std::string>{note}}})
                 << "\n";
     return kDone;
   }
   context.out << settings.model << ": " << note << "\n"
-              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n\n"
+              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
+              << strained_text(studied.model) << "\n"
               << speeds_table(comparison) << "\n"
               << places_table(comparison, campaign) << "\n"
               << worst_plot(comparison, study.residuals().times_s(), context.terminal);
@@ -107,12 +109,14 @@ int run(const Settings& settings, Context& context) {
                                       {"converged", studied.fit.converged},
                                       {"parameters", describe_parameters(studied.model)},
                                       {"effects", describe_effects(studied.model)},
+                                      {"strained", describe_strained(studied.model)},
                                       {"notes", std::vector<std::string>{note}}})
                 << "\n";
     return kDone;
   }
   context.out << settings.model << ": " << note << "\n"
-              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n\n"
+              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
+              << strained_text(studied.model) << "\n"
               << places_table(comparison, campaign) << "\n"
               << worst_plot(comparison, comparer, study, studied.fit.residual, context.terminal);
   return kDone;

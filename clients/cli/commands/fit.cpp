@@ -51,12 +51,15 @@ int run(const Settings& settings, Context& context) {
                                       {"parameters", describe_parameters(file.model)},
                                       {"misfit", describe(studied.misfit)},
                                       {"effects", describe_effects(file.model)},
+                                      {"strained", describe_strained(file.model)},
                                       {"converged", studied.fit.converged},
                                       {"parent", file.parent()}})
                 << "\n";
     return kDone;
   }
-  context.out << settings.output << "\n" << model_table(file.model) << misfit_text(studied.misfit);
+  context.out << settings.output << "\n"
+              << model_table(file.model) << misfit_text(studied.misfit)
+              << strained_text(file.model);
   return kDone;
 }
 

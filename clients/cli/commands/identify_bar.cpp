@@ -4,9 +4,9 @@
 #include <ostream>
 
 #include "clients/cli/bar_report.hpp"
+#include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/report/svg.hpp"
-#include "drivers/files/capture.hpp"
 #include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
@@ -26,17 +26,6 @@ struct Settings {
   std::optional<std::string> svg;
   bool waveforms = false;
 };
-
-std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
-  std::vector<Shot> shots;
-  for (const std::string& place : captures) {
-    for (const auto& path : captures_in(place)) {
-      shots.push_back(read_capture(path));
-      shots.back().id = path.string();
-    }
-  }
-  return shots;
-}
 
 BarIdentificationOptions options_from(const Settings& settings) {
   BarIdentificationOptions options;
@@ -120,7 +109,7 @@ void write_material(const std::string& path, const BarIdentification& result,
 
 int run(const Settings& settings, Context& context) {
   const BarIdentificationOptions options = options_from(settings);
-  const std::vector<Shot> shots = read_shots(settings.captures);
+  const std::vector<Shot> shots = captured_shots(settings.captures);
   const BarIdentification result = identify_bar(shots, options);
   std::vector<ForetoldShot> foretold;
   if (settings.waveforms || settings.svg) {

@@ -4,10 +4,10 @@
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/capture.hpp"
 #include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
@@ -72,12 +72,10 @@ SpecimenFitOptions fit_options(const Settings& settings, const std::optional<Bar
 }
 
 std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarModelFile>& bars) {
-  std::vector<Shot> shots;
-  for (const std::string& capture : settings.captures) {
-    shots.push_back(read_capture(capture));
-    shots.back().id = capture;
+  std::vector<Shot> shots = captured_shots(settings.captures);
+  for (const Shot& shot : shots) {
     if (bars) {
-      require_temperature(*bars, shots.back());
+      require_temperature(*bars, shot);
     }
   }
   return shots;

@@ -10,6 +10,7 @@
 #include "drivers/files/bench_file.hpp"
 #include "drivers/files/material_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/planning/shot_plan.hpp"
 
 namespace kolsky::cli {
@@ -26,17 +27,22 @@ struct Settings {
   std::optional<double> noise_microstrain;
 };
 
-void refuse_not_positive(std::optional<double> number, const std::string& name) {
-  if (number && !(*number > 0.0)) {
-    throw InputError("kolsky plan: " + name, "must be above 0", "give a positive number");
+void require_option(const std::optional<double>& number, const std::string& name,
+                    const Range& range) {
+  if (number) {
+    require_in_range("kolsky plan: " + name, {*number, 0.0}, range);
   }
 }
 
 PlannedPulse pulse_of(const Settings& s, const Bench& bench, const Material& bars) {
-  refuse_not_positive(s.striker_speed, "--striker-speed");
-  refuse_not_positive(s.pulse_strain, "--pulse-strain");
-  refuse_not_positive(s.pulse_duration_s, "--pulse-duration");
-  refuse_not_positive(s.rise_s, "--rise");
+  constexpr Range kSpeed{0.01, 500.0, "m/s", "give metres per second"};
+  constexpr Range kStrain{1e-6, 0.1, "", "give strain: 1000 microstrain is 1e-3"};
+  constexpr Range kDuration{1e-6, 0.01, "s", "give seconds: 170 us is 170e-6"};
+  constexpr Range kRise{1e-9, 0.01, "s", "give seconds: 20 us is 20e-6"};
+  require_option(s.striker_speed, "--striker-speed", kSpeed);
+  require_option(s.pulse_strain, "--pulse-strain", kStrain);
+  require_option(s.pulse_duration_s, "--pulse-duration", kDuration);
+  require_option(s.rise_s, "--rise", kRise);
   const double rise_s = s.rise_s.value_or(0.0);
   if (s.pulse_strain && s.pulse_duration_s && !s.striker_speed) {
     return pulse_of_strain(bench, bars, *s.pulse_strain, *s.pulse_duration_s, rise_s);
@@ -140,7 +146,8 @@ int run(const Settings& settings, Context& context) {
   const Material bars =
       settings.bar_model ? read_bar_model(*settings.bar_model).prior.material : paper_pmma();
   const Material specimen = read_material(settings.specimen);
-  refuse_not_positive(settings.noise_microstrain, "--noise");
+  constexpr Range kNoise{1e-6, 1e5, "microstrain", "give microstrain, as 4"};
+  require_option(settings.noise_microstrain, "--noise", kNoise);
   PlanOptions options;
   options.noise_strain = 1e-6 * settings.noise_microstrain.value_or(1e6 * options.noise_strain);
   try {

@@ -317,7 +317,7 @@ class Tour {
     if (!silent()) {
       context_.out << numbers;
     }
-    replace_file("truth.txt", text + "\n" + numbers);
+    replace_file("truth.txt", "# What was hidden\n" + text + "\n" + numbers);
   }
 
   void conclude(std::uint64_t seed, const ModelStep& step, const TourVerdict& verdict,

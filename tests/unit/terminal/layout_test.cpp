@@ -39,7 +39,7 @@ TEST(Layout, MarksAreHonestForAnyRange) {
         if (span < 1e-7 * std::abs(low)) {
           continue;
         }
-        const Range range{low, low + span};
+        const AxisRange range{low, low + span};
         const AxisLayout layout = lay_out({"a", "1"}, range, most);
         const std::string place = std::to_string(low) + " + " + std::to_string(span);
         EXPECT_LE(layout.marks.size(), static_cast<std::size_t>(most) + 1) << place;
