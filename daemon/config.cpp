@@ -108,10 +108,11 @@ TriggerConfig read_trigger(const TomlTable& table) {
   TriggerConfig trigger;
   trigger.channel = table.text("channel");
   trigger.level_sigma = number_within(table, "level_sigma", trigger.level_sigma, 3.0, 1e4);
+  constexpr std::int64_t kByRate = TriggerConfig::kByRate;
   trigger.pre_samples =
-      integer_within(table, "pre_samples", trigger.pre_samples, 0, kLongestWindow);
+      optional_integer_within(table, "pre_samples", 0, kLongestWindow).value_or(kByRate);
   trigger.post_samples =
-      integer_within(table, "post_samples", trigger.post_samples, 16, kLongestWindow);
+      optional_integer_within(table, "post_samples", 16, kLongestWindow).value_or(kByRate);
   if (trigger.pre_samples + trigger.post_samples > kLongestWindow) {
     throw table.error("post_samples", "makes the window longer than the ring holds",
                       fmt::format("give at most {} together with pre_samples", kLongestWindow));
@@ -197,6 +198,22 @@ void check_trigger(const DaemonConfig& config, const Bench& bench) {
   }
 }
 
+// A window as long at any rate, as far as memory for it is cheap.
+void choose_window(TriggerConfig& trigger, double sample_rate_Hz) {
+  constexpr double kBefore_s = 0.4e-3;
+  constexpr double kAfter_s = 3.6e-3;
+  constexpr double kMost = 100e3;
+  const auto samples = [&](double duration_s, double least) {
+    return std::llround(std::clamp(duration_s * sample_rate_Hz, least, kMost));
+  };
+  if (trigger.pre_samples == TriggerConfig::kByRate) {
+    trigger.pre_samples = samples(kBefore_s, 0.0);
+  }
+  if (trigger.post_samples == TriggerConfig::kByRate) {
+    trigger.post_samples = samples(kAfter_s, 16.0);
+  }
+}
+
 std::size_t find_trigger_channel(const DaemonConfig& config, const Bench& bench) {
   std::string known;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
@@ -262,7 +279,7 @@ DaemonConfig read_config(const std::filesystem::path& path) {
   return config;
 }
 
-Apparatus read_apparatus(const DaemonConfig& config) {
+Apparatus read_apparatus(DaemonConfig& config) {
   BenchFile file = read_bench(config.bench);
   Apparatus apparatus;
   apparatus.bench = std::move(file.bench);
@@ -281,6 +298,7 @@ Apparatus read_apparatus(const DaemonConfig& config) {
   }
   check_gauges(config, apparatus.bench);
   apparatus.trigger_channel = find_trigger_channel(config, apparatus.bench);
+  choose_window(config.trigger, apparatus.bench.sampling_frequency_Hz);
   check_trigger(config, apparatus.bench);
   return apparatus;
 }
@@ -308,7 +326,8 @@ TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_H
 DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench) {
   DigitiserOptions options;
   options.channels = config.digitiser.channels;
-  options.channel_count = bench.channels().size();
+  for (const BenchChannel& channel : bench.channels()) options.units.push_back(channel.unit);
+  options.channel_count = options.units.size();
   options.sampling_frequency_Hz = bench.sampling_frequency_Hz;
   options.block_samples = static_cast<std::size_t>(config.digitiser.block_samples);
   options.device = config.digitiser.device;

@@ -17,10 +17,12 @@ namespace kolsky {
 /// What `[trigger]` asks for, in the units a person sets it in. What is not given follows from the
 /// rate, as in TriggerOptions::for_rate.
 struct TriggerConfig {
+  static constexpr std::int64_t kByRate = -1;
+
   std::string channel;  ///< gauge whose record is watched
   double level_sigma = 8.0;
-  std::int64_t pre_samples = 400;
-  std::int64_t post_samples = 3600;
+  std::int64_t pre_samples = kByRate;   ///< else of 0.4 ms, set by read_apparatus
+  std::int64_t post_samples = kByRate;  ///< else of 3.6 ms, at most 100 000
   std::optional<double> hysteresis_share;
   std::optional<double> minimum_width_s;
   std::optional<double> maximum_rise_s;
@@ -87,9 +89,9 @@ struct Apparatus {
 
 /// Reads the bench and the bar's material, and checks what only both files together can show: the
 /// trigger channel is a gauge, as many digitiser channels as gauges, every gauge converts to
-/// strain.
+/// strain. A window that was not given gets the samples of its time at the bench's rate.
 /// @throws InputError
-[[nodiscard]] Apparatus read_apparatus(const DaemonConfig& config);
+[[nodiscard]] Apparatus read_apparatus(DaemonConfig& config);
 
 /// The trigger's settings in samples at this rate.
 [[nodiscard]] TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_Hz);

@@ -63,7 +63,7 @@ bool signalled() {
 }
 
 void run(const Arguments& arguments) {
-  const kolsky::DaemonConfig config = kolsky::read_config(arguments.config);
+  kolsky::DaemonConfig config = kolsky::read_config(arguments.config);
   if (arguments.check) {
     const kolsky::Apparatus apparatus = kolsky::read_apparatus(config);
     static_cast<void>(kolsky::read_active_model(config, apparatus.bench));

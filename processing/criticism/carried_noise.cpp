@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/base/wide.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -33,65 +35,119 @@ std::size_t end_of(const std::vector<double>& response, double peak) {
 }  // namespace
 
 /// Bins go through the sums four at a time.
-using Four = Eigen::Array4d;
 constexpr std::size_t kTogether = 4;
+// The compiler's own vectors, not a library's, so that the wide versions of the loops below are.
+using Four [[gnu::vector_size(kTogether * sizeof(double))]] = double;
 
-/// A complex number for each of four bins.
-struct CarriedNoise::Turned {
-  Four re = Four::Zero();
-  Four im = Four::Zero();
+/// A complex number for each of four bins. Aligned as the widest version takes it to be.
+struct alignas(sizeof(Four)) FourNumbers {
+  Four re{};
+  Four im{};
 
-  [[nodiscard]] Complex at(std::size_t lane) const {
-    const auto i = static_cast<Eigen::Index>(lane);
-    return {re[i], im[i]};
+  [[nodiscard]] Complex at(std::size_t lane) const { return {re[lane], im[lane]}; }
+  [[gnu::always_inline]] void add(double weight, const FourNumbers& other) {
+    re += weight * other.re;
+    im += weight * other.im;
   }
-  void add(double weight, const Turned& turn) {
-    re += weight * turn.re;
-    im += weight * turn.im;
-  }
-  void add_product(const Turned& a, const Turned& b) {
+  [[gnu::always_inline]] void add_product(const FourNumbers& a, const FourNumbers& b) {
     re += a.re * b.re - a.im * b.im;
     im += a.re * b.im + a.im * b.re;
   }
-  void add_product_with_conjugate(const Turned& a, const Turned& b) {
+  [[gnu::always_inline]] void add_product_with_conjugate(const FourNumbers& a,
+                                                         const FourNumbers& b) {
     re += a.re * b.re + a.im * b.im;
     im += a.im * b.re - a.re * b.im;
   }
-  void add_square(const Turned& a) { re += a.re * a.re + a.im * a.im; }
+  [[gnu::always_inline]] void add_square(const FourNumbers& a) { re += a.re * a.re + a.im * a.im; }
 };
 
+namespace {
+
+KOLSKY_WIDE void add_all(const FourNumbers* from, std::size_t size, FourNumbers& sum) {
+  for (std::size_t v = 0; v < size; ++v) sum.add(1.0, from[v]);
+}
+
+KOLSKY_WIDE void add_squares(const FourNumbers* a, std::size_t size, FourNumbers& sum) {
+  for (std::size_t v = 0; v < size; ++v) sum.add_square(a[v]);
+}
+
+KOLSKY_WIDE void add_products(const FourNumbers* a, const FourNumbers* b, std::size_t size,
+                              FourNumbers& sum) {
+  for (std::size_t v = 0; v < size; ++v) sum.add_product(a[v], b[v]);
+}
+
+KOLSKY_WIDE void add_products_with_conjugates(const FourNumbers* a, const FourNumbers* b,
+                                              std::size_t size, FourNumbers& sum) {
+  for (std::size_t v = 0; v < size; ++v) sum.add_product_with_conjugate(a[v], b[v]);
+}
+
+/// A response's partial sums, by what of a record's sample comes to stand in the window.
+KOLSKY_WIDE void add_up(const double* response, const FourNumbers* turn, std::size_t whole,
+                        std::size_t before_twice, FourNumbers* sums) {
+  FourNumbers sum;
+  for (std::size_t n = 0; n < whole; ++n) {
+    sum.add(response[n], turn[n]);
+    sums[whole - 1 - n] = sum;
+  }
+  // What arrives before the window begins never stands in it.
+  FourNumbers early;
+  for (std::size_t n = 0; n < before_twice; ++n) {
+    early.add(response[n], turn[n]);
+    sums[before_twice - 1 - n].add(-1.0, early);
+  }
+}
+
+}  // namespace
+
 struct CarriedNoise::FourBins {
-  Four white = Four::Zero();   ///< power per sample of the sums
-  std::vector<Turned> turn;    ///< exp(-i w t), t from the record's start on
-  std::vector<Turned> blocks;  ///< its sums over blocks
+  Four white{};                     ///< power per sample of the sums
+  std::vector<FourNumbers> turn;    ///< exp(-i w t), t from the record's start on
+  std::vector<FourNumbers> blocks;  ///< its sums over blocks
 };
 
 /// Four bins' partial sums of the filters' transforms, by what of a record's sample v comes to
 /// stand in the window. From `same_from` to `same_to` all of every response does.
 struct CarriedNoise::Sums {
-  std::vector<std::vector<Turned>> of;  ///< by filter and v
+  std::vector<std::vector<FourNumbers>> of;  ///< by filter and v
   std::size_t same_from = 0;
   std::size_t same_to = 0;
 
   /// Sum over v of filter i times the conjugate of filter j.
-  [[nodiscard]] Turned product(std::size_t i, std::size_t j) const {
-    const auto part = [&](std::size_t from, std::size_t to) {
-      Turned sum;
-      for (std::size_t v = from; v < to; ++v) {
-        if (i == j) {
-          sum.add_square(of[i][v]);
-        } else {
-          sum.add_product_with_conjugate(of[i][v], of[j][v]);
-        }
+  [[nodiscard]] FourNumbers product(std::size_t i, std::size_t j) const {
+    const auto part = [&](std::size_t from, std::size_t to, FourNumbers& sum) {
+      if (i == j) {
+        add_squares(of[i].data() + from, to - from, sum);
+      } else {
+        add_products_with_conjugates(of[i].data() + from, of[j].data() + from, to - from, sum);
       }
-      return sum;
     };
-    Turned sum = part(0, same_from);
-    sum.add(1.0, part(same_to, of[i].size()));
+    FourNumbers sum;
+    FourNumbers after;
+    part(0, same_from, sum);
+    part(same_to, of[i].size(), after);
+    sum.add(1.0, after);
     if (same_to > same_from) {
-      sum.add(static_cast<double>(same_to - same_from), part(same_from, same_from + 1));
+      FourNumbers one;
+      part(same_from, same_from + 1, one);
+      sum.add(static_cast<double>(same_to - same_from), one);
     }
     return sum;
+  }
+
+  /// Sums over blocks of what filter i carries, turned back to the sample's own time.
+  [[nodiscard]] std::vector<FourNumbers> in_blocks(std::size_t i, std::size_t block,
+                                                   const FourBins& four) const {
+    std::vector<FourNumbers> blocks(four.blocks.size());
+    for (std::size_t m = 0; m < blocks.size(); ++m) {
+      const std::size_t first = m * block;
+      const std::size_t last = std::min(first + block, of[i].size());
+      if (first >= same_from && last <= same_to) {
+        blocks[m].add_product(of[i][first], four.blocks[m]);
+      } else {
+        add_products(of[i].data() + first, four.turn.data() + first, last - first, blocks[m]);
+      }
+    }
+    return blocks;
   }
 };
 
@@ -146,7 +202,7 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
   }
   for (std::size_t k = 0; k < bins; ++k) {
     FourBins& four = four_[k / kTogether];
-    const auto lane = static_cast<Eigen::Index>(k % kTogether);
+    const std::size_t lane = k % kTogether;
     const double per_judged = static_cast<double>(k + 1) / static_cast<double>(window.judged);
     const double cycles = per_judged / static_cast<double>(window.decimation);
     double power = spectrum.power(cycles);
@@ -190,53 +246,18 @@ std::vector<CarriedBin> CarriedNoise::through(
     end = std::max(end, end_of(coarse[i], peak));
   }
   Sums sums;
-  sums.of.assign(filters, std::vector<Turned>(whole_));
+  sums.of.assign(filters, std::vector<FourNumbers>(whole_));
   sums.same_from = std::min(2 * before_, whole_);
   sums.same_to = std::max(sums.same_from, whole_ - std::min(end, whole_) + 1);
   std::vector<CarriedBin> bins(four_.size() * kTogether);
   for (std::size_t g = 0; g < four_.size(); ++g) {
     for (std::size_t i = 0; i < filters; ++i) {
-      add_up(coarse[i], four_[g], sums.of[i]);
+      add_up(coarse[i].data(), four_[g].turn.data(), whole_, 2 * before_, sums.of[i].data());
     }
     take(sums, four_[g], std::span(bins).subspan(g * kTogether, kTogether));
   }
   bins.resize(bins_);
   return bins;
-}
-
-void CarriedNoise::add_up(const std::vector<double>& response, const FourBins& four,
-                          std::vector<Turned>& sums) const {
-  Turned sum;
-  for (std::size_t n = 0; n < whole_; ++n) {
-    sum.add(response[n], four.turn[n]);
-    sums[whole_ - 1 - n] = sum;
-  }
-  // What arrives before the window begins never stands in it.
-  Turned early;
-  for (std::size_t n = 0; n < 2 * before_; ++n) {
-    early.add(response[n], four.turn[n]);
-    sums[2 * before_ - 1 - n].add(-1.0, early);
-  }
-}
-
-/// Sums over blocks of what is carried, turned back to the sample's own time.
-std::vector<CarriedNoise::Turned> CarriedNoise::in_blocks(const std::vector<Turned>& sums,
-                                                          std::size_t same_from,
-                                                          std::size_t same_to,
-                                                          const FourBins& four) const {
-  std::vector<Turned> blocks(four.blocks.size());
-  for (std::size_t m = 0; m < blocks.size(); ++m) {
-    const std::size_t first = m * block_;
-    const std::size_t last = std::min(first + block_, whole_);
-    if (first >= same_from && last <= same_to) {
-      blocks[m].add_product(sums[first], four.blocks[m]);
-      continue;
-    }
-    for (std::size_t v = first; v < last; ++v) {
-      blocks[m].add_product(sums[v], four.turn[v]);
-    }
-  }
-  return blocks;
 }
 
 void CarriedNoise::take(const Sums& sums, const FourBins& four, std::span<CarriedBin> bins) const {
@@ -251,11 +272,9 @@ void CarriedNoise::take(const Sums& sums, const FourBins& four, std::span<Carrie
   }
   for (std::size_t i = 0; i < filters; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    Turned whole;
-    for (std::size_t v = before_; v < before_ + judged_; ++v) {
-      whole.add(1.0, sums.of[i][v]);
-    }
-    const std::vector<Turned> own = in_blocks(sums.of[i], sums.same_from, sums.same_to, four);
+    FourNumbers whole;
+    add_all(sums.of[i].data() + before_, judged_, whole);
+    const std::vector<FourNumbers> own = sums.in_blocks(i, block_, four);
     for (std::size_t lane = 0; lane < kTogether; ++lane) {
       bins[lane].ratio[row] = whole.at(lane) / static_cast<double>(judged_);
       for (std::size_t m = 0; m < own.size(); ++m) {
@@ -263,7 +282,7 @@ void CarriedNoise::take(const Sums& sums, const FourBins& four, std::span<Carrie
       }
     }
     for (std::size_t j = 0; j <= i; ++j) {
-      const Turned product = sums.product(i, j);
+      const FourNumbers product = sums.product(i, j);
       const auto column = static_cast<Eigen::Index>(j);
       for (std::size_t lane = 0; lane < kTogether; ++lane) {
         square[lane](row, column) = product.at(lane);
@@ -273,9 +292,7 @@ void CarriedNoise::take(const Sums& sums, const FourBins& four, std::span<Carrie
   }
   const auto scale = static_cast<double>(stride_);
   for (std::size_t lane = 0; lane < kTogether; ++lane) {
-    bins[lane].power =
-        scale * scale *
-        power_of(square[lane], blocks[lane], four.white[static_cast<Eigen::Index>(lane)]);
+    bins[lane].power = scale * scale * power_of(square[lane], blocks[lane], four.white[lane]);
   }
 }
 

@@ -55,15 +55,9 @@ class CarriedNoise {
     double between = 0.0;  ///< with the next, over keep
     double keep = 0.0;     ///< from one block to the next
   };
-  struct Turned;
   struct FourBins;
   struct Sums;
 
-  void add_up(const std::vector<double>& response, const FourBins& four,
-              std::vector<Turned>& sums) const;
-  [[nodiscard]] std::vector<Turned> in_blocks(const std::vector<Turned>& sums,
-                                              std::size_t same_from, std::size_t same_to,
-                                              const FourBins& four) const;
   void take(const Sums& sums, const FourBins& four, std::span<CarriedBin> bins) const;
   [[nodiscard]] Eigen::MatrixXcd power_of(const Eigen::MatrixXcd& square, Eigen::MatrixXcd& blocks,
                                           double white) const;

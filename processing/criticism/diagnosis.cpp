@@ -130,10 +130,8 @@ class Diagnostician {
         break;
       }
       const std::string id = search.candidates()[refit.candidate].id();
-      const auto [gain, better] = held_out[i];
       // Products of what each shot and each gauge has of its own are foretold by each other.
-      const bool foretold =
-          refit.products || (gain > 0.0 && 2 * better > study_.campaign().shots.size());
+      const bool foretold = refit.products || (held_out[i].gain > 0.0 && held_out[i].share > 0.5);
       const Safeguards& safeguards = options_.safeguards;
       if ((safeguards.held_out && !foretold) ||
           (safeguards.shot_agreement &&
@@ -173,14 +171,16 @@ class Diagnostician {
     const auto leading = std::find_if(refits.begin(), refits.end(),
                                       [&](const Refit& refit) { return claimable(search, refit); });
     std::vector<Certification> held_out;
+    const std::size_t per_shot = study_.residuals().per_shot();
     const std::vector<double> before = held_out_of(base);
     for (const Refit& refit : refits) {
       const bool near = leading != refits.end() && plausible(search, refit) &&
                         refit.evidence > leading->evidence - 2.0 * kTie;
       const Studied& own = refit.studied;
       held_out.push_back(certification(
-          before, near ? held_out_of(own) : held_out_squares(own, study_.residuals().per_shot()),
-          base.fit.penalty - own.fit.penalty));
+          before, near ? held_out_of(own) : held_out_squares(own, per_shot),
+          base.fit.penalty - own.fit.penalty,
+          shot_strengths(own, search.candidates()[refit.candidate].id(), per_shot).weight));
     }
     return held_out;
   }

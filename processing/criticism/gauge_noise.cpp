@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "processing/criticism/carried_noise.hpp"
 #include "processing/criticism/smooth_power.hpp"
@@ -30,31 +31,58 @@ std::vector<NoiseSpectrum> quiet_spectra(const Campaign& campaign) {
   return spectra;
 }
 
-/// How far gauges share their noise; nothing where chance does as much.
+/// Sums of products of two gauges' quiet samples, all shots together, the second so much later.
+double quiet_product(const Campaign& campaign, std::size_t a, std::size_t b, std::size_t later) {
+  double sum = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    for (std::size_t n = 0; n + later < shot.quiet_samples; ++n) {
+      sum += shot.strain[a][n] * shot.strain[b][n + later];
+    }
+  }
+  return sum;
+}
+
+/// By gauge and lag, from 1 to a quarter of the shortest quiet, at most `kMostLags`.
+std::vector<std::vector<double>> quiet_autocorrelations(const Campaign& campaign) {
+  constexpr std::size_t kMostLags = 256;
+  std::size_t shortest = 4 * kMostLags;
+  for (const CampaignShot& shot : campaign.shots) {
+    shortest = std::min(shortest, shot.quiet_samples);
+  }
+  std::vector<std::vector<double>> list(campaign.gauges());
+  for (std::size_t j = 0; j < list.size(); ++j) {
+    const double power = quiet_product(campaign, j, j, 0);
+    for (std::size_t lag = 1; power > 0.0 && lag <= shortest / 4; ++lag) {
+      list[j].push_back(quiet_product(campaign, j, j, lag) / power);
+    }
+  }
+  return list;
+}
+
+/// How far gauges share their noise; nothing where chance does as much. Slow samples tell less than
+/// as many independent ones: var rho = (1 + 2 sum rho_a(k) rho_b(k)) / n (Bartlett 1935).
 Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
-  const auto gauges = static_cast<Eigen::Index>(campaign.gauges());
-  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(gauges, gauges);
+  const std::size_t gauges = campaign.gauges();
   double samples = 0.0;
   for (const CampaignShot& shot : campaign.shots) {
     samples += static_cast<double>(shot.quiet_samples);
-    for (Eigen::Index a = 0; a < gauges; ++a) {
-      for (Eigen::Index b = 0; b <= a; ++b) {
-        const auto& of_a = shot.strain[static_cast<std::size_t>(a)];
-        const auto& of_b = shot.strain[static_cast<std::size_t>(b)];
-        for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
-          shared(a, b) += of_a[n] * of_b[n];
-        }
-      }
-    }
   }
-  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(gauges, gauges);
-  for (Eigen::Index a = 0; a < gauges; ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) {
-      const double scale = std::sqrt(shared(a, a) * shared(b, b));
-      const double rho = scale > 0.0 ? shared(a, b) / scale : 0.0;
+  const std::vector<std::vector<double>> own = quiet_autocorrelations(campaign);
+  const auto size = static_cast<Eigen::Index>(gauges);
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
+  for (std::size_t a = 0; a < gauges; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const double scale =
+          std::sqrt(quiet_product(campaign, a, a, 0) * quiet_product(campaign, b, b, 0));
+      const double rho = scale > 0.0 ? quiet_product(campaign, a, b, 0) / scale : 0.0;
+      const std::size_t lags = std::min(own[a].size(), own[b].size());
+      const double slow = std::inner_product(
+          own[a].begin(), own[a].begin() + static_cast<std::ptrdiff_t>(lags), own[b].begin(), 0.0);
       constexpr double kSignificant = 5.0;
-      if (std::abs(rho) > kSignificant / std::sqrt(samples)) {
-        correlation(a, b) = correlation(b, a) = std::clamp(rho, -0.95, 0.95);
+      if (std::abs(rho) > kSignificant * std::sqrt(std::max(1.0, 1.0 + 2.0 * slow) / samples)) {
+        const auto row = static_cast<Eigen::Index>(a);
+        const auto column = static_cast<Eigen::Index>(b);
+        correlation(row, column) = correlation(column, row) = std::clamp(rho, -0.95, 0.95);
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace kolsky {
 
@@ -128,12 +129,21 @@ std::vector<double> held_out_squares(const Studied& studied, ShotResiduals& resi
 }
 
 Certification certification(const std::vector<double>& before, const std::vector<double>& after,
-                            double relief) {
-  Certification certified{relief, 0};
+                            double relief, std::vector<double> weight) {
+  double all = std::accumulate(weight.begin(), weight.end(), 0.0);
+  if (!(all > 0.0)) {
+    weight.assign(before.size(), 1.0);
+    all = static_cast<double>(before.size());
+  }
+  Certification certified{relief, 0, 0.0};
   const double part = relief / static_cast<double>(before.size());
   for (std::size_t n = 0; n < before.size(); ++n) {
-    certified.gain += before[n] - after[n];
-    certified.better += before[n] - after[n] + part > 0.0 ? 1 : 0;
+    const double gain = before[n] - after[n];
+    certified.gain += gain;
+    if (gain + part > 0.0) {
+      ++certified.better;
+      certified.share += weight[n] / all;
+    }
   }
   return certified;
 }

@@ -21,11 +21,16 @@ namespace kolsky {
 struct Certification {
   double gain = 0.0;       ///< of chi2
   std::size_t better = 0;  ///< how many shots gained
+  /// Of all that shots say of the effect, what those say that gained. A shot at the mean
+  /// temperature says nothing of how moduli change with it: it gains or loses by chance.
+  double share = 0.0;
 };
 
 /// @param before, after  held-out squares without and with it
 /// @param relief  how much less the fit strains what is filed of the bench, each shot's equal part
+/// @param weight  how much each shot says of the effect; empty: all the same
 [[nodiscard]] Certification certification(const std::vector<double>& before,
-                                          const std::vector<double>& after, double relief);
+                                          const std::vector<double>& after, double relief,
+                                          std::vector<double> weight = {});
 
 }  // namespace kolsky

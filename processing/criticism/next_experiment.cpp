@@ -42,6 +42,10 @@ NextExperiment next_experiment(const std::string& effect, const std::vector<std:
     next.change = "a further gauge between those there are, and the channels swapped for one shot";
   } else if (sensors) {
     next.change = "the channels of the gauges concerned swapped for some shots";
+  } else if (about(all, "second-relaxation") && about(all, "dashpot")) {
+    // A relaxation slower than the pulse flows like a dashpot until it has relaxed.
+    next.change =
+        "a further gauge at a larger distance, and a longer striker, for lower frequencies";
   } else if (about(all, "relaxation") || about(all, "dashpot") || about(all, "fractional")) {
     next.change = "a further gauge at a larger distance, and a shorter striker";
   }

@@ -88,8 +88,9 @@ void Planter::find_waves() {
     shape(studied_.composition.applied(studied_.fit.theta, n), scene);
     const Transfers transfers = transfers_of(scene, campaign_.reference);
     for (std::size_t k = 0; k < spectrum.size(); ++k) {
-      spectrum[k] *=
-          smoothing(path_[k] / smoothing_rad_per_s_) / transfers.reading[campaign_.reference][k];
+      const Complex mean = mean_over_length(scene, campaign_.reference, k);
+      spectrum[k] *= smoothing(path_[k] / smoothing_rad_per_s_) /
+                     (transfers.reading[campaign_.reference][k] / mean * invertible(mean));
     }
     std::vector<double> wave(samples);
     transform.inverse(spectrum, wave);

@@ -34,7 +34,7 @@ struct WhiteResiduals::Workspace {
   std::vector<AppliedEffect> on_waves;  ///< that made scene and transfers, for a shot
   std::optional<std::size_t> shot;
   std::optional<Scene> scene;
-  Transfers transfers;
+  Ratios ratios;
   std::optional<std::vector<AppliedEffect>> on_noise;  ///< that made the whitener
   std::vector<Eigen::MatrixXcd> whitener;              ///< by bin
   std::vector<Eigen::MatrixXcd> cross;                 ///< P G^H by bin
@@ -221,29 +221,47 @@ void WhiteResiduals::plain_spectrum(Workspace& work, const Spectrum& damped, Spe
   }
 }
 
-/// Each gauge's reading over the reference gauge's, along the damped path.
-Transfers WhiteResiduals::ratios_of(const Scene& scene) const {
-  Transfers transfers = transfers_of(scene, campaign_.reference);
-  for (const std::size_t j : others_) {
+WhiteResiduals::Ratios WhiteResiduals::ratios_of(const Scene& scene) const {
+  const std::size_t reference = campaign_.reference;
+  Ratios ratios{transfers_of(scene, reference), {}};
+  Spectrum& own = ratios.reading[reference];
+  if (scene.gauges[reference].length_m > 0.0) {
     for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-      transfers.reading[j][k] /= transfers.reading[campaign_.reference][k];
+      ratios.mean.push_back(mean_over_length(scene, reference, k));
     }
   }
-  return transfers;
+  for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+    const Complex mean = ratios.mean_at(k);
+    const Complex seen = own[k] / mean;
+    for (const std::size_t j : others_) {
+      ratios.reading[j][k] /= seen;
+    }
+    own[k] = seen * invertible(mean);
+  }
+  return ratios;
 }
 
-/// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins.
-std::vector<CarriedBin> WhiteResiduals::carried_by(Workspace& work, const Transfers& ratios) const {
+/// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins; last,
+/// what the mean over a long reference gauge would hold of it, and all of it.
+std::vector<CarriedBin> WhiteResiduals::carried_by(Workspace& work, const Ratios& ratios) const {
   // The filter reaches to both sides of a response's first sample.
   const std::size_t before = band_.edge / band_.decimation;
   const std::size_t first = band_.lead / band_.decimation;
   const double start_s = static_cast<double>(first + before) * judged_period_s();
-  work.responses.resize(others_.size());
+  std::vector<const Spectrum*> filters;
+  for (const std::size_t j : others_) {
+    filters.push_back(&ratios.reading[j]);
+  }
+  const Spectrum all_of_it(band_.bins_carried, 1.0);
+  if (!ratios.mean.empty()) {
+    filters.push_back(&ratios.mean);
+    filters.push_back(&all_of_it);
+  }
+  work.responses.resize(filters.size());
   std::fill(work.carried.begin(), work.carried.end(), 0.0);
-  for (std::size_t i = 0; i < others_.size(); ++i) {
+  for (std::size_t i = 0; i < filters.size(); ++i) {
     for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-      work.carried[k] =
-          ratios.reading[others_[i]][k] * damped_filter_[k] * std::exp(-damped_path_[k] * start_s);
+      work.carried[k] = (*filters[i])[k] * damped_filter_[k] * std::exp(-damped_path_[k] * start_s);
     }
     work.decimated.inverse(work.carried, work.residual);
     const auto begin = work.residual.begin() + static_cast<std::ptrdiff_t>(first);
@@ -262,18 +280,29 @@ Eigen::MatrixXcd WhiteResiduals::whitener(const CarriedBin& carried, std::size_t
                                           Eigen::MatrixXcd& cross) const {
   const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
   const auto rows = static_cast<Eigen::Index>(others_.size());
+  const bool means = carried.ratio.size() > rows;
+  const Complex mean = means ? carried.ratio[rows] : Complex(1.0);
   Eigen::MatrixXcd G = Eigen::MatrixXcd::Zero(rows, gauges);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const auto other = static_cast<std::size_t>(i);
-    G(i, static_cast<Eigen::Index>(others_[other])) = 1.0;
+    G(i, static_cast<Eigen::Index>(others_[other])) = mean;
     G(i, static_cast<Eigen::Index>(campaign_.reference)) = -carried.ratio[i];
   }
   const Eigen::MatrixXd noise = noise_.covariance(bin);
   cross.noalias() = noise * G.adjoint();
   const auto reference = static_cast<Eigen::Index>(campaign_.reference);
-  const Eigen::MatrixXcd own =
-      G * cross - noise(reference, reference) * carried.ratio * carried.ratio.adjoint() +
-      noise_.scale(campaign_.reference, bin) * carried.power;
+  const auto ratio = carried.ratio.head(rows);
+  Eigen::MatrixXcd own =
+      G * cross - noise(reference, reference) * ratio * ratio.adjoint() +
+      noise_.scale(campaign_.reference, bin) * carried.power.topLeftCorner(rows, rows);
+  if (means) {
+    // Where the reference is blind, what the window's ends leak of slow noise stays.
+    const double kept = carried.power(rows, rows).real() / carried.power(rows + 1, rows + 1).real();
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto j = static_cast<Eigen::Index>(others_[static_cast<std::size_t>(i)]);
+      own(i, i) += noise(j, j) * (kept - std::norm(mean));
+    }
+  }
   Eigen::LLT<Eigen::MatrixXcd> factor(own);
   if (factor.info() != Eigen::Success) {
     // What gauges share is known as if it were stationary: among long echoes it can contradict.
@@ -291,7 +320,7 @@ void WhiteResiduals::know_waves(Workspace& work, const Composition& composition,
   }
   work.scene.emplace(campaign_.bench, campaign_.shots[shot].facts, damped_path_);
   shape(effects, *work.scene);
-  work.transfers = ratios_of(*work.scene);
+  work.ratios = ratios_of(*work.scene);
   work.on_waves = std::move(effects);
   work.shot = shot;
 }
@@ -434,7 +463,7 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     Effects effects(composition, theta, n);
     know_waves(work, composition, std::move(effects.on_waves), n);
     const Scene& scene = *work.scene;
-    const Transfers& transfers = work.transfers;
+    const Ratios& ratios = work.ratios;
     const std::vector<Spectrum>* records = &spectra_[n];
     if (!effects.on_records.empty()) {
       shape_records(work, effects.on_records, n);
@@ -444,19 +473,19 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
     const bool nonlinear = scene.specimen && scene.specimen->nonlinear();
     if (nonlinear) {
       // Of the reference record, what the specimen's further strain q has sent there goes first.
-      work.response.solve(scene, transfers, reference, source, damped_filter_, work.decimated);
+      work.response.solve(scene, ratios, reference, source, damped_filter_, work.decimated);
     }
     work.rows.resize(others_.size());
     for (std::size_t i = 0; i < others_.size(); ++i) {
       const std::size_t j = others_[i];
       for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-        damped[k] = (*records)[j][k] - transfers.reading[j][k] * source[k];
+        damped[k] = ratios.mean_at(k) * (*records)[j][k] - ratios.reading[j][k] * source[k];
       }
       if (nonlinear) {
         const Spectrum& q = work.response.q();
         for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-          damped[k] -= (transfers.reading_of_q[j][k] -
-                        transfers.reading[j][k] * transfers.reading_of_q[reference][k]) *
+          damped[k] -= (ratios.mean_at(k) * ratios.reading_of_q[j][k] -
+                        ratios.reading[j][k] * ratios.reading_of_q[reference][k]) *
                        damped_filter_[k] * q[k];
         }
       }

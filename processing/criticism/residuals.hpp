@@ -19,6 +19,7 @@ namespace kolsky {
 /// Each shot's source is free at all times and eliminated exactly: with H_j a gauge's reading of a
 /// unit source and y its record,
 ///     r_j(t) = y_j - (H_j / H_ref) y_ref,     j != reference,
+/// (with means over the reference gauge's length m: m y_j - (H_j m / H_ref) y_ref)
 /// is causal, so that a record cut while waves ring loses nothing, and under the true model noise
 /// alone, of covariance G P G^H at each frequency (P the gauges' noise, G = [-H_j/H_ref, 1]).
 /// Whitened with it, their sum of squares is that of all records with the source at its best:
@@ -90,11 +91,19 @@ class WhiteResiduals : public ShotResiduals {
   struct Workspace;
   using Spectrum = std::vector<Complex>;
 
-  [[nodiscard]] Transfers ratios_of(const Scene& scene) const;
+  /// Each gauge's reading over the reference's, along the damped path. A reference gauge as long
+  /// as a wave is blind to it, and nothing can be divided by what it reads of it: the others'
+  /// records take the mean over its length instead.
+  struct Ratios : Transfers {
+    Spectrum mean;  ///< that all others take; empty: the reference is a point
+
+    [[nodiscard]] Complex mean_at(std::size_t k) const { return mean.empty() ? 1.0 : mean[k]; }
+  };
+  [[nodiscard]] Ratios ratios_of(const Scene& scene) const;
   void know_waves(Workspace& work, const Composition& composition,
                   std::vector<AppliedEffect> effects, std::size_t shot) const;
   void know_noise(Workspace& work, const std::vector<AppliedEffect>& effects) const;
-  [[nodiscard]] std::vector<CarriedBin> carried_by(Workspace& work, const Transfers& ratios) const;
+  [[nodiscard]] std::vector<CarriedBin> carried_by(Workspace& work, const Ratios& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,

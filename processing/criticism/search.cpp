@@ -27,6 +27,19 @@ bool at_one_gauge(const Candidate& a, const Candidate& b) {
          a.use.effect->about().stage == Stage::sensor;
 }
 
+/// The model's own numbers may have gone far for want of an effect: much misfit shows it, or a
+/// modulus that nothing holds any longer.
+bool astray(const Studied& studied) {
+  return studied.misfit.chi2_reduced > kFarOff ||
+         std::any_of(
+             studied.model.effects.begin(), studied.model.effects.end(), [](const auto& use) {
+               return use.effect->about().base &&
+                      std::any_of(use.values.begin(), use.values.end(), [](const ModelValue& own) {
+                        return own.free && own.sd > std::abs(own.value);
+                      });
+             });
+}
+
 }  // namespace
 
 Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
@@ -188,21 +201,29 @@ std::vector<double> Search::begin_near(const Candidate& candidate, const Directi
   return best;
 }
 
-std::vector<double> Search::begin_large(const Candidate& candidate,
-                                        const Composition& composition) const {
-  constexpr double kTypicals = 3.0;
-  std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const FreeNumber& number = composition.numbers()[i];
-    const EffectUse& use = composition.uses()[number.use];
-    const EffectParameter& parameter = use.effect->about().parameters[number.parameter];
-    if (use.id() == candidate.id() && !parameter.auxiliary()) {
-      const double side = parameter.null_value >= parameter.upper ? -1.0 : 1.0;
-      start[i] = number.inside(
-          number.theta_of(parameter.null_value + side * kTypicals * parameter.typical));
+std::vector<double> Search::begin_large(const Candidate& candidate, const Composition& composition,
+                                        std::size_t worker) const {
+  std::vector<double> best;
+  double least = HUGE_VAL;
+  for (const double typicals : {3.0, 6.0, 12.0}) {
+    std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[i];
+      const EffectUse& use = composition.uses()[number.use];
+      const EffectParameter& parameter = use.effect->about().parameters[number.parameter];
+      if (use.id() == candidate.id() && !parameter.auxiliary()) {
+        const double side = parameter.null_value >= parameter.upper ? -1.0 : 1.0;
+        start[i] = number.inside(
+            number.theta_of(parameter.null_value + side * typicals * parameter.typical));
+      }
+    }
+    const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
+    if (chi2 < least) {
+      least = chi2;
+      best = std::move(start);
     }
   }
-  return start;
+  return best;
 }
 
 std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
@@ -212,9 +233,8 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   Composition composition(model, study_.campaign());
   ModelFit fit = fit_model(composition, study_.residuals(), serial_on(worker),
                            begin_near(candidate, direction, composition, worker));
-  if (base_.misfit.chi2_reduced > kFarOff) {
-    // The model's own numbers may have gone far astray for want of this effect: begin again from
-    // where they started.
+  if (astray(base_)) {
+    // Begin again from where the model's numbers started.
     Model fresh = with(start_, candidate, true);
     start_moduli(fresh, study_.campaign(), study_.residuals(), worker);
     const Composition again(fresh, study_.campaign());
@@ -224,10 +244,13 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
       fit = std::move(other);
     }
   }
-  if (candidate.one_sided && evidence_of(direction, candidate) < kWorthRefitting) {
-    // At null its first order is what others take up: only a finite size shows what it does.
+  const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
+  if (candidate.one_sided &&
+      (evidence_of(direction, candidate) < kWorthRefitting || (even && astray(base_)))) {
+    // At null its first order is what others take up, or a large one bends away from it: only a
+    // finite size shows what it does.
     ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
-                               begin_large(candidate, composition));
+                               begin_large(candidate, composition, worker));
     if (other.objective() < fit.objective()) {
       fit = std::move(other);
     }

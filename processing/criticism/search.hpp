@@ -53,7 +53,8 @@ class Search {
                                                const Composition& composition,
                                                std::size_t worker) const;
   [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
-                                                const Composition& composition) const;
+                                                const Composition& composition,
+                                                std::size_t worker) const;
   [[nodiscard]] std::optional<Refit> refit(std::size_t index, std::size_t worker);
   void rate(std::vector<Refit>& list) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;

@@ -71,13 +71,20 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
     to_time(spectrum_, transform, strain_);
     extra_.assign(strain_.size(), 0.0);
     material_.assign(strain_.size(), 0.0);
-    if (specimen.lateral_inertia_kg_per_m != 0.0) {
+    accelerated_.assign(strain_.size(), 0.0);
+    const double m = specimen.lateral_inertia_kg_per_m;
+    if (m != 0.0) {
       for (std::size_t k = 0; k < places; ++k) {
         spectrum_[k] *= scene.s[k];
       }
       to_time(spectrum_, transform, rate_);
+      for (std::size_t k = 0; k < places; ++k) {
+        spectrum_[k] *= scene.s[k];
+      }
+      to_time(spectrum_, transform, accelerated_);
       for (std::size_t n = 0; n < rate_.size(); ++n) {
-        material_[n] -= specimen.lateral_inertia_kg_per_m * rate_[n] * rate_[n] / 16.0;
+        material_[n] -= m * rate_[n] * rate_[n] / 16.0;
+        accelerated_[n] *= m / 8.0;
       }
     }
     for (std::size_t n = 0; n < strain_.size(); ++n) {
@@ -90,25 +97,36 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
       }
       if (specimen.stiffening != 0.0) {
         const double spring = std::max(0.05, 1.0 + specimen.stiffening * e);
-        extra_[n] += (stress_[n] + material_[n]) / specimen.solid.E1_Pa * (1.0 / spring - 1.0);
+        extra_[n] += (stress_[n] + material_[n] - accelerated_[n]) / specimen.solid.E1_Pa *
+                     (1.0 / spring - 1.0);
       }
+    }
+    // What the material strains further it must also accelerate sideways.
+    to_spectrum(material_, transform, spectrum_);
+    to_spectrum(extra_, transform, next_);
+    for (std::size_t k = 0; k < places; ++k) {
+      const Complex s = scene.s[k];
+      const Complex J = specimen.solid.compliance(s, k);
+      next_[k] = (next_[k] + J * spectrum_[k]) / (1.0 + J * m * s * s / 8.0);
     }
     if (specimen.gap_m != 0.0) {
       at_rest = iteration == 0 ? at_rest_until(strain_) : at_rest;
       const double gap = specimen.gap_m / specimen.length_m;
+      extra_.assign(strain_.size(), 0.0);
       bool open = true;
       for (std::size_t n = at_rest; n < strain_.size(); ++n) {
         const double approach = strain_[n] - strain_[at_rest];
         open = approach < gap && (open || specimen.gap_reopens);
-        extra_[n] += open ? approach : gap;
+        extra_[n] = open ? approach : gap;
+      }
+      to_spectrum(extra_, transform, spectrum_);
+      for (std::size_t k = 0; k < places; ++k) {
+        next_[k] += spectrum_[k];
       }
     }
-    to_spectrum(material_, transform, spectrum_);
-    to_spectrum(extra_, transform, next_);
     double change = 0.0;
     double size = 0.0;
     for (std::size_t k = 0; k < places; ++k) {
-      next_[k] += specimen.solid.compliance(scene.s[k], k) * spectrum_[k];
       change += std::norm(next_[k] - q_[k]);
       size += std::norm(next_[k]);
     }

@@ -34,7 +34,7 @@ class SpecimenResponse {
                    std::vector<Complex>& out);
 
   std::vector<Complex> q_, next_, wide_, spectrum_;
-  std::vector<double> stress_, strain_, rate_, extra_, material_;
+  std::vector<double> stress_, strain_, rate_, accelerated_, extra_, material_;
 };
 
 }  // namespace kolsky

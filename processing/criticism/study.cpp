@@ -31,30 +31,42 @@ Model Study::begun(Model model) {
   for (std::size_t u = 0; u < model.effects.size(); ++u) {
     const std::vector<EffectParameter>& parameters = model.effects[u].effect->about().parameters;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
-      if (!model.effects[u].values[p].free || !parameters[p].auxiliary() ||
-          (!parameters[p].chosen && !is_null(model.effects[u]))) {
+      const bool at_null = is_null(model.effects[u]);
+      const bool auxiliary = parameters[p].auxiliary();
+      if (!model.effects[u].values[p].free || (!at_null && !(auxiliary && parameters[p].chosen))) {
         continue;
       }
-      Model best = model;
-      double least = HUGE_VAL;
-      for (const double start : parameters[p].starts) {
-        ModelValue& value = model.effects[u].values[p];
-        value.value = start;
-        value.free = !parameters[p].chosen;
-        const Composition composition(model, campaign_);
-        if (least == HUGE_VAL) {
-          residuals_.freeze(composition, composition.start());
-        }
-        const double objective = fit_model(composition, residuals_, executor_).objective();
-        if (objective < least) {
-          least = objective;
-          best = model;
-        }
+      if (auxiliary) {
+        model = best_of(model, u, p, parameters[p].starts);
+      } else if (parameters[p].power != 1.0) {
+        // First order at null says nothing of a large one.
+        const double size = parameters[p].typical;
+        model = best_of(model, u, p, {0.0, 2.0 * size, 4.0 * size, 8.0 * size, 16.0 * size});
       }
-      model = std::move(best);
     }
   }
   return model;
+}
+
+Model Study::best_of(Model model, std::size_t use, std::size_t parameter,
+                     const std::vector<double>& starts) {
+  Model best = model;
+  double least = HUGE_VAL;
+  for (const double start : starts) {
+    ModelValue& value = model.effects[use].values[parameter];
+    value.value = start;
+    value.free = !model.effects[use].effect->about().parameters[parameter].chosen;
+    const Composition composition(model, campaign_);
+    if (least == HUGE_VAL) {
+      residuals_.freeze(composition, composition.start());
+    }
+    const double objective = fit_model(composition, residuals_, executor_).objective();
+    if (objective < least) {
+      least = objective;
+      best = model;
+    }
+  }
+  return best;
 }
 
 Studied Study::fit(const Model& model, LearnNoise learn) {

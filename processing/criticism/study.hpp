@@ -28,8 +28,8 @@ class Study {
   Study(const Campaign& campaign, double band_limit_Hz, Workers executor);
 
   /// Fits from wherever the model's moduli are. What was just added begins at the best of its
-  /// auxiliary parameters' starts, and what is free to choose among a few is held at the best from
-  /// then on.
+  /// auxiliary parameters' starts or of a few sizes, and what is free to choose among a few is held
+  /// at the best from then on.
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
@@ -42,6 +42,9 @@ class Study {
 
  private:
   [[nodiscard]] Model begun(Model model);
+  /// With one of its numbers where the fit from there is best.
+  [[nodiscard]] Model best_of(Model model, std::size_t use, std::size_t parameter,
+                              const std::vector<double>& starts);
 
   const Campaign& campaign_;
   Workers executor_;

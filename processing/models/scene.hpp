@@ -63,7 +63,8 @@ struct GaugeScene {
   std::string name{};
   std::size_t bar = 0;  ///< 0 input, 1 output
   double position_m = 0.0;
-  std::vector<Complex> factor{};  ///< reading over surface strain, on the path
+  double length_m = 0.0;          ///< over which it takes the mean; 0: a point
+  std::vector<Complex> factor{};  ///< reading over that mean, on the path
   double offset_m = 0.0;          ///< chi of bending (effects.md)
   std::vector<std::pair<std::size_t, double>> picks_up{};  ///< crosstalk: gauge and its share
 };

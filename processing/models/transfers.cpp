@@ -137,16 +137,6 @@ void set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& tra
   }
 }
 
-/// A reference that is blind at a frequency (a wave as long as the gauge) tells nothing of the wave
-/// there: divided by what it reads, noise would stand for the wave. The inverse of what this
-/// returns is that of the factor, and goes smoothly to nothing where the factor does.
-Complex invertible(Complex factor) {
-  constexpr double kSeesWell = 0.7;
-  constexpr double kBlind = 0.15;
-  const double size = std::abs(factor);
-  return size > kSeesWell ? factor : factor * (1.0 + std::pow(kBlind / std::max(size, 1e-6), 8));
-}
-
 /// Bending, the sensors' own factors, then what neighbours pick up.
 void pass_sensors(const Scene& scene, std::size_t reference, Transfers& transfers) {
   add_bending(scene, reference, transfers.reading);
@@ -157,7 +147,8 @@ void pass_sensors(const Scene& scene, std::size_t reference, Transfers& transfer
     for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
       for (std::size_t k = 0; k < scene.s.size(); ++k) {
         const Complex factor = scene.gauges[j].factor[k];
-        (*readings)[j][k] *= j == reference ? invertible(factor) : factor;
+        (*readings)[j][k] *=
+            (j == reference ? invertible(factor) : factor) * mean_over_length(scene, j, k);
       }
     }
     const auto clean = *readings;
@@ -172,6 +163,18 @@ void pass_sensors(const Scene& scene, std::size_t reference, Transfers& transfer
 }
 
 }  // namespace
+
+Complex mean_over_length(const Scene& scene, std::size_t gauge, std::size_t at) {
+  const GaugeScene& own = scene.gauges[gauge];
+  return sinhc(scene.bars[own.bar].gamma_per_m[at] * own.length_m / 2.0);
+}
+
+Complex invertible(Complex factor) {
+  constexpr double kSeesWell = 0.7;
+  constexpr double kBlind = 0.15;
+  const double size = std::abs(factor);
+  return size > kSeesWell ? factor : factor * (1.0 + std::pow(kBlind / std::max(size, 1e-6), 8));
+}
 
 void set_elementary_waves(Scene& scene) {
   const std::size_t places = scene.s.size();

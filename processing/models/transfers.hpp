@@ -22,6 +22,14 @@ struct Transfers {
   Spectrum strain, strain_of_q;
 };
 
+/// What a gauge as long as it is reads of a wave that has strain 1 at its middle.
+[[nodiscard]] Complex mean_over_length(const Scene& scene, std::size_t gauge, std::size_t at);
+
+/// A gauge that is blind at a frequency (a wave as long as the gauge) tells nothing of the wave
+/// there: divided by what it reads, noise would stand for the wave. The inverse of what this
+/// returns is that of the factor, and goes smoothly to nothing where the factor does.
+[[nodiscard]] Complex invertible(Complex factor);
+
 /// Elementary gamma = s sqrt(rho J), J and a surface like the mean, for the bars of a scene whose
 /// materials are known.
 void set_elementary_waves(Scene& scene);

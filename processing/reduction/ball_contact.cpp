@@ -25,14 +25,14 @@ double BallPass::threshold_for(double peak_N) const {
 SampleRange BallPass::contact_span(const Stay& stay, std::size_t known) const {
   const double margin = 2.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
   const double end = stay.end + margin + 20e-6 * rate_Hz_;
-  return {static_cast<std::size_t>(std::max(0.0, touch_ - margin)),
-          std::min(known, static_cast<std::size_t>(end))};
+  const std::size_t last = std::min(known, static_cast<std::size_t>(end));
+  return {std::min(last, static_cast<std::size_t>(std::max(0.0, touch_ - margin))), last};
 }
 
 void BallPass::measure() {
   BallImpact& ball = *reduction_.ball;
   const std::span<const double> known = known_force();
-  const std::size_t peak = index_of_largest(known);
+  const std::size_t peak = peak_after_touch(known);
   ball.contact_threshold = threshold_for(known[peak]);
   const Stay stay = stay_above(known, peak, ball.contact_threshold * known[peak]);
   const SampleRange span = contact_span(stay, known.size());

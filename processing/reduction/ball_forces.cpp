@@ -113,9 +113,9 @@ void BallPass::choose_stations() {
     chosen[i] = clean_samples(stations_[i]) >= longest;
   }
   weigh(chosen, force_);
-  if (locate_touch(force_)) {
+  if (locate_touch(force_) && holds_push()) {
     const std::span<const double> known = known_force();
-    const std::size_t peak = index_of_largest(known);
+    const std::size_t peak = peak_after_touch(known);
     const Stay stay = stay_above(known, peak, threshold_for(known[peak]) * known[peak]);
     const double needed = stay.end - touch_ + (kAfterContact_s + 20e-6) * rate_Hz_;
     for (std::size_t i = 0; i < stations_.size(); ++i) {
@@ -130,6 +130,16 @@ std::span<const double> BallPass::known_force() const {
   const double last = std::min(touch_ + clean_ - smear, static_cast<double>(known_samples()));
   return std::span<const double>(force_).first(
       static_cast<std::size_t>(std::clamp(last, 0.0, static_cast<double>(force_.size()))));
+}
+
+std::size_t BallPass::peak_after_touch(std::span<const double> known) const {
+  const auto first = static_cast<std::size_t>(touch_);
+  return first + index_of_largest(known.subspan(first));
+}
+
+bool BallPass::holds_push() const {
+  constexpr double kFewestSamples = 8.0;
+  return static_cast<double>(known_force().size()) > touch_ + kFewestSamples;
 }
 
 void BallPass::fill_history() {

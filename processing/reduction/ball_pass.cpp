@@ -41,7 +41,7 @@ Reduction BallPass::run() {
     return not_reducible("the first wave is tensile: a ball only pushes; check `positive`");
   }
   choose_stations();
-  if (!locate_touch(force_)) {
+  if (!locate_touch(force_) || !holds_push()) {
     return not_reducible("the record ends before the ball has pushed");
   }
   fill_history();
@@ -68,7 +68,8 @@ void BallPass::judge_quality() {
          .after_contact_N = after_contact_N_,
          .after_contact_sd_N = after_contact_sd_N_,
          .band_loss = band_loss_,
-         .speed_problem = speed_problem_},
+         .speed_problem = speed_problem_,
+         .flat_top = longest_flat_top(shot_)},
         reduction_);
 }
 

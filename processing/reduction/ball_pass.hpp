@@ -51,6 +51,10 @@ class BallPass {
   void choose_stations();
   /// From the record's first sample to the end of what is known of the combined force.
   [[nodiscard]] std::span<const double> known_force() const;
+  /// @pre holds_push()
+  [[nodiscard]] std::size_t peak_after_touch(std::span<const double> known) const;
+  /// Whether anything of the push is known.
+  [[nodiscard]] bool holds_push() const;
   [[nodiscard]] double threshold_for(double peak_N) const;
   void fill_history();
   [[nodiscard]] SampleRange contact_span(const Stay& stay, std::size_t known) const;

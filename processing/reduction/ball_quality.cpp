@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processing/reduction/formatted.hpp"
+#include "processing/reduction/quality.hpp"
 
 namespace kolsky {
 
@@ -119,8 +120,7 @@ void judge(const BallQualityInputs& in, Reduction& reduction) {
   std::vector<Check>& checks = reduction.quality.checks;
   reduction.quality.reducible = true;
   checks.push_back(signal_to_noise(in));
-  checks.push_back(
-      check("clipping", 0.0, 0.0, "samples", Verdict::pass, "no code at the converter's ends"));
+  checks.push_back(clipping(in.flat_top));
   checks.push_back(window_overlap(in, ball));
   if (ball.contact_over) {
     checks.push_back(return_to_zero(in, ball));

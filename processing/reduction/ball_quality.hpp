@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "processing/reduction/quality.hpp"
 #include "processing/reduction/reduction.hpp"
 
 namespace kolsky {
@@ -15,6 +16,7 @@ struct BallQualityInputs {
   double after_contact_sd_N = 0.0;
   double band_loss = 0.0;  ///< share of the wave's energy that the low-pass took
   std::string speed_problem{};
+  FlatTop flat_top{};
 };
 
 /// Fills the quality of an impact. Limits and their reasons: docs/quality.md.

@@ -27,6 +27,11 @@ bool BallPass::find_wave() {
   const auto width =
       std::max<std::size_t>(3, static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_)));
   const auto reach_samples = static_cast<std::size_t>(clean_samples(stations_[0]));
+  if (options_.arrival_s) {
+    foot_ = *options_.arrival_s * rate_Hz_;
+    static_cast<void>(rise_after_foot(readings, foot_, reach_samples, rate_Hz_));
+    return true;
+  }
   const auto rise = find_first_pulse(readings, width, reach_samples);
   if (!rise) {
     return false;
@@ -38,8 +43,7 @@ bool BallPass::find_wave() {
   }
   const double peak = *std::max_element(readings.begin() + static_cast<std::ptrdiff_t>(rise->index),
                                         readings.begin() + static_cast<std::ptrdiff_t>(end));
-  foot_ = options_.arrival_s ? *options_.arrival_s * rate_Hz_
-                             : foot_of(readings, rise->index, peak, 0.0).index;
+  foot_ = foot_of(readings, rise->index, peak, 0.0).index;
   return true;
 }
 

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 
 namespace kolsky {
 
@@ -115,6 +119,37 @@ std::optional<Rise> find_first_pulse(std::span<const double> record, std::size_t
     }
   }
   return std::nullopt;
+}
+
+Rise rise_after_foot(std::span<const double> record, double foot, std::size_t reach,
+                     double rate_Hz) {
+  constexpr double kLeastShare = 0.2;
+  const auto size = static_cast<double>(record.size());
+  if (!(foot >= 0.0 && foot < size)) {
+    throw InputError("arrival_s", in_words(foot / rate_Hz, "s") + " is off the record",
+                     "give the foot of the pulse, from 0 to " + in_words(size / rate_Hz, "s"));
+  }
+  const auto begin = static_cast<std::size_t>(foot);
+  const double baseline = begin > 0 ? quiet_before(record, begin).baseline : record.front();
+  const auto farther = [&](double a, double b) {
+    return std::abs(a - baseline) < std::abs(b - baseline);
+  };
+  const auto near = record.subspan(begin, std::min(reach, record.size() - begin));
+  const double peak = *std::max_element(near.begin(), near.end(), farther) - baseline;
+  const double largest = *std::max_element(record.begin(), record.end(), farther) - baseline;
+  if (std::abs(peak) < kLeastShare * std::abs(largest) || peak == 0.0) {
+    throw InputError("arrival_s",
+                     "no pulse rises within " +
+                         in_words(static_cast<double>(near.size()) / rate_Hz, "s") + " after " +
+                         in_words(foot / rate_Hz, "s"),
+                     "give the foot of the pulse at the first gauge");
+  }
+  const double sense = peak < 0.0 ? -1.0 : 1.0;
+  const auto risen = std::find_if(near.begin(), near.end(), [&](double value) {
+    return sense * (value - baseline) >= std::abs(peak) / 2.0;
+  });
+  const auto at = begin + static_cast<std::size_t>(risen - near.begin());
+  return {at > 0 ? at - 1 : 0, sense};
 }
 
 Foot foot_of(std::span<const double> record, std::size_t half, double peak, double noise_rms) {

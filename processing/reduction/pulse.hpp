@@ -34,6 +34,15 @@ struct Rise {
 [[nodiscard]] std::optional<Rise> find_first_pulse(std::span<const double> record,
                                                    std::size_t width, std::size_t reach);
 
+/// The pulse whose foot is given by hand, followed to half of its largest excursion within `reach`
+/// samples.
+/// @param foot  in samples
+/// @throws InputError "arrival_s" where the foot is off the record, or what rises within reach of
+/// it
+///   is less than a fifth of the record's largest excursion
+[[nodiscard]] Rise rise_after_foot(std::span<const double> record, double foot, std::size_t reach,
+                                   double rate_Hz);
+
 /// The foot of a pulse, in samples from the start of the record.
 struct Foot {
   double index = 0.0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,12 @@ constexpr double kClosureLimit = 0.10;
 constexpr double kSeparationLimit = 0.10;
 constexpr double kSeparationNoiseLimit = 0.02;
 constexpr double kFewQuietSamples = 64;
+/// Share of the peak force below which a specimen counts as unloaded.
+constexpr double kUnloaded = 0.10;
+/// The largest strain within the last of so many parts of the histories: it may well grow on.
+constexpr std::size_t kLastPart = 50;
+/// Codes of a record with noise hardly ever stand still for so long at their largest.
+constexpr std::size_t kFlatTop = 10;
 
 /// The loading: from the start to the largest strain.
 std::size_t loading_end(const std::vector<double>& strain) {
@@ -144,13 +152,34 @@ Check untested(Check check, Verdict verdict) {
   return check;
 }
 
-Check clipping() {
-  return {.name = "clipping",
-          .value = 0.0,
-          .limit = 0.0,
-          .unit = "samples",
-          .verdict = Verdict::pass,
-          .text = "no code at the converter's ends"};
+/// Whether what loads the specimen is over before the record is.
+Check record_end(const QualityInputs& in, const Reduction& r, double missing_s,
+                 std::size_t loaded) {
+  const auto force = [&](std::size_t n) {
+    return std::abs(r.force_front_N[n] + r.force_back_N[n]) / 2.0;
+  };
+  const std::size_t samples = r.time_s.size();
+  double peak = 0.0;
+  for (std::size_t n = 0; n < samples; ++n) peak = std::max(peak, force(n));
+  Check check{.name = "record_end", .limit = kUnloaded, .unit = "1", .text = {}};
+  const double ends_us = 1e6 * r.time_s.back();
+  if (missing_s <= 0.0) {
+    check.text = formatted("the record holds all of the %.0f us that are reduced", ends_us);
+    return check;
+  }
+  check.value = peak > 0.0 ? force(samples - 1) / peak : 1.0;
+  const bool still_loading = loaded + samples / kLastPart >= samples;
+  check.verdict = check.value <= kUnloaded ? (in.may_shorten ? Verdict::pass : Verdict::warn)
+                  : still_loading          ? Verdict::fail
+                                           : Verdict::warn;
+  check.text = formatted(
+      "the record ends at %.0f us, %.0f us too soon, with %.0f %% of the peak "
+      "force on the specimen",
+      ends_us, 1e6 * missing_s, 100 * check.value);
+  if (check.verdict == Verdict::fail) {
+    check.text += " and its strain still growing: neither peak is known; record for longer";
+  }
+  return check;
 }
 
 Check loop_closure(const Reduction& r, std::size_t end) {
@@ -329,6 +358,41 @@ Reduction not_reducible(std::string reason) {
   return reduction;
 }
 
+FlatTop longest_flat_top(const Shot& shot) {
+  using Code = std::numeric_limits<std::int32_t>;
+  FlatTop longest;
+  const std::size_t gauges = std::min(shot.channels.size(), shot.bench.gauges.size());
+  for (std::size_t i = 0; i < gauges; ++i) {
+    const ChannelRecord& channel = shot.channels[i];
+    if (channel.code_min != Code::min() || channel.code_max != Code::max()) continue;
+    const auto [least, most] = std::minmax_element(channel.codes.begin(), channel.codes.end());
+    std::size_t run = 0;
+    for (std::size_t n = 0; n < channel.codes.size(); ++n) {
+      const std::int32_t code = channel.codes[n];
+      const bool same = n > 0 && code == channel.codes[n - 1];
+      run = code == *least || code == *most ? (same ? run + 1 : 1) : 0;
+      if (run > longest.samples) longest = {channel.gauge, run};
+    }
+  }
+  return longest;
+}
+
+Check clipping(const FlatTop& flat_top) {
+  Check check{.name = "clipping", .limit = 0.0, .unit = "samples", .text = {}};
+  if (flat_top.samples >= kFlatTop) {
+    check.value = static_cast<double>(flat_top.samples);
+    check.verdict = Verdict::warn;
+    check.text =
+        formatted("stands at the record's largest value for %zu samples", flat_top.samples);
+    check.text = flat_top.gauge + " " + check.text +
+                 ": clipped before it was imported? A table does not say where its converter ends";
+    return check;
+  }
+  check.text = flat_top.samples > 0 ? "no flat top; a table does not say where its converter ends"
+                                    : "no code at the converter's ends";
+  return check;
+}
+
 std::string unusable_because(const Shot& shot) {
   if (!shot.gaps.empty()) {
     const Gap& gap = shot.gaps.front();
@@ -350,7 +414,9 @@ std::string unusable_because(const Shot& shot) {
 }
 
 void judge(const QualityInputs& inputs, Reduction& reduction) {
+  const std::size_t held = reduction.time_s.size();
   const Check separation = separate(inputs, reduction);
+  const bool cut = reduction.time_s.size() < held;
   const std::size_t end = loading_end(reduction.strain);
   const bool assumed = inputs.separated && inputs.separated->assumes_equilibrium;
   const Check agree = equilibrium(reduction, end);
@@ -358,8 +424,9 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
   reduction.quality.checks = {assumed ? untested(agree, Verdict::warn) : agree,
                               signal_to_noise(inputs),
                               inputs.separated ? separated_overlap(inputs) : window_overlap(inputs),
-                              clipping(),
+                              clipping(inputs.flat_top),
                               loop_closure(reduction, end),
+                              record_end(inputs, reduction, cut ? 0.0 : inputs.missing_s, end),
                               assumed ? untested(lag, Verdict::pass) : lag,
                               assumed ? untested(separation, Verdict::pass) : separation,
                               energy_balance(inputs, reduction, end),

@@ -18,6 +18,18 @@ inline constexpr double kEquilibriumLimit = 0.07;
 /// codes. Empty when they can.
 [[nodiscard]] std::string unusable_because(const Shot& shot);
 
+/// The longest stretch in which a gauge stands at its record's largest or least value.
+struct FlatTop {
+  std::string gauge;
+  std::size_t samples = 0;
+};
+
+/// Of all gauges whose converter's ends are not known (a table's), the longest; of none otherwise.
+[[nodiscard]] FlatTop longest_flat_top(const Shot& shot);
+
+/// A pass, or a warning where a record of unknown ends stands at its largest value for long.
+[[nodiscard]] Check clipping(const FlatTop& flat_top);
+
 /// No histories, and why.
 [[nodiscard]] Reduction not_reducible(std::string reason);
 
@@ -44,6 +56,8 @@ struct QualityInputs {
   /// Time, as in the histories, from which a gauge holds waves that came back from a far end too.
   double returns_from_s = 0.0;
   bool may_shorten = true;  ///< nobody asked for a duration
+  double missing_s = 0.0;   ///< of the histories' time, that the record does not hold
+  FlatTop flat_top{};
   /// Where the waves of both bars were separated: what there is to say of it.
   std::optional<SeparationJudgement> separated{};
   std::size_t quiet_samples = 0;  ///< before the pulse
@@ -55,9 +69,9 @@ struct QualityInputs {
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the
-/// lag between front and back, energy, the band, and whether the waves that come back from the far
-/// ends do so as the bench says. Where they do not, the histories are cut where those waves begin.
-/// Limits and their reasons: docs/quality.md.
+/// record's end, the lag between front and back, energy, the band, and whether the waves that come
+/// back from the far ends do so as the bench says. Where they do not, the histories are cut where
+/// those waves begin. Limits and their reasons: docs/quality.md.
 void judge(const QualityInputs& inputs, Reduction& reduction);
 
 }  // namespace kolsky

@@ -1,6 +1,7 @@
 #include "processing/reduction/reducer.hpp"
 
 #include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/reduction/ball_reducer.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/shpb_pass.hpp"
@@ -36,6 +37,17 @@ void require_reducible_bench(const Shot& shot) {
   }
 }
 
+void require_band_of_record(const std::optional<double>& band_limit_Hz, const Shot& shot) {
+  const double most_Hz = shot.rate.Hz() / 2.0;
+  if (band_limit_Hz && !(*band_limit_Hz > 0.0 && *band_limit_Hz <= most_Hz)) {
+    throw InputError("band_limit_Hz",
+                     in_words(*band_limit_Hz, "Hz") +
+                         " is not in the record, which was sampled at " +
+                         in_words(shot.rate.Hz(), "Hz"),
+                     "give at most half of that");
+  }
+}
+
 }  // namespace
 
 struct Reducer::State {
@@ -57,6 +69,7 @@ void Reducer::set_bar_model(const Material& material) {
 }
 
 Reduction Reducer::reduce(const Shot& shot) {
+  require_band_of_record(state_->options.band_limit_Hz, shot);
   if (shot.bench.kind == BenchKind::impact) {
     return state_->ball.reduce(shot, state_->options);
   }

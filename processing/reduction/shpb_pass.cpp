@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -71,13 +72,17 @@ class Pass {
     const double round_trip_s = 2.0 * bars_.input.front_time_s(in_.gauge_to_specimen_m);
     const auto reach = static_cast<std::size_t>(round_trip_s * rate_Hz_);
     read_raw_station(shot_, in_, t_.input_strain);
-    const auto rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
-    if (!rise) {
-      return false;
-    }
-    double foot = rough_foot(*rise, reach);
+    std::optional<Rise> rise;
+    double foot = 0.0;
     if (options_.arrival_s) {
       foot = *options_.arrival_s * rate_Hz_;
+      rise = rise_after_foot(t_.input_strain, foot, reach, rate_Hz_);
+    } else {
+      rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
+      if (!rise) {
+        return false;
+      }
+      foot = rough_foot(*rise, reach);
     }
     const auto clearance = kFootClearance_s * rate_Hz_;
     quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
@@ -233,8 +238,9 @@ class Pass {
     const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     // Separated waves still ring at the record's end: nothing of that may come back through the
     // filter.
-    const double last =
-        std::min(arrival + duration_s * rate_Hz_, known_samples() - (faces_ ? 3.0 * smear : smear));
+    const double wanted = arrival + duration_s * rate_Hz_;
+    const double last = std::min(wanted, known_samples() - (faces_ ? 3.0 * smear : smear));
+    missing_s_ = (wanted - last) * period_s_;
     constexpr double kFewestSamples = 8.0;
     if (last < arrival + kFewestSamples) {
       return false;
@@ -359,6 +365,8 @@ class Pass {
     q.returns_from_s = 2.0 * std::min(bars_.input.front_time_s(in_.gauge_to_far_end_m),
                                       far_end_time_s(out_.gauge_to_far_end_m));
     q.may_shorten = !options_.duration_s;
+    q.missing_s = missing_s_;
+    q.flat_top = longest_flat_top(shot_);
     q.quiet_samples = faces_ ? faces_->quiet : quiet_;
     const Specimen& specimen = *shot_.bench.specimen;
     q.front_rate_per_s = front_rate_per_s_;
@@ -400,6 +408,7 @@ class Pass {
   double push_left_share_ = 0.0;
   double band_loss_ = 0.0;
   double strain_before_ = 0.0;
+  double missing_s_ = 0.0;
   std::vector<double> front_rate_per_s_;
   std::optional<SeparatedFaces> faces_;
   double input_noise_ = 0.0;

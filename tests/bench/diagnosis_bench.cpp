@@ -8,6 +8,7 @@
 
 #include "processing/criticism/comparison.hpp"
 #include "processing/criticism/diagnosis.hpp"
+#include "tests/bench/bound.hpp"
 #include "tests/bench/two_threads.hpp"
 #include "tests/generators/campaign.hpp"
 
@@ -50,6 +51,7 @@ void compare_one_shot(benchmark::State& state) {
     const Studied studied = study.as_it_is(model);
     benchmark::DoNotOptimize(compare(study, studied));
   }
+  hold_to(state, 2e-3);
 }
 BENCHMARK(compare_one_shot)->Unit(benchmark::kMillisecond);
 
@@ -79,6 +81,7 @@ void diagnose_shots(benchmark::State& state, Kind kind, int count, const char* e
   }
   const double diagnosis_s = std::chrono::duration<double>(Clock::now() - start).count() /
                              static_cast<double>(state.iterations());
+  hold_to(state, kind == Kind::bar ? 1.0 : 5.0);
   state.counters["evaluations"] = diagnosis_s / evaluation_s;
   state.SetLabel(found);
 }

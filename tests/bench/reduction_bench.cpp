@@ -4,10 +4,12 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "processing/reduction/reducer.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 #include "processing/uncertainty/monte_carlo.hpp"
+#include "tests/bench/bound.hpp"
 #include "tests/bench/two_threads.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
@@ -16,6 +18,51 @@ namespace kolsky {
 namespace {
 
 constexpr std::size_t kSamples = 4096;
+constexpr double kBound_s = 0.25e-3;  ///< of a reduction
+
+/// Three transforms there and six back, which a reduction cannot do without.
+class BareTransforms {
+ public:
+  BareTransforms()
+      : time_(fftw_alloc_real(kSamples)),
+        frequency_(fftw_alloc_complex(kSamples / 2 + 1)),
+        there_(fftw_plan_dft_r2c_1d(kSamples, time_, frequency_, FFTW_ESTIMATE)),
+        back_(fftw_plan_dft_c2r_1d(kSamples, frequency_, time_, FFTW_ESTIMATE)) {}
+  ~BareTransforms() {
+    fftw_destroy_plan(there_);
+    fftw_destroy_plan(back_);
+    fftw_free(time_);
+    fftw_free(frequency_);
+  }
+  BareTransforms(const BareTransforms&) = delete;
+  BareTransforms& operator=(const BareTransforms&) = delete;
+
+  void once() {
+    std::fill_n(time_, kSamples, 1e-3);
+    for (int i = 0; i < 3; ++i) fftw_execute(there_);
+    for (int i = 0; i < 6; ++i) fftw_execute(back_);
+    benchmark::ClobberMemory();
+  }
+
+ private:
+  double* time_;
+  fftw_complex* frequency_;
+  fftw_plan there_;
+  fftw_plan back_;
+};
+
+/// The best of many: what else the machine does only adds.
+double best_transforms_s() {
+  using Clock = std::chrono::steady_clock;
+  BareTransforms transforms;
+  double best_s = 1.0;
+  for (int i = 0; i < 2000; ++i) {
+    const Clock::time_point begin = Clock::now();
+    transforms.once();
+    best_s = std::min(best_s, std::chrono::duration<double>(Clock::now() - begin).count());
+  }
+  return best_s;
+}
 
 Shot paper_like_shot() {
   testing::ElasticShpb model;
@@ -34,6 +81,10 @@ void reduce(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(reducer.reduce(shot));
   }
+  hold_to(state, kBound_s);
+  state.counters["of_transforms"] =
+      benchmark::Counter(best_transforms_s(), benchmark::Counter::kIsIterationInvariantRate |
+                                                  benchmark::Counter::kInvert);
 }
 BENCHMARK(reduce)->Unit(benchmark::kMicrosecond);
 
@@ -53,6 +104,7 @@ void reduce_exact(benchmark::State& state) {
       benchmark::DoNotOptimize(reducer.reduce(shot));
     }
   }
+  if (!anew) hold_to(state, kBound_s);
 }
 BENCHMARK(reduce_exact)->ArgName("anew")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
@@ -94,6 +146,7 @@ void monte_carlo(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(propagate(shot, {}, reduction, {}, two));
   }
+  hold_to(state, 0.5);
 }
 BENCHMARK(monte_carlo)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
@@ -112,25 +165,8 @@ void identify_specimen(benchmark::State& state) {
 BENCHMARK(identify_specimen)->Unit(benchmark::kMillisecond);
 
 void bare_transforms(benchmark::State& state) {
-  double* time = fftw_alloc_real(kSamples);
-  fftw_complex* frequency = fftw_alloc_complex(kSamples / 2 + 1);
-  fftw_plan there = fftw_plan_dft_r2c_1d(kSamples, time, frequency, FFTW_ESTIMATE);
-  fftw_plan back = fftw_plan_dft_c2r_1d(kSamples, frequency, time, FFTW_ESTIMATE);
-  std::fill_n(time, kSamples, 1e-3);
-  for (auto _ : state) {
-    for (int i = 0; i < 3; ++i) {
-      fftw_execute(there);
-    }
-    for (int i = 0; i < 6; ++i) {
-      fftw_execute(back);
-    }
-    std::fill_n(time, kSamples, 1e-3);
-    benchmark::ClobberMemory();
-  }
-  fftw_destroy_plan(there);
-  fftw_destroy_plan(back);
-  fftw_free(time);
-  fftw_free(frequency);
+  BareTransforms transforms;
+  for (auto _ : state) transforms.once();
 }
 BENCHMARK(bare_transforms)->Unit(benchmark::kMicrosecond);
 

@@ -101,10 +101,13 @@ void print(const Snapshot& before, const Snapshot& after, double speed) {
               static_cast<unsigned long long>(after.status.gaps_of_unknown_length()),
               static_cast<unsigned long long>(after.status.overflows()),
               static_cast<unsigned long long>(after.status.reconnects()));
-  std::printf("kolskyd %.1f %% of one core (%.1f %% at real time), kolsky-digitiser %.1f %%\n",
-              share(before.daemon_cpu_s, after.daemon_cpu_s),
-              share(before.daemon_cpu_s, after.daemon_cpu_s) / speed,
-              share(before.digitiser_cpu_s, after.digitiser_cpu_s));
+  constexpr double kBound = 15.0;
+  const double real_time = share(before.daemon_cpu_s, after.daemon_cpu_s) / speed;
+  std::printf(
+      "kolskyd %.1f %% of one core (%.1f %% at real time, bound %.0f: %s), kolsky-digitiser "
+      "%.1f %%\n",
+      share(before.daemon_cpu_s, after.daemon_cpu_s), real_time, kBound,
+      real_time < kBound ? "kept" : "MISSED", share(before.digitiser_cpu_s, after.digitiser_cpu_s));
 }
 
 /// What the daemon counted is what the digitiser says it withheld.

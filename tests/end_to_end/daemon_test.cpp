@@ -28,8 +28,9 @@ using std::chrono::milliseconds;
 
 /// A daemon on a simulated digitiser, armed.
 struct Running {
-  explicit Running(const LabOptions& options = {}, const std::string& trigger_line = "")
-      : lab(options), setup(lab.uri(), lab.bench()) {
+  explicit Running(const LabOptions& options = {}, const std::string& trigger_line = "",
+                   std::string (*filed)(std::string bench) = nullptr)
+      : lab(options), setup(lab.uri(), filed ? filed(lab.bench()) : lab.bench()) {
     setup.set("trigger", trigger_line);
     daemon = std::make_unique<Daemon>(setup.read());
     daemon->start();
@@ -101,6 +102,26 @@ void expect_replay_gives(const Shot& shot, const Running& run) {
               shot.gaps[i].first_tick - shot.first_tick);
   }
   expect_same(wire::decode(got.result()), Reducer().reduce(shot));
+}
+
+/// A bench whose gauges are read in strain.
+std::string in_strain(std::string bench) {
+  const std::string volts = "unit = \"V\"\nstrain_per_V";
+  for (std::size_t at = bench.find(volts); at != std::string::npos; at = bench.find(volts)) {
+    bench.replace(at, bench.find('\n', at + volts.size()) - at, "unit = \"strain\"");
+  }
+  return bench;
+}
+
+TEST(Daemon, ReadsStrainFromADigitiserThatKnowsIt) {
+  Running run({}, "", in_strain);
+  const v1::Result message = run.shoot();
+  const Reduction published = wire::decode(message);
+  ASSERT_TRUE(published.quality.reducible) << published.quality.reason;
+  const Shot shot = run.stored(message.shot_id());
+  for (const ChannelRecord& channel : shot.channels) EXPECT_EQ(channel.unit, "strain");
+  EXPECT_NEAR(greatest(published.stress_Pa) / greatest(run.lab.truth().stress_Pa), 1.0, 0.05);
+  EXPECT_NEAR(greatest(published.strain) / greatest(run.lab.truth().strain), 1.0, 0.05);
 }
 
 TEST(Daemon, PublishesWhatAFiredShotReducesTo) {

@@ -113,15 +113,6 @@ TEST(Program, RefusesBadSettings) {
     const Installation rate(lab.uri(), slow);
     EXPECT_TRUE(refused(run({"--config", rate.write()}), {"1234567"}));
   }
-  {
-    std::string strain = lab.bench();
-    for (std::size_t at = strain.find("unit = \"V\"\nstrain_per_V"); at != std::string::npos;
-         at = strain.find("unit = \"V\"\nstrain_per_V")) {
-      strain.replace(at, strain.find('\n', at + 12) - at, "unit = \"strain\"");
-    }
-    const Installation unit(lab.uri(), strain);
-    EXPECT_TRUE(refused(run({"--config", unit.write()}), {"bench.toml", "unit", "V"}));
-  }
 }
 
 // libiio has lines of its own for these, in front of the refusal.

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "processing/models/effect.hpp"
 #include "processing/models/scene.hpp"
 
@@ -20,11 +18,7 @@ class GaugeLength final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
-    GaugeScene& g = scene.gauges[gauge];
-    for (std::size_t k = 0; k < scene.s.size(); ++k) {
-      const Complex half = scene.bars[g.bar].gamma_per_m[k] * values[0] / 2.0;
-      g.factor[k] *= std::abs(half) < 1e-3 ? 1.0 + half * half / 6.0 : std::sinh(half) / half;
-    }
+    scene.gauges[gauge].length_m = values[0];
   }
 };
 

@@ -117,6 +117,23 @@ TEST(Certification, CountsWhatFiledNumbersAreRelievedOf) {
   EXPECT_EQ(relieved.better, 2u);
 }
 
+// Two shots far from the mean temperature tell how moduli change with it, three near it nothing.
+TEST(Certification, CountsAShotForWhatItSaysOfTheEffect) {
+  const std::vector<double> before{130.0, 100.0, 100.0, 100.0, 130.0};
+  const std::vector<double> after{100.0, 100.4, 100.2, 100.3, 100.0};
+  const Certification alike = certification(before, after, 0.0);
+  EXPECT_EQ(alike.better, 2u);
+  EXPECT_NEAR(alike.share, 0.4, 1e-12);
+  const Certification weighed = certification(before, after, 0.0, {4.0, 0.5, 0.0, 0.5, 3.0});
+  EXPECT_EQ(weighed.better, 2u);
+  EXPECT_NEAR(weighed.share, 7.0 / 8.0, 1e-12);
+  // One shot alone that would say it all is not foretold by those that say nothing.
+  const Certification lost =
+      certification(before, {131.0, 99.0, 99.0, 99.0, 131.0}, 0.0, {4.0, 0.5, 0.0, 0.5, 3.0});
+  EXPECT_NEAR(lost.share, 1.0 / 8.0, 1e-12);
+  EXPECT_NEAR(certification(before, after, 0.0, std::vector<double>(5, 0.0)).share, 0.4, 1e-12);
+}
+
 // The records must not change, only which branch is called further.
 TEST(BranchOrder, KeepsTheComplianceAndCallsTheLesserBranchFurther) {
   const Campaign campaign = read_campaign(small_campaign({}));

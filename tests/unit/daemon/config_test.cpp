@@ -43,7 +43,8 @@ class ConfigTest : public testing::Test {
   /// The error's line; empty where there is none.
   [[nodiscard]] std::string error_of(const std::string& text) const {
     try {
-      static_cast<void>(read_apparatus(read(text)));
+      DaemonConfig config = read(text);
+      static_cast<void>(read_apparatus(config));
     } catch (const InputError& error) {
       return error.what();
     }
@@ -93,7 +94,7 @@ TEST_F(ConfigTest, TakesEveryKey) {
   write("pmma.toml",
         "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.0e9\nE2_Pa = 37e9\n"
         "eta2_Pa_s = 1.8e6\n");
-  const DaemonConfig config = read(R"(bench = "bench.toml"
+  DaemonConfig config = read(R"(bench = "bench.toml"
 bar_model = "pmma.toml"
 auto_arm = true
 [digitiser]
@@ -256,9 +257,30 @@ TEST_F(ConfigTest, RefusesAUriWithoutAScheme) {
   EXPECT_TRUE(holds(error_of(text), {"digitiser.uri", "captures", "replay:"}));
 }
 
+// As long at any rate: a record at 12.5 MS/s is not cut to a third of a millisecond.
+TEST_F(ConfigTest, AWindowThatIsNotGivenLastsAsLongAtAnyRate) {
+  const auto window_at = [&](const std::string& rate, const std::string& given) {
+    std::string bench = kStrainBench;
+    const std::string key = "sampling_frequency_Hz = ";
+    const std::size_t at = bench.find(key) + key.size();
+    bench.replace(at, bench.find('\n', at) - at, rate);
+    write("bench.toml", bench);
+    std::string text = kLeast;
+    text.insert(text.find("[trigger]") + 10, given);
+    DaemonConfig config = read(text);
+    static_cast<void>(read_apparatus(config));
+    return std::pair(config.trigger.pre_samples, config.trigger.post_samples);
+  };
+  EXPECT_EQ(window_at("1e6", ""), std::pair(400L, 3600L));
+  EXPECT_EQ(window_at("12.5e6", ""), std::pair(5000L, 45000L));
+  EXPECT_EQ(window_at("125e6", ""), std::pair(50000L, 100000L));
+  EXPECT_EQ(window_at("12.5e6", "pre_samples = 0\n"), std::pair(0L, 45000L));
+}
+
 TEST_F(ConfigTest, SaysWhatItWouldDo) {
-  const DaemonConfig config = read(kLeast);
-  const std::string report = check_report(config, read_apparatus(config));
+  DaemonConfig config = read(kLeast);
+  const Apparatus apparatus = read_apparatus(config);
+  const std::string report = check_report(config, apparatus);
   for (const char* part : {"bench.toml", "g1", "g2", "ip:127.0.0.1:30431", "400 + 3600 samples",
                            "(0.4 + 3.6 ms)", "tcp://127.0.0.1:5602"}) {
     EXPECT_NE(report.find(part), std::string::npos) << part << " in\n" << report;
