@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "drivers/files/material_file.hpp"
+#include "drivers/files/shot_facts.hpp"
 #include "drivers/files/toml_table.hpp"
 #include "processing/bridge/bridge.hpp"
 
@@ -15,7 +16,9 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::int64_t kLongestWindow = std::int64_t{1} << 26;
+// The ring holds a window four times, and at its start the daemon reduces one.
+constexpr std::int64_t kLongestWindow = std::int64_t{1} << 21;
+constexpr std::int64_t kLongestHoldOff = std::int64_t{1} << 26;
 constexpr std::int64_t kLongestJournal_bytes = std::int64_t{1} << 40;
 constexpr std::string_view kReplay = "replay:";
 
@@ -44,14 +47,25 @@ std::int64_t integer_within(const TomlTable& table, const std::string& key, std:
   return value;
 }
 
+void check_uri(const TomlTable& table, const std::string& uri) {
+  constexpr std::array<std::string_view, 5> kSchemes{"ip:", "usb:", "serial:", "local:", kReplay};
+  const auto* scheme = std::find_if(kSchemes.begin(), kSchemes.end(),
+                                    [&](std::string_view known) { return uri.starts_with(known); });
+  if (scheme == kSchemes.end()) {
+    throw table.error("uri", fmt::format("'{}' is no digitiser URI", uri),
+                      "give ip:HOST:PORT, usb:..., local: or replay:CAPTURE-OR-FOLDER");
+  }
+  if (uri == "ip:" || uri == "serial:") {
+    throw table.error("uri", fmt::format("'{}' names no digitiser", uri),
+                      fmt::format("give {}{}", uri, uri == "ip:" ? "HOST:PORT" : "DEVICE"));
+  }
+}
+
 DigitiserConfig read_digitiser(const TomlTable& table, const std::filesystem::path& file) {
   table.expect({"uri", "device", "channels", "block_samples", "speed"});
   DigitiserConfig digitiser;
   digitiser.uri = table.text("uri");
-  if (digitiser.uri.find(':') == std::string::npos) {
-    throw table.error("uri", fmt::format("'{}' is no digitiser URI", digitiser.uri),
-                      "give ip:HOST:PORT, usb:..., local: or replay:CAPTURE-OR-FOLDER");
-  }
+  check_uri(table, digitiser.uri);
   if (digitiser.uri.starts_with(kReplay)) {
     const std::string source = digitiser.uri.substr(kReplay.size());
     if (source.empty()) {
@@ -65,6 +79,10 @@ DigitiserConfig read_digitiser(const TomlTable& table, const std::filesystem::pa
     digitiser.block_samples = integer_within(table, "block_samples", 16, 16, 1 << 22);
   }
   digitiser.speed = number_within(table, "speed", 0.0, 0.0, 1e6);
+  if (table.has("speed") && !digitiser.uri.starts_with(kReplay)) {
+    throw table.error("speed", "is of a replay, and this digitiser has its own",
+                      "leave it out, or give a replay: URI");
+  }
   return digitiser;
 }
 
@@ -95,10 +113,14 @@ TriggerConfig read_trigger(const TomlTable& table) {
       optional_integer_within(table, "pre_samples", 0, kLongestWindow).value_or(kByRate);
   trigger.post_samples =
       optional_integer_within(table, "post_samples", 16, kLongestWindow).value_or(kByRate);
+  if (trigger.pre_samples + trigger.post_samples > kLongestWindow) {
+    throw table.error("post_samples", "makes the window longer than the ring holds",
+                      fmt::format("give at most {} together with pre_samples", kLongestWindow));
+  }
   trigger.hysteresis_share = optional_within(table, "hysteresis_share", 0.05, 0.95);
   trigger.minimum_width_s = optional_within(table, "minimum_width_s", 0.0, 1.0);
   trigger.maximum_rise_s = optional_within(table, "maximum_rise_s", 0.0, 1.0);
-  trigger.hold_off_samples = optional_integer_within(table, "hold_off_samples", 0, kLongestWindow);
+  trigger.hold_off_samples = optional_integer_within(table, "hold_off_samples", 0, kLongestHoldOff);
   trigger.learn_samples = optional_integer_within(table, "learn_samples", 16, 1 << 20);
   return trigger;
 }
@@ -142,10 +164,16 @@ std::string meta_value(const TomlTable& table, const std::string& key) {
   }
 }
 
-std::map<std::string, std::string> read_meta(const TomlTable& table) {
+std::map<std::string, std::string> read_meta(const TomlTable& table,
+                                             const std::filesystem::path& file) {
   std::map<std::string, std::string> meta;
   for (const std::string& key : table.keys()) {
     meta[key] = meta_value(table, key);
+  }
+  try {
+    check_shot_facts(meta);
+  } catch (const InputError& error) {
+    throw error.inside(file.string());
   }
   return meta;
 }
@@ -222,7 +250,11 @@ DaemonConfig read_config(const std::filesystem::path& path) {
   config.trigger = read_trigger(root.table("trigger"));
   const TomlTable store = root.table("store");
   store.expect({"folder", "journal_limit_bytes"});
-  config.store = beside(path, store.text("folder"));
+  const std::string folder = store.text("folder");
+  if (folder.empty()) {
+    throw store.error("folder", "is empty", "name the folder that takes the shots");
+  }
+  config.store = beside(path, folder);
   config.journal_limit_bytes = integer_within(
       store, "journal_limit_bytes", config.journal_limit_bytes, 4096, kLongestJournal_bytes);
   if (const auto endpoints = root.optional_table("endpoints")) {
@@ -241,7 +273,7 @@ DaemonConfig read_config(const std::filesystem::path& path) {
         number_within(*model, "amber_share", config.light.amber_share, 0.0, 1.0);
   }
   if (const auto meta = root.optional_table("meta")) {
-    config.meta = read_meta(*meta);
+    config.meta = read_meta(*meta, path);
   }
   root.finish();
   return config;

@@ -30,7 +30,7 @@ v1::Quality::Verdict wire_verdict(const std::string& verdict) {
   if (verdict == "warn") {
     return v1::Quality::WARN;
   }
-  return verdict == "fail" ? v1::Quality::FAIL : v1::Quality::VERDICT_UNSPECIFIED;
+  return v1::Quality::FAIL;  // also of a capture that is damaged or missing
 }
 
 }  // namespace
@@ -71,6 +71,7 @@ void Controller::status(v1::Status& status) {
   status.set_ring_overruns(recorded.ring_overruns + read.windows_refused);
   status.set_triggers(read.triggers);
   status.set_shots_journaled(recorded.shots_journaled);
+  status.set_journal_failures(recorded.journal_failures);
   status.set_shots_stored(station_.archivist().stored());
   status.set_last_shot_id(station_.recorder().last_shot_id());
   status.set_disk_free_bytes(free_bytes(station_.store().root));

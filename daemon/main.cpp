@@ -8,9 +8,11 @@
 
 #include "daemon/check_report.hpp"
 #include "daemon/config.hpp"
+#include "daemon/critic/active_model.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/live/sd_notify.hpp"
 #include "daemon/log.hpp"
+#include "drivers/iio/library_messages.hpp"
 #include "processing/base/error.hpp"
 
 namespace {
@@ -64,6 +66,7 @@ void run(const Arguments& arguments) {
   kolsky::DaemonConfig config = kolsky::read_config(arguments.config);
   if (arguments.check) {
     const kolsky::Apparatus apparatus = kolsky::read_apparatus(config);
+    static_cast<void>(kolsky::read_active_model(config, apparatus.bench));
     std::fputs(kolsky::check_report(config, apparatus).c_str(), stdout);
     return;
   }
@@ -129,8 +132,10 @@ int main(int argc, char** argv) {
   // Blocked before any thread begins, so that only the wait in `signalled` sees them.
   const sigset_t signals = end_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGXFSZ, SIG_IGN);  // so is a file beyond the limit of the shell
   signal(SIGPIPE, SIG_IGN);  // a digitiser or client that drops its socket is an error code here
 
+  kolsky::leave_out_libiio_messages();
   using kolsky::log::Level;
   kolsky::log::start(arguments.quiet     ? Level::quiet
                      : arguments.verbose ? Level::verbose

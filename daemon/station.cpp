@@ -59,9 +59,12 @@ std::uint64_t recovered(const StoreLayout& store, std::uint64_t boot_id) {
   for (const std::string& id : report.recovered) {
     log::info(fmt::format("shot {} was in a journal only; its capture is written now", id));
   }
-  if (!report.pruned.empty() && report.journaled_shots != 0) {
+  for (const std::string& name : report.set_aside) {
+    log::warning(name + ": was damaged; its shot is restored from the journal");
+  }
+  if (report.pruned_shots != 0) {
     log::info(fmt::format("removed of journals: {}; shots in them, read back from captures: {}",
-                          report.pruned.size(), report.journaled_shots));
+                          report.pruned.size(), report.pruned_shots));
   }
   for (const StoreReport::Problem& problem : report.problems) {
     log::warning(problem.file + ": " + problem.text);

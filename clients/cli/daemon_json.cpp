@@ -88,6 +88,7 @@ JsonValue describe(const v1::Status& status) {
                     {"ring_overruns", count(status.ring_overruns())},
                     {"triggers", count(status.triggers())},
                     {"shots_journaled", count(status.shots_journaled())},
+                    {"journal_failures", count(status.journal_failures())},
                     {"shots_stored", count(status.shots_stored())},
                     {"disk_free_bytes", count(status.disk_free_bytes())},
                     {"bench", status.bench_path()},
@@ -165,17 +166,24 @@ JsonValue describe(const v1::Diagnosis& diagnosis) {
   return object;
 }
 
+/// Null where there is no such number.
+JsonValue if_any(bool known, double number) {
+  return known ? JsonValue(number) : JsonValue(nullptr);
+}
+
 JsonValue describe(const v1::ShotSummary& shot) {
+  const bool ball = shot.peak_force_n() > 0.0;
+  const bool specimen = shot.reducible() && !ball;
   return JsonObject{{"id", shot.id()},
                     {"time", iso_time(shot.utc_ns())},
                     {"capture", shot.capture()},
                     {"verdict", verdict_name(shot.verdict())},
                     {"reducible", shot.reducible()},
                     {"reason", shot.reason()},
-                    {"peak_stress_Pa", shot.peak_stress_pa()},
-                    {"peak_strain", shot.peak_strain()},
-                    {"peak_force_N", shot.peak_force_n()},
-                    {"restitution", shot.restitution()}};
+                    {"peak_stress_Pa", if_any(specimen, shot.peak_stress_pa())},
+                    {"peak_strain", if_any(specimen, shot.peak_strain())},
+                    {"peak_force_N", if_any(ball, shot.peak_force_n())},
+                    {"restitution", if_any(shot.restitution() > 0.0, shot.restitution())}};
 }
 
 JsonValue describe(const v1::Preflight& preflight) {

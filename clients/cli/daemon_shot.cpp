@@ -12,10 +12,14 @@ using std::chrono::milliseconds;
 
 std::string last_shot_id(ControlClient& client) {
   std::string id = client.status().last_shot_id();
-  if (id.empty()) {
+  if (!id.empty()) {
+    return id;
+  }
+  const v1::ShotList stored = client.list_shots(1);  // of earlier runs
+  if (stored.shots().empty()) {
     throw InputError("last", "the daemon has no shot yet", "arm it and take one");
   }
-  return id;
+  return stored.shots(0).id();
 }
 
 }  // namespace

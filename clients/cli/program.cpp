@@ -44,7 +44,8 @@ std::string overview(const std::vector<Command>& commands) {
   return text +
          "\nEvery command has --help with an example, and --json for scripts. Quantities are in "
          "SI,\n"
-         "compression positive. Exit codes: 0 done, 2 refused (one line says why), 1 anything "
+         "compression positive. KOLSKY_OPERATOR names the operator; user@host by default. Exit "
+         "codes: 0 done, 2 refused (one line says why), 1 anything "
          "else.\n";
 }
 

@@ -69,15 +69,19 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
     return describe_ball(reduced);
   }
   const Reduction& reduction = reduced.reduction;
+  const bool found = reduction.arrival_s != 0.0 || reduction.band_limit_Hz > 0.0;
+  const auto if_found = [&](double number) {
+    return found ? JsonValue(number) : JsonValue(nullptr);
+  };
   JsonObject object = {{"capture", reduced.capture},
                        {"shot", reduced.shot.id},
                        {"time", iso_time(reduced.shot.utc_ns)},
                        {"meta", describe_meta(reduced.shot.meta)},
                        {"bar_model", reduction.bar_model},
                        {"bar_model_assumed", reduced.default_bar_model},
-                       {"arrival_s", reduction.arrival_s},
-                       {"arrival_sigma_s", reduction.arrival_sigma_s},
-                       {"band_limit_Hz", reduction.band_limit_Hz},
+                       {"arrival_s", if_found(reduction.arrival_s)},
+                       {"arrival_sigma_s", if_found(reduction.arrival_sigma_s)},
+                       {"band_limit_Hz", if_found(reduction.band_limit_Hz)},
                        {"quality", describe(reduction.quality, reduced)},
                        {"stress_from", reduced.stress},
                        {"corrections", reduced.corrections},

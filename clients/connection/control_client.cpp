@@ -6,6 +6,7 @@
 #include <array>
 #include <climits>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <random>
 #include <utility>
@@ -38,6 +39,9 @@ void throw_refusal(const v1::ControlReply& reply, const std::string& endpoint) {
 }  // namespace
 
 std::string default_client_id() {
+  if (const char* name = std::getenv("KOLSKY_OPERATOR"); name != nullptr && *name != '\0') {
+    return name;
+  }
   std::array<char, HOST_NAME_MAX + 1> host{};
   if (gethostname(host.data(), host.size() - 1) != 0) {
     host = {"localhost"};

@@ -11,7 +11,8 @@
 namespace kolsky {
 
 /// user@host: the same in every program of one person on one machine, so that `kolsky arm` and a
-/// later `kolsky disarm` are one operator.
+/// later `kolsky disarm` are one operator. KOLSKY_OPERATOR in the environment names another, as for
+/// two people at one account.
 [[nodiscard]] std::string default_client_id();
 
 struct ControlClientOptions {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "daemon/log.hpp"
+#include "daemon/shots/shot_id.hpp"
 #include "daemon/shots/summary.hpp"
 #include "daemon/thread_priority.hpp"
 #include "drivers/files/capture.hpp"
@@ -17,11 +18,17 @@ namespace kolsky {
 namespace {
 
 constexpr std::chrono::seconds kPatience{20};
+constexpr std::size_t kMostKeptCodes = std::size_t{1} << 24U;  // 64 MiB
+
+bool is_capture_name(const std::filesystem::path& path) {
+  return path.extension() == ".h5" && path.filename().string().front() != '.';
+}
 
 }  // namespace
 
-Archivist::Archivist(StoreLayout store, SharedJournal& journal, FaultSink fault)
-    : store_(std::move(store)), journal_(journal), fault_(std::move(fault)) {}
+Archivist::Archivist(StoreLayout store, SharedJournal& journal, FaultSink fault,
+                     std::chrono::milliseconds retry)
+    : store_(std::move(store)), journal_(journal), fault_(std::move(fault)), retry_(retry) {}
 
 Archivist::~Archivist() {
   stop();
@@ -49,7 +56,7 @@ void Archivist::store(std::shared_ptr<const Shot> shot, CatalogueEntry entry) {
     changed_.wait(lock, [&] { return jobs_.size() < kMostWaiting; });
     ++handed_over_;
     jobs_.emplace_back(
-        [this, shot = std::move(shot), entry = std::move(entry)] { store_now(*shot, entry); });
+        [this, shot = std::move(shot), entry = std::move(entry)] { store_now(shot, entry); });
   }
   changed_.notify_all();
 }
@@ -66,9 +73,11 @@ void Archivist::run() {
   name_thread("kolsky-archive");
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
+    if (!wait_for_job(lock)) {
+      jobs_.emplace_back([this] { file_unfiled(); });
+    }
     if (jobs_.empty()) {
-      return;
+      break;
     }
     const Job job = std::move(jobs_.front());
     jobs_.pop_front();
@@ -80,6 +89,17 @@ void Archivist::run() {
     busy_ = false;
     changed_.notify_all();
   }
+  lock.unlock();
+  file_unfiled();
+}
+
+bool Archivist::wait_for_job(std::unique_lock<std::mutex>& lock) {
+  const auto ready = [&] { return stop_ || !jobs_.empty(); };
+  if (unfiled_.empty()) {
+    changed_.wait(lock, ready);
+    return true;
+  }
+  return changed_.wait_for(lock, retry_, ready);
 }
 
 bool Archivist::idle() const {
@@ -109,10 +129,20 @@ auto Archivist::ask(Ask question) -> decltype(question()) {
 StoredShot Archivist::get(const std::string& id) {
   return ask([this, id] {
     const std::optional<CatalogueEntry> entry = catalogue().find(id);
+    if (const auto waiting = unfiled_.find(id); waiting != unfiled_.end()) {
+      throw InputError(
+          "shot " + id,
+          std::string("is ") + (waiting->second.shot ? "in memory" : "in the journal") +
+              " only, its capture could not be written yet (" + waiting->second.reason + ")",
+          "make room in " + store_.root.string() + ": it is filed by itself then");
+    }
     if (!entry) {
       throw InputError("shot '" + id + "'", "is not in the store", "`kolsky shots` lists them");
     }
     const std::filesystem::path capture = store_.shots() / entry->capture;
+    if (!std::filesystem::exists(capture)) {
+      throw InputError(capture.string(), "is missing", "restore it from a backup");
+    }
     StoredShot stored;
     stored.shot = read_capture(capture);
     stored.reduction = reduce_or_say_why(reducer_, stored.shot);
@@ -132,19 +162,93 @@ Catalogue& Archivist::catalogue() {
   return *catalogue_;
 }
 
-void Archivist::store_now(const Shot& shot, CatalogueEntry entry) {
+void Archivist::store_now(const std::shared_ptr<const Shot>& shot, CatalogueEntry entry) {
   try {
-    const std::filesystem::path capture = store_.capture_of(shot.id);
-    write_capture(shot, capture);
-    stored_.fetch_add(1);
-    entry.capture = capture.filename().string();
-    catalogue().put(entry);
-    journal_.append_stored(shot.id, capture);
+    write_capture(*shot, store_.capture_of(shot->id));
+    enter_stored(shot->id, entry);
+    file_unfiled();
   } catch (const std::exception& error) {
     failed_.fetch_add(1);
-    fault_(fmt::format("shot {}: {}", shot.id, error.what()));
+    fault_(fmt::format("shot {}: {}; it is tried again", shot->id, error.what()));
+    keep(shot, std::move(entry), error.what());
   }
   tend_journals();
+}
+
+void Archivist::enter_stored(const std::string& shot_id, CatalogueEntry entry) {
+  const std::filesystem::path capture = store_.capture_of(shot_id);
+  entry.capture = capture.filename().string();
+  catalogue().put(entry);
+  stored_.fetch_add(1);
+  try {
+    journal_.append_stored(shot_id, capture);
+  } catch (const std::exception& error) {
+    fault_(
+        fmt::format("shot {} is stored, but the journal cannot say so: {}", shot_id, error.what()));
+  }
+}
+
+void Archivist::keep(const std::shared_ptr<const Shot>& shot, CatalogueEntry entry,
+                     std::string reason) {
+  const std::size_t codes = shot->samples() * shot->channels.size();
+  const bool journaled = journal_.holds(shot->id);
+  if (!journaled && kept_codes_ + codes > kMostKeptCodes) {
+    fault_(
+        fmt::format("shot {} is lost: neither journal nor capture could be written, and too "
+                    "many such shots wait in memory",
+                    shot->id));
+    return;
+  }
+  kept_codes_ += journaled ? 0 : codes;
+  unfiled_[shot->id] = {std::move(entry), journaled ? nullptr : shot, std::move(reason)};
+}
+
+void Archivist::file_unfiled() {
+  if (unfiled_.empty()) {
+    return;
+  }
+  const std::size_t before = unfiled_.size();
+  try {
+    file_from_memory();
+    file_from_journals();
+  } catch (const std::exception& error) {
+    log::debug(fmt::format("still not filed: {} shots: {}", unfiled_.size(), error.what()));
+  }
+  if (unfiled_.size() < before) {
+    log::info(fmt::format("filed {} shots that could not be filed before; {} wait",
+                          before - unfiled_.size(), unfiled_.size()));
+    tend_journals();
+  }
+}
+
+void Archivist::file_from_memory() {
+  for (auto it = unfiled_.begin(); it != unfiled_.end();) {
+    const auto& [id, unfiled] = *it;
+    if (!unfiled.shot) {
+      ++it;
+      continue;
+    }
+    if (!std::filesystem::exists(store_.capture_of(id))) {
+      write_capture(*unfiled.shot, store_.capture_of(id));
+    }
+    enter_stored(id, unfiled.entry);
+    kept_codes_ -= unfiled.shot->samples() * unfiled.shot->channels.size();
+    it = unfiled_.erase(it);
+  }
+}
+
+void Archivist::file_from_journals() {
+  std::set<std::string> ids;
+  for (const auto& [id, unfiled] : unfiled_) {
+    ids.insert(id);
+  }
+  if (ids.empty()) {
+    return;
+  }
+  for (const std::string& id : file_journaled(store_, ids).recovered) {
+    enter_stored(id, unfiled_.at(id).entry);
+    unfiled_.erase(id);
+  }
 }
 
 void Archivist::tend_journals() {
@@ -165,7 +269,7 @@ void Archivist::prune(const std::filesystem::path& journal) {
   }
   if (!report.pruned.empty()) {
     log::info(fmt::format("journal {} removed, its {} shots were read back from their captures",
-                          journal.filename().string(), report.journaled_shots));
+                          journal.filename().string(), report.pruned_shots));
   }
 }
 
@@ -173,31 +277,54 @@ void Archivist::complete_catalogue() {
   try {
     std::set<std::string> known;
     for (const CatalogueEntry& entry : catalogue().newest()) {
-      known.insert(entry.capture);
-    }
-    std::size_t entered = 0;
-    for (const auto& file : std::filesystem::directory_iterator(store_.shots())) {
-      if (file.path().extension() == ".h5" && !known.contains(file.path().filename().string())) {
-        enter(file.path());
-        ++entered;
+      if (!std::filesystem::exists(store_.shots() / entry.capture)) {
+        note_missing(entry);
+      } else if (!entry.verdict.empty()) {
+        known.insert(entry.capture);
       }
     }
-    if (entered != 0) {
-      log::info(fmt::format("catalogue: entered {} captures it did not know", entered));
+    std::size_t entered = 0;
+    std::size_t damaged = 0;
+    for (const auto& file : std::filesystem::directory_iterator(store_.shots())) {
+      if (is_capture_name(file.path()) && !known.contains(file.path().filename().string())) {
+        ++(enter(file.path()) ? entered : damaged);
+      }
+    }
+    if (entered + damaged != 0) {
+      log::info(fmt::format("catalogue: entered {} captures it did not know{}", entered,
+                            damaged == 0 ? "" : fmt::format(" and {} damaged ones", damaged)));
     }
   } catch (const std::exception& error) {
     fault_(fmt::format("the catalogue could not be completed: {}", error.what()));
   }
 }
 
-void Archivist::enter(const std::filesystem::path& capture) {
+bool Archivist::enter(const std::filesystem::path& capture) {
   try {
     const Shot shot = read_capture(capture);
     catalogue().put(
         summarise(shot, reduce_or_say_why(reducer_, shot), capture.filename().string()));
+    return true;
   } catch (const InputError& error) {
     fault_(error.what());
+    CatalogueEntry entry;
+    entry.id = capture.stem().string();
+    entry.utc_ns = utc_of_shot_id(entry.id).value_or(0);
+    entry.capture = capture.filename().string();
+    entry.reason = "its capture cannot be used: " + error.problem();
+    catalogue().put(entry);
+    return false;
   }
+}
+
+void Archivist::note_missing(CatalogueEntry entry) {
+  fault_(fmt::format("{} is missing; restore it from a backup",
+                     (store_.shots() / entry.capture).string()));
+  entry.verdict.clear();
+  entry.reducible = false;
+  entry.reason = "its capture is missing";
+  entry.peak_stress_Pa = entry.peak_strain = entry.peak_force_N = entry.restitution = 0.0;
+  catalogue().put(entry);
 }
 
 }  // namespace kolsky

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -32,7 +34,11 @@ class Archivist {
   /// Told what could not be stored, from the archivist's thread.
   using FaultSink = std::function<void(const std::string& text)>;
 
-  Archivist(StoreLayout store, SharedJournal& journal, FaultSink fault);
+  /// How long a shot that could not be filed waits for the next attempt, if no other is filed.
+  static constexpr std::chrono::milliseconds kRetry{10'000};
+
+  Archivist(StoreLayout store, SharedJournal& journal, FaultSink fault,
+            std::chrono::milliseconds retry = kRetry);
   ~Archivist();
   Archivist(const Archivist&) = delete;
   Archivist& operator=(const Archivist&) = delete;
@@ -56,6 +62,7 @@ class Archivist {
   [[nodiscard]] std::vector<CatalogueEntry> newest(std::size_t most);
 
   [[nodiscard]] std::uint64_t stored() const noexcept { return stored_.load(); }
+  /// Shots that could not be filed when they came; they are tried again.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_.load(); }
   /// Nothing waits and nothing is in hand.
   [[nodiscard]] bool idle() const;
@@ -66,18 +73,35 @@ class Archivist {
 
  private:
   using Job = std::function<void()>;
+  /// A shot whose capture could not be written.
+  struct Unfiled {
+    CatalogueEntry entry;
+    std::shared_ptr<const Shot> shot;  ///< where no journal has it either
+    std::string reason;
+  };
 
   void run();
+  /// @return whether there is a job to do, or the end; else it is time to try the unfiled again
+  bool wait_for_job(std::unique_lock<std::mutex>& lock);
   void submit(Job job);
   void await_expected();
   template <typename Ask>
   auto ask(Ask question) -> decltype(question());
-  void store_now(const Shot& shot, CatalogueEntry entry);
+  void store_now(const std::shared_ptr<const Shot>& shot, CatalogueEntry entry);
+  /// Keeps what could not be filed for another attempt.
+  void keep(const std::shared_ptr<const Shot>& shot, CatalogueEntry entry, std::string reason);
+  void file_unfiled();
+  void file_from_memory();
+  void file_from_journals();
+  /// The capture of this shot is there.
+  void enter_stored(const std::string& shot_id, CatalogueEntry entry);
   /// Ends a journal that is long enough, and removes those that have done their work.
   void tend_journals();
   void prune(const std::filesystem::path& journal);
   void complete_catalogue();
-  void enter(const std::filesystem::path& capture);
+  /// @return whether it is a sound capture; a damaged one is listed as such
+  bool enter(const std::filesystem::path& capture);
+  void note_missing(CatalogueEntry entry);
   Catalogue& catalogue();
 
   StoreLayout store_;
@@ -85,6 +109,9 @@ class Archivist {
   FaultSink fault_;
   std::unique_ptr<Catalogue> catalogue_;
   Reducer reducer_;
+  std::chrono::milliseconds retry_;
+  std::map<std::string, Unfiled> unfiled_;  ///< by shot; the archivist's thread alone
+  std::size_t kept_codes_ = 0;              ///< in the shots of `unfiled_`
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

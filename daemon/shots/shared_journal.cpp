@@ -66,6 +66,11 @@ void SharedJournal::append_stored(const std::string& shot_id,
   not_stored_.erase(shot_id);
 }
 
+bool SharedJournal::holds(const std::string& shot_id) const {
+  const std::lock_guard lock(mutex_);
+  return not_stored_.contains(shot_id);
+}
+
 void SharedJournal::turn_over() {
   std::shared_ptr<Journal> open;
   {

@@ -27,6 +27,9 @@ class SharedJournal {
   void append_shot(const Shot& shot);
   void append_stored(const std::string& shot_id, const std::filesystem::path& capture);
 
+  /// Whether a journal has this shot, and it is not stored yet.
+  [[nodiscard]] bool holds(const std::string& shot_id) const;
+
   /// Ends the journal if it has grown to its limit; what is appended from now on goes to a new one.
   /// For the archivist: making a file takes longer than a shot should wait.
   /// @throws InputError where a new one cannot be made; the old one goes on
@@ -45,7 +48,8 @@ class SharedJournal {
   std::filesystem::path folder_;
   std::uint64_t boot_id_;
   std::uint64_t limit_bytes_;
-  std::mutex mutex_;  ///< guards what follows, not the writing: that locks itself, for less long
+  mutable std::mutex
+      mutex_;  ///< guards what follows, not the writing: that locks itself, for less long
   int files_ = 0;
   std::shared_ptr<Journal> journal_;
   std::map<std::string, std::shared_ptr<Journal>> not_stored_;  ///< by shot

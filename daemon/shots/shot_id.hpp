@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace kolsky {
@@ -17,6 +18,9 @@ class ShotIdSource {
   std::uint64_t boot_id_;
   std::uint64_t count_ = 0;
 };
+
+/// The time in a shot's id, to the millisecond; nothing where it is none of ours.
+[[nodiscard]] std::optional<std::int64_t> utc_of_shot_id(const std::string& id);
 
 /// "20250117T101530123Z"
 [[nodiscard]] std::string format_utc_compact(std::int64_t utc_ns);

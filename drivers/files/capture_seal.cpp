@@ -78,15 +78,8 @@ class InputFile {
 
 }  // namespace
 
-std::string seal_of_file(const std::filesystem::path& path) {
-  InputFile file(path);
-  Sha256 hash;
-  for (std::uint64_t done = 0; done < file.size();) {
-    const auto bytes = file.read(file.size() - done);
-    hash.add(bytes);
-    done += bytes.size();
-  }
-  return seal_line(hash.hex());
+std::string seal_of(std::span<const std::byte> content) {
+  return seal_line(sha256_hex(content));
 }
 
 std::uint64_t check_seal(const std::filesystem::path& path) {

@@ -141,14 +141,16 @@ void put_entry(hid_t file, const Shot& shot) {
   put_shot(entry, shot);
 }
 
-void write_hdf5(const Shot& shot, const std::filesystem::path& path) {
+std::vector<std::byte> hdf5_bytes(const Shot& shot) {
   const hdf5::Session session;
-  auto file = hdf5::create_file(path);
+  std::vector<std::byte> bytes;
+  auto file = hdf5::create_file(bytes);
   hdf5::put_attribute(file, "NX_class", "NXroot");
   hdf5::put_attribute(file, "default", layout::kEntry);
   hdf5::put_attribute(file, "creator", "Kolsky " + shot.software_version);
   put_entry(file, shot);
   hdf5::close(std::move(file));
+  return bytes;
 }
 
 }  // namespace
@@ -160,13 +162,15 @@ void write_capture(const Shot& shot, const std::filesystem::path& path) {
     throw error.inside(path.string());
   }
   NewFile file(path);
+  std::vector<std::byte> bytes;
   try {
-    write_hdf5(shot, file.temporary());
+    bytes = hdf5_bytes(shot);
   } catch (const hdf5::Failure& failure) {
     throw InputError(path.string() + ": " + failure.object(), failure.problem(),
-                     "check the space on the disk and the length of the shot's texts");
+                     "check the length of the shot's texts");
   }
-  file.write(seal_of_file(file.temporary()));
+  file.write(bytes);
+  file.write(seal_of(bytes));
   file.publish(S_IRUSR | S_IRGRP | S_IROTH);
 }
 

@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <system_error>
@@ -178,6 +179,26 @@ struct Catalogue::Database {
     Statement(handle, kSelect).step();
   }
 };
+
+std::vector<CatalogueEntry> read_catalogue(const std::filesystem::path& path) {
+  sqlite3* handle = nullptr;
+  const int opened = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READONLY, nullptr);
+  const std::unique_ptr<sqlite3, decltype(&sqlite3_close)> closing(handle, &sqlite3_close);
+  std::vector<CatalogueEntry> entries;
+  if (opened != SQLITE_OK) {
+    return entries;
+  }
+  sqlite3_busy_timeout(handle, kBusy_ms);
+  try {
+    Statement rows(handle, kSelect);
+    while (rows.step()) {
+      entries.push_back(entry_of(rows));
+    }
+  } catch (const std::runtime_error&) {
+    entries.clear();
+  }
+  return entries;
+}
 
 Catalogue::Catalogue(const std::filesystem::path& path) {
   try {

@@ -14,7 +14,8 @@ struct CatalogueEntry {
   std::string id;
   std::int64_t utc_ns = 0;
   std::string capture;  ///< file name inside store/shots
-  std::string verdict;  ///< "pass", "warn", "fail"; empty until judged
+  std::string verdict;  ///< "pass", "warn", "fail"; empty where there was nothing to judge: the
+                        ///< capture was damaged or missing
   bool reducible = false;
   std::string reason;
   double peak_stress_Pa = 0.0;
@@ -22,6 +23,10 @@ struct CatalogueEntry {
   double peak_force_N = 0.0;  ///< of a ball on a bar
   double restitution = 0.0;   ///< of the same, by speed or else by impulse; 0 where not known
 };
+
+/// The entries of a catalogue that may be in use, and stays as it is; none where it is not there
+/// or cannot be read: it is derived data.
+[[nodiscard]] std::vector<CatalogueEntry> read_catalogue(const std::filesystem::path& path);
 
 /// Derived data, `store/catalogue.sqlite`; lost or broken, it is made again from the captures.
 class Catalogue {

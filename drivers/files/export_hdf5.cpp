@@ -61,13 +61,15 @@ void put_entry(hid_t file, const Shot& shot, const Reduction& reduction) {
   put_quality(entry, reduction);
 }
 
-void write_hdf5(const Shot& shot, const Reduction& reduction, const std::filesystem::path& path) {
+std::vector<std::byte> hdf5_bytes(const Shot& shot, const Reduction& reduction) {
   const hdf5::Session session;
-  auto file = hdf5::create_file(path);
+  std::vector<std::byte> bytes;
+  auto file = hdf5::create_file(bytes);
   hdf5::put_attribute(file, "NX_class", "NXroot");
   hdf5::put_attribute(file, "default", "entry");
   put_entry(file, shot, reduction);
   hdf5::close(std::move(file));
+  return bytes;
 }
 
 }  // namespace
@@ -75,10 +77,10 @@ void write_hdf5(const Shot& shot, const Reduction& reduction, const std::filesys
 void export_hdf5(const Shot& shot, const Reduction& reduction, const std::filesystem::path& path) {
   NewFile file(path);
   try {
-    write_hdf5(shot, reduction, file.temporary());
+    file.write(hdf5_bytes(shot, reduction));
   } catch (const hdf5::Failure& failure) {
     throw InputError(path.string() + ": " + failure.object(), failure.problem(),
-                     "check the space on the disk and the length of the shot's texts");
+                     "check the length of the shot's texts");
   }
   file.publish(kMode);
 }

@@ -1,6 +1,8 @@
 #include <matio.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <memory>
 #include <set>
 
@@ -38,9 +40,10 @@ std::string variable_name(const std::string& wanted, std::set<std::string>& used
 
 class MatWriter {
  public:
-  MatWriter(const std::filesystem::path& temporary, std::filesystem::path path)
-      : path_(std::move(path)),
-        file_(Mat_CreateVer(temporary.c_str(), "MATLAB 5.0 MAT-file, exported by Kolsky",
+  MatWriter(std::filesystem::path temporary, std::filesystem::path path)
+      : temporary_(std::move(temporary)),
+        path_(std::move(path)),
+        file_(Mat_CreateVer(temporary_.c_str(), "MATLAB 5.0 MAT-file, exported by Kolsky",
                             MAT_FT_MAT5),
               &Mat_Close) {
     if (file_ == nullptr) {
@@ -56,10 +59,21 @@ class MatWriter {
     std::size_t extents[2] = {text.empty() ? 0U : 1U, text.size()};
     put(wanted, MAT_C_CHAR, MAT_T_UTF8, extents, text.data());
   }
-  /// Hands what is buffered to the file.
+  /// Hands what is buffered to the file, and reads all of it back: matio does not say what a full
+  /// disk has refused.
   void finish() {
     if (Mat_Close(file_.release()) != 0) {
       fail("the file");
+    }
+    const MatFile written(Mat_Open(temporary_.c_str(), MAT_ACC_RDONLY), &Mat_Close);
+    if (written == nullptr) {
+      fail("the file");
+    }
+    for (const MatVariable& variable : variables_) {
+      const MatVariable found(Mat_VarRead(written.get(), variable->name), &Mat_VarFree);
+      if (found == nullptr || !same(*found, *variable)) {
+        fail(variable->name);
+      }
     }
   }
 
@@ -68,13 +82,20 @@ class MatWriter {
            const void* data) {
     const std::string name = variable_name(wanted, used_);
     // matio copies the data and leaves this alone, its signature only does not say so.
-    const MatVariable variable(
+    MatVariable variable(
         Mat_VarCreate(name.c_str(), kind, type, 2, extents, const_cast<void*>(data), 0),
         &Mat_VarFree);
     if (variable == nullptr ||
         Mat_VarWrite(file_.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) {
       fail(name);
     }
+    variables_.push_back(std::move(variable));
+  }
+
+  static bool same(const matvar_t& one, const matvar_t& other) {
+    return one.class_type == other.class_type && one.rank == other.rank &&
+           std::equal(one.dims, one.dims + one.rank, other.dims) && one.nbytes == other.nbytes &&
+           (one.nbytes == 0 || std::memcmp(one.data, other.data, one.nbytes) == 0);
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -82,8 +103,10 @@ class MatWriter {
                      "check the folder and the space on the disk");
   }
 
+  std::filesystem::path temporary_;
   std::filesystem::path path_;
   MatFile file_;
+  std::vector<MatVariable> variables_;
   std::set<std::string> used_;
 };
 

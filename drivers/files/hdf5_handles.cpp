@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <limits>
+#include <new>
 
 namespace kolsky::hdf5 {
 
@@ -80,6 +82,31 @@ void put_attribute(hid_t object, const std::string& name, hid_t file_type, hid_t
   require(H5Awrite(attribute, memory_type, values), "@" + name);
 }
 
+/// The length of a file, by the "end of file address" of a superblock of version 2.
+std::size_t length_of(const std::byte* superblock) {
+  constexpr std::size_t kEndOfFile = 28;
+  std::uint64_t length = 0;
+  for (std::size_t i = 0; i < sizeof length; ++i) {
+    length |= std::to_integer<std::uint64_t>(superblock[kEndOfFile + i]) << (8 * i);
+  }
+  return length;
+}
+
+/// What the library calls to free the memory of a file: the last time, the file is complete.
+herr_t keep_image(void* image, H5FD_file_image_op_t operation, void* kept) {
+  herr_t result = 0;
+  if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE && image != nullptr) {
+    try {
+      const auto* first = static_cast<const std::byte*>(image);
+      static_cast<std::vector<std::byte>*>(kept)->assign(first, first + length_of(first));
+    } catch (const std::bad_alloc&) {
+      result = -1;
+    }
+  }
+  std::free(image);
+  return result;
+}
+
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
@@ -96,14 +123,24 @@ Result require(Result result, std::string_view object) {
 template int require<int>(int, std::string_view);
 template std::int64_t require<std::int64_t>(std::int64_t, std::string_view);
 
-File create_file(const std::filesystem::path& path) {
+File create_file(std::vector<std::byte>& bytes) {
   constexpr std::size_t kGrowBytes = std::size_t{1} << 20U;
   const Properties access(H5Pcreate(H5P_FILE_ACCESS), "file properties");
-  require(H5Pset_fapl_core(access, kGrowBytes, true), "file properties");
-  // The name is new and its maker's own, and the maker may hold a lock on it.
-  require(H5Pset_file_locking(access, false, true), "file properties");
+  require(H5Pset_fapl_core(access, kGrowBytes, false), "file properties");
   require(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "file properties");
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "the file"};
+  H5FD_file_image_callbacks_t callbacks{};
+  callbacks.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) {
+    return std::malloc(size);
+  };
+  callbacks.image_realloc = [](void* image, std::size_t size, H5FD_file_image_op_t, void*) {
+    return std::realloc(image, size);
+  };
+  callbacks.image_free = keep_image;
+  callbacks.udata_copy = [](void* kept) { return kept; };
+  callbacks.udata_free = [](void*) { return herr_t{0}; };
+  callbacks.udata = &bytes;
+  require(H5Pset_file_image_callbacks(access, &callbacks), "file properties");
+  return {H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), "the file"};
 }
 
 void close(File file) {

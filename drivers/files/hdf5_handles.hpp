@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <mutex>
 #include <set>
 #include <span>
@@ -75,10 +74,11 @@ using Type = Handle<H5Tclose>;
 using Attribute = Handle<H5Aclose>;
 using Properties = Handle<H5Pclose>;
 
-/// A new file in the place of `path`, built in memory and written in one go by `close`. Its objects
-/// carry checksums; HDF5 1.8 and later read it.
-[[nodiscard]] File create_file(const std::filesystem::path& path);
-/// @throws Failure where the content does not reach the file
+/// A new file, built in memory: HDF5 never sees the disk, as it would hold on to a file that a full
+/// one refuses. Its objects carry checksums; HDF5 1.8 and later read it.
+/// @param bytes  what belongs on the disk, once the file is closed; outlives it
+[[nodiscard]] File create_file(std::vector<std::byte>& bytes);
+/// @throws Failure where the file is not complete
 void close(File file);
 
 /// A name that can link an object, near to `wanted` and not used before.

@@ -38,7 +38,7 @@ InputError unwritable(const std::filesystem::path& path, int error) {
 }
 
 /// 0, or what renaming failed with. File systems without an exclusive rename get link and unlink.
-int rename_without_overwriting(const std::filesystem::path& from, const std::filesystem::path& to) {
+int rename_exclusively(const std::filesystem::path& from, const std::filesystem::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) {
     return 0;
   }
@@ -117,11 +117,24 @@ void NewFile::publish(mode_t mode) {
   if (::fchmod(file_, mode) != 0 || ::fsync(file_) != 0) {
     throw unwritable(path_, errno);
   }
-  if (const int error = rename_without_overwriting(temporary_, path_); error != 0) {
+  if (const int error = rename_exclusively(temporary_, path_); error != 0) {
     throw error == EEXIST ? taken(path_) : unwritable(path_, error);
   }
   temporary_.clear();
   sync_folder(folder_of(path_));
+}
+
+bool rename_without_overwriting(const std::filesystem::path& from,
+                                const std::filesystem::path& to) {
+  const int error = rename_exclusively(from, to);
+  if (error == EEXIST) {
+    return false;
+  }
+  if (error != 0) {
+    throw unwritable(to, error);
+  }
+  sync_folder(folder_of(to));
+  return true;
 }
 
 void replace_file(const std::filesystem::path& path, const std::string& text) {

@@ -37,6 +37,11 @@ class NewFile {
   int file_ = -1;
 };
 
+/// Gives a file another name in its folder, durably.
+/// @return false, and nothing is changed, where that name is taken
+/// @throws InputError where the folder cannot be written
+bool rename_without_overwriting(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Puts a text under a name, in the place of what was there: whole or not at all.
 /// For what people revise (models, reports); nothing else is ever replaced.
 /// @throws InputError if the folder cannot be written, or what is there does not begin as this text

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "drivers/files/capture.hpp"
+#include "drivers/files/capture_seal.hpp"
+#include "drivers/files/catalogue.hpp"
 #include "drivers/files/journal_scan.hpp"
 #include "drivers/files/new_file.hpp"
 #include "drivers/files/sha256.hpp"
@@ -56,26 +60,33 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
   return files;
 }
 
+struct DoneJournal {
+  std::filesystem::path path;
+  std::size_t shots = 0;
+};
+
 struct Journaled {
   JournaledShots shots;
-  std::vector<std::filesystem::path> done;  ///< journals without damage, all of it captured
+  std::vector<DoneJournal> done;  ///< journals without damage, all of it captured
 };
 
 /// Hands on every whole shot of a journal that is not known yet; a shot journaled twice the same
 /// counts once.
 /// @param visit  returns whether a capture was read that says the same
-/// @return whether the journal is without damage and all of it captured
+/// @return how many shots it holds, where it is without damage and all of it captured
 template <typename Visit>
-bool visit_journal(const std::filesystem::path& path, JournaledShots& shots, StoreReport& report,
-                   const Visit& visit) {
+std::optional<std::size_t> visit_journal(const std::filesystem::path& path, JournaledShots& shots,
+                                         StoreReport& report, const Visit& visit) {
   ++report.journals;
   bool captured = true;
+  std::size_t count = 0;
   try {
     const auto scan = scan_journal(path, [&](const JournalRecord& record) {
       if (record.kind != journal_record::Kind::shot) {
         return;
       }
       const Shot shot = journaled_shot(record);
+      ++count;
       const Fingerprint fingerprint = fingerprint_of(shot);
       const auto [known, first] =
           shots.try_emplace(shot.id, JournaledShot{fingerprint, path.string()});
@@ -95,11 +106,13 @@ bool visit_journal(const std::filesystem::path& path, JournaledShots& shots, Sto
       report.problems.push_back(
           {path.string(), "byte " + std::to_string(problem.offset) + ": " + problem.text});
     }
-    return captured && scan.problems.empty();
+    if (captured && scan.problems.empty()) {
+      return count;
+    }
   } catch (const InputError& error) {
     add_problem(report, error);
-    return false;
   }
+  return std::nullopt;
 }
 
 template <typename Visit>
@@ -109,8 +122,8 @@ Journaled visit_journals(const StoreLayout& store, StoreReport& report, const Vi
     if (!std::filesystem::exists(path)) {
       continue;  // a running daemon has just removed it
     }
-    if (visit_journal(path, found.shots, report, visit)) {
-      found.done.push_back(path);
+    if (const auto shots = visit_journal(path, found.shots, report, visit)) {
+      found.done.push_back({path, *shots});
     }
   }
   return found;
@@ -130,6 +143,15 @@ bool compare(const std::filesystem::path& capture, const Fingerprint& stored,
   return false;
 }
 
+bool is_damaged(const std::filesystem::path& capture) {
+  try {
+    check_seal(capture);
+    return false;
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
 void check_capture(const std::filesystem::path& path, const JournaledShots& journaled,
                    StoreReport& report) {
   try {
@@ -142,7 +164,15 @@ void check_capture(const std::filesystem::path& path, const JournaledShots& jour
       compare(path, fingerprint_of(shot), known->second, report);
     }
   } catch (const InputError& error) {
-    add_problem(report, error);
+    const auto known = journaled.find(path.stem().string());
+    if (known == journaled.end() || !is_damaged(path)) {
+      add_problem(report, error);
+      return;
+    }
+    report.problems.push_back({error.place(),
+                               error.problem() + "; " + known->second.journal +
+                                   " has the shot: the daemon restores it at its next start",
+                               StoreReport::Problem::Kind::in_journal});
   }
 }
 
@@ -157,14 +187,30 @@ bool captured_alike(const std::filesystem::path& capture, const JournaledShot& j
   }
 }
 
+/// Gives a damaged capture another name, so that the journal's copy can take its place.
+void set_aside(const std::filesystem::path& capture, StoreReport& report) {
+  for (int i = 1;; ++i) {
+    const std::string name =
+        capture.string() + ".damaged" + (i == 1 ? "" : "-" + std::to_string(i));
+    if (rename_without_overwriting(capture, name)) {
+      report.set_aside.push_back(name);
+      return;
+    }
+  }
+}
+
 /// @return whether a capture was read that says the same
 bool recover_shot(const Shot& shot, const JournaledShot& journaled,
                   const std::filesystem::path& capture, StoreReport& report) {
   try {
-    if (!std::filesystem::exists(std::filesystem::symlink_status(capture))) {
-      write_capture(shot, capture);
-      report.recovered.push_back(shot.id);
+    const bool exists = std::filesystem::exists(std::filesystem::symlink_status(capture));
+    if (exists && is_damaged(capture)) {
+      set_aside(capture, report);
+    } else if (exists) {
+      return captured_alike(capture, journaled, report);
     }
+    write_capture(shot, capture);
+    report.recovered.push_back(shot.id);
   } catch (const InputError& error) {
     add_problem(report, error);
     return false;
@@ -174,21 +220,38 @@ bool recover_shot(const Shot& shot, const JournaledShot& journaled,
 
 /// A capture may have been renamed just before a crash: its name must reach the disk before the
 /// journal's leaves it.
-void prune(const StoreLayout& store, const std::vector<std::filesystem::path>& journals,
+void prune(const StoreLayout& store, const std::vector<DoneJournal>& journals,
            StoreReport& report) {
   if (journals.empty()) {
     return;
   }
   sync_folder(store.shots());
-  for (const auto& journal : journals) {
+  for (const auto& [journal, shots] : journals) {
     std::error_code error;
     if (std::filesystem::remove(journal, error)) {
       report.pruned.push_back(journal.string());
+      report.pruned_shots += shots;
     } else if (error) {
       report.problems.push_back({journal.string(), "cannot be removed (" + error.message() + ")"});
     }
   }
   sync_folder(store.journals());
+}
+
+void check_listed(const StoreLayout& store, const std::vector<CatalogueEntry>& listed,
+                  const JournaledShots& journaled, StoreReport& report) {
+  for (const CatalogueEntry& entry : listed) {
+    const std::filesystem::path capture = store.shots() / entry.capture;
+    std::error_code ignored;
+    if (!journaled.contains(entry.id) && !std::filesystem::exists(capture, ignored)) {
+      report.problems.push_back(
+          {capture.string(),
+           "is missing: the catalogue lists it, and no journal has it; if it was removed on "
+           "purpose, remove " +
+               store.catalogue().filename().string() + ", which is made anew",
+           StoreReport::Problem::Kind::missing});
+    }
+  }
 }
 
 }  // namespace
@@ -207,6 +270,7 @@ void StoreLayout::create() const {
 
 StoreReport verify_store(const StoreLayout& store) {
   StoreReport report;
+  const std::vector<CatalogueEntry> listed = read_catalogue(store.catalogue());
   const auto nothing_read = [](const Shot&, const JournaledShot&) { return false; };
   const JournaledShots journaled = visit_journals(store, report, nothing_read).shots;
   for (const auto& path : files_in(store.shots(), ".h5")) {
@@ -215,12 +279,13 @@ StoreReport verify_store(const StoreLayout& store) {
   }
   for (const auto& [id, shot] : journaled) {
     if (std::error_code ignored; !std::filesystem::exists(store.capture_of(id), ignored)) {
-      report.problems.push_back(
-          {shot.journal, "holds the shot " + id +
-                             ", which has no capture; the daemon writes it at "
-                             "its next start"});
+      report.problems.push_back({shot.journal,
+                                 "holds the shot " + id + ", which has no capture; the daemon " +
+                                     "writes it as it runs, or at its next start",
+                                 StoreReport::Problem::Kind::in_journal});
     }
   }
+  check_listed(store, listed, journaled, report);
   return report;
 }
 
@@ -230,8 +295,8 @@ StoreReport prune_journal(const StoreLayout& store, const std::filesystem::path&
   const auto read_back = [&](const Shot& shot, const JournaledShot& journaled) {
     return captured_alike(store.capture_of(shot.id), journaled, report);
   };
-  if (visit_journal(journal, shots, report, read_back)) {
-    prune(store, {journal}, report);
+  if (const auto count = visit_journal(journal, shots, report, read_back)) {
+    prune(store, {{journal, *count}}, report);
   }
   return report;
 }
@@ -248,6 +313,22 @@ StoreReport recover_store(const StoreLayout& store, DoneJournals done) {
     prune(store, journaled.done, report);
   }
   report.captures = files_in(store.shots(), ".h5").size();
+  return report;
+}
+
+StoreReport file_journaled(const StoreLayout& store, const std::set<std::string>& shot_ids) {
+  StoreReport report;
+  StoreReport filed;
+  const auto file = [&](const Shot& shot, const JournaledShot& journaled) {
+    if (shot_ids.contains(shot.id) && filed.problems.empty() &&
+        recover_shot(shot, journaled, store.capture_of(shot.id), filed)) {
+      report.recovered.push_back(shot.id);
+    }
+    return false;
+  };
+  static_cast<void>(visit_journals(store, report, file));
+  report.problems = std::move(filed.problems);
+  report.set_aside = std::move(filed.set_aside);
   return report;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,8 +24,14 @@ struct StoreLayout {
 /// What `verify_store` and `recover_store` found, for people and for --json.
 struct StoreReport {
   struct Problem {
+    enum class Kind {
+      damaged,
+      missing,
+      in_journal,  ///< nothing is lost: a journal has the shot, and recovery writes its capture
+    };
     std::string file;
     std::string text;
+    Kind kind = Kind::damaged;
   };
   std::size_t journals = 0;
   std::size_t journaled_shots = 0;
@@ -32,12 +40,16 @@ struct StoreReport {
   std::size_t temporary_files =
       0;  ///< removed by recovery: what a crash left of captures being written
   std::vector<std::string> recovered;  ///< ids whose capture was written from the journal
+  std::vector<std::string> set_aside;  ///< damaged captures, by their new names: a journal had the
+                                       ///< shot
   std::vector<std::string> pruned;     ///< journals removed: all they held is in captures
+  std::size_t pruned_shots = 0;        ///< shots in those
   std::vector<Problem> problems;
 };
 
-/// Checks every journal record and every capture against its checksums, and that every journaled
-/// shot has a capture that says the same. Changes nothing.
+/// Checks every journal record and every capture against its checksums, that every journaled
+/// shot has a capture that says the same, and that every shot of the catalogue is there. Changes
+/// nothing.
 /// @throws InputError if the folder is not a store
 [[nodiscard]] StoreReport verify_store(const StoreLayout& store);
 
@@ -55,11 +67,18 @@ enum class DoneJournals {
                                         const std::filesystem::path& journal);
 
 /// Writes the capture of every whole journaled shot that has none, and removes temporary files a
-/// crash left. Nothing stored is overwritten: a capture that differs from the journal is a problem
-/// to report. Killed at any moment, it is done again.
+/// crash left. Nothing stored is overwritten: a damaged capture is set aside as ID.h5.damaged, and
+/// one that differs from the journal is a problem to report. Killed at any moment, it is done
+/// again.
 /// @pre nobody appends to the store's journals
 /// @throws InputError if the folders cannot be made
 [[nodiscard]] StoreReport recover_store(const StoreLayout& store,
                                         DoneJournals done = DoneJournals::keep);
+
+/// Writes the captures of these shots from their journals, as recovery does, while others append
+/// to them. It ends at the first that cannot be written, as the next will not be either.
+/// @return in `recovered` those that have a capture now
+[[nodiscard]] StoreReport file_journaled(const StoreLayout& store,
+                                         const std::set<std::string>& shot_ids);
 
 }  // namespace kolsky

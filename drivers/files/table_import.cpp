@@ -11,6 +11,7 @@
 #include "drivers/files/bench_file.hpp"
 #include "drivers/files/quantise.hpp"
 #include "drivers/files/scope_table.hpp"
+#include "drivers/files/shot_facts.hpp"
 #include "drivers/files/table_cells.hpp"
 #include "drivers/files/time_axis.hpp"
 #include "processing/base/error.hpp"
@@ -211,35 +212,12 @@ std::set<std::string> reserved_meta() {
           "first_sample_s", "ignored_columns", kInterpolatedFrom};
 }
 
-bool has_control_character(const std::string& text) {
-  return std::any_of(text.begin(), text.end(),
-                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-}
-
-// Facts with a unit in their name are numbers in that unit.
-void require_number_in_unit(const std::string& key, const std::string& text) {
-  constexpr Range kSpeed{-500.0, 500.0, "m/s", "give metres per second"};
-  constexpr Range kTemperature{60.0, 3000.0, "K", "give kelvin: 20 C is 293.15"};
-  const bool speed = key.ends_with("_m_per_s");
-  if (!speed && !key.ends_with("_K")) {
-    return;
-  }
-  const std::optional<double> value = cell_number(text, ',');
-  if (!value) {
-    throw InputError("meta " + key, "\"" + text + "\" is not a number", "give one");
-  }
-  require_in_range("meta " + key, {*value, 0.0}, speed ? kSpeed : kTemperature);
-}
-
 void check_meta(const std::map<std::string, std::string>& meta) {
+  check_shot_facts(meta);
   for (const auto& [key, text] : meta) {
-    if (key.empty() || has_control_character(key) || has_control_character(text)) {
-      throw InputError("meta " + key, "is not a name and a line of text", "give key=value");
-    }
     if (reserved_meta().contains(key)) {
       throw InputError("meta " + key, "is filed by the import itself", "choose another name");
     }
-    require_number_in_unit(key, text);
   }
 }
 
@@ -305,7 +283,11 @@ Shot import_tables(const TableImport& request) {
   check_meta(request.meta);
   BenchFile bench = read_bench(request.bench);
   std::vector<ScopeTable> tables;
+  std::set<std::filesystem::path> read;
   for (const std::filesystem::path& path : request.tables) {
+    if (!read.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(path))).second) {
+      throw InputError(path.string(), "is given twice", "name each table once");
+    }
     tables.push_back(read_scope_table(path));
   }
   const std::vector<Channel> channels = all_channels(tables);

@@ -64,8 +64,9 @@ void add_sine(double amplitude, double frequency_Hz, double phase, Tick first_ti
 constexpr double kRounding = 0x1.8p52;
 
 void check_not_negative(const char* setting, double value) {
-  if (!(value >= 0.0) || !std::isfinite(value)) {
-    throw InputError(setting, number_text(value) + " microstrain", "give a number from 0 up");
+  constexpr double kMost_microstrain = 1e6;
+  if (!(value >= 0.0) || !(value <= kMost_microstrain)) {
+    throw InputError(setting, number_text(value) + " microstrain", "give a number from 0 to 1e6");
   }
 }
 
@@ -95,8 +96,9 @@ void check(const FrontEndSettings& settings) {
   check_not_negative("noise", settings.noise_microstrain);
   check_not_negative("hum", settings.hum_microstrain);
   check_not_negative("drift", settings.drift_microstrain);
-  if (!std::isfinite(settings.offset_microstrain)) {
-    throw InputError("offset", "not a number", "give microstrain");
+  if (!(std::abs(settings.offset_microstrain) <= 1e6)) {
+    throw InputError("offset", number_text(settings.offset_microstrain) + " microstrain",
+                     "give a number from -1e6 to 1e6");
   }
   if (!(settings.drift_period_s > 0.0)) {
     throw InputError("drift period", number_text(settings.drift_period_s) + " s",

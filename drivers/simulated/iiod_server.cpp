@@ -109,6 +109,10 @@ struct IiodServer::State {
   SimulatedAdc::Clock::time_point closed_until = SimulatedAdc::Clock::time_point::min();
 };
 
+void IiodServer::check_address(const std::string& listen) {
+  static_cast<void>(parse_address(listen));
+}
+
 IiodServer::IiodServer(const std::string& listen, SimulatedAdc& adc)
     : state_(std::make_unique<State>(listening_socket(listen), adc)) {}
 

@@ -13,6 +13,9 @@ namespace kolsky {
 /// with a negative errno or ends that connection, nothing else.
 class IiodServer {
  public:
+  /// @throws InputError where this is no address to listen on
+  static void check_address(const std::string& listen);
+
   /// Binds and listens. @param listen  "address:port"; port 0 chooses a free one
   /// @throws InputError where the address is wrong or taken
   IiodServer(const std::string& listen, SimulatedAdc& adc);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -80,7 +81,9 @@ void declare(CLI::App& app, Options& o) {
       ->capture_default_str();
   app.add_option("--faults", o.faults, "fault script, see below");
   app.add_option("--seed", o.seed, "of the noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check([](const std::string& seed) {
+        return seed.starts_with("-") ? "a seed is a whole number from 0 up" : std::string();
+      })
       ->capture_default_str();
   app.add_option("--bits", o.bits, "resolution, 12 to 24");
   app.add_option("--noise-microstrain", o.noise_microstrain, "white noise, rms");
@@ -122,10 +125,19 @@ void refuse_front_end_options(const Options& o) {
   }
 }
 
-void write_truth_file(const Scenario& scenario, const BenchHistory& shot, const std::string& path) {
-  if (std::ifstream(path)) {
+void check_truth_file(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) {
     throw InputError(path, "is there already", "give another name: nothing is overwritten");
   }
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw InputError(path, "cannot be written: there is no folder " + folder.string(),
+                     "give a file in a folder that is there");
+  }
+}
+
+void write_truth_file(const Scenario& scenario, const BenchHistory& shot, const std::string& path) {
   std::ofstream file(path);
   write_truth(scenario, shot, file);
   if (!file.flush()) {
@@ -138,7 +150,7 @@ std::vector<Fault> read_faults(const std::string& path) {
     return {};
   }
   std::ifstream file(path);
-  if (!file) {
+  if (std::error_code ignored; !file || std::filesystem::is_directory(path, ignored)) {
     throw InputError(path, "cannot be read", "give a fault script, see --help");
   }
   return parse_fault_script(file, path);
@@ -174,6 +186,9 @@ Programme play_captures(const Options& o) {
 Programme play_scenario(const Options& o) {
   const Scenario scenario = chosen_scenario(o);
   AdcSettings settings = complete(adc_settings(scenario), o);
+  if (!o.truth.empty()) {
+    check_truth_file(o.truth);
+  }
   const auto start = std::chrono::steady_clock::now();
   BenchHistory shot = run_shot(scenario);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -203,6 +218,7 @@ void print_address(const Options& o, const IiodServer& server, const SimulatedAd
 }
 
 void serve(const Options& o, sigset_t& leave) {
+  IiodServer::check_address(o.listen);  // before anything is computed
   Programme programme = o.play.empty() ? play_scenario(o) : play_captures(o);
   if (!o.truth.empty() && !o.listen_given) {
     return;
@@ -223,6 +239,7 @@ int run(const Options& o) {
   sigaddset(&leave, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &leave, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of the shell is an error code here
   if (o.list) {
     for (const Scenario& scenario : scenarios()) {
       std::cout << scenario.name << '\t' << scenario.text << '\n';

@@ -115,6 +115,24 @@ TEST(Program, RefusesBadSettings) {
   }
 }
 
+// libiio has lines of its own for these, in front of the refusal.
+TEST(Program, RefusesADigitiserThatIsNotThereInOneLine) {
+  const Lab lab;
+  for (const std::string uri : {kNowhere, "ip:no-such-host.invalid"}) {
+    const Installation gone(uri, lab.bench());
+    const Ended ended = run({"--config", gone.write(), "--quiet"});
+    EXPECT_TRUE(refused(ended, {uri}));
+    EXPECT_EQ(std::count(ended.output.begin(), ended.output.end(), '\n'), 1) << ended.output;
+  }
+}
+
+TEST(Program, ChecksTheModelAsWell) {
+  const Lab lab;
+  Installation installation(kNowhere, lab.bench());
+  installation.set("model", "file = \"none.toml\"");
+  EXPECT_TRUE(refused(run({"--config", installation.write(), "--check"}), {"none.toml"}));
+}
+
 TEST(Program, RefusesAPortInUse) {
   const Lab lab;
   const Installation first(lab.uri(), lab.bench());
@@ -224,6 +242,8 @@ TEST(Program, EndsWhenAClientAsksForIt) {
   Listener& listener = daemon.listener();
   listener.control().stop();
   EXPECT_EQ(daemon.process().wait(kPatience), 0) << daemon.process().output();
+  EXPECT_EQ(daemon.process().output().find("ERROR:"), std::string::npos)
+      << "libiio's own lines at an ordinary end: " << daemon.process().output();
 }
 
 TEST(Program, SurvivesADigitiserThatGoes) {

@@ -103,6 +103,9 @@ int act_and_wait(const Action& action, const std::string& done, std::optional<do
   if (!patience_s.has_value()) {
     return act(action, done, context);
   }
+  if (!(*patience_s > 0.0)) {
+    throw InputError("--wait", "is not a time to wait", "give more than 0 seconds");
+  }
   ControlClient client = connect_patiently(context.endpoint);
   const std::string previous = client.status().last_shot_id();
   action(client);

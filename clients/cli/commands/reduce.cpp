@@ -1,5 +1,7 @@
+#include <filesystem>
 #include <memory>
 #include <ostream>
+#include <set>
 
 #include "clients/cli/ball_report.hpp"
 #include "clients/cli/bar_model_file.hpp"
@@ -97,6 +99,11 @@ ReductionOptions reduction_options(const Settings& settings,
   if (settings.separate.has_value()) {
     options.separation = separation_from(*settings.separate);
   }
+  if (settings.softening_per_K.has_value() &&
+      !(*settings.softening_per_K >= 0.0 && *settings.softening_per_K < 1.0)) {
+    throw InputError("kolsky reduce: --softening", "is outside 0 to 1 per kelvin",
+                     "0.003 is usual: polymers soften as they warm");
+  }
   options.corrections = corrections_of(settings);
   refuse_not_positive(settings.band_limit_Hz, "--band-limit", "Hz");
   refuse_not_positive(settings.duration_s, "--duration", "s");
@@ -124,6 +131,16 @@ UncertaintyOptions uncertainty_options(const Settings& settings,
   options.bars.covariance = prior.covariance;
   options.bars.softening_per_K = settings.softening_per_K.value_or(options.bars.softening_per_K);
   return options;
+}
+
+void refuse_one_name_for_two(const Settings& settings) {
+  std::set<std::filesystem::path> names;
+  for (const auto& name : {settings.save, settings.svg, settings.csv}) {
+    if (name.has_value() &&
+        !names.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(*name))).second) {
+      throw InputError(*name, "is to be two files", "give each file to write a name of its own");
+    }
+  }
 }
 
 void write_files(const Settings& settings, const ReducedShot& reduced) {
@@ -185,6 +202,7 @@ int reduce_several(const Settings& settings, const ReductionOptions& options, Co
 }
 
 int run(const Settings& settings, Context& context) {
+  refuse_one_name_for_two(settings);
   std::optional<BarModelFile> bars;
   if (settings.bar_model.has_value()) {
     bars = read_bar_model(*settings.bar_model);

@@ -5,11 +5,16 @@
 #include "clients/cli/daemon_shot.hpp"
 #include "clients/cli/daemon_text.hpp"
 #include "clients/cli/time_text.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 namespace {
 
 int list_shots(std::optional<std::uint64_t> most, Context& context) {
+  if (most == 0U) {
+    throw InputError("kolsky shots: --most", "0 shots are none",
+                     "give 1 or more, or leave it out for all");
+  }
   ControlClient client = connect_patiently(context.endpoint);
   const v1::ShotList shots = client.list_shots(most.value_or(0));
   if (context.json) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 
@@ -12,10 +13,25 @@
 namespace kolsky::cli {
 namespace {
 
+using Kind = StoreReport::Problem::Kind;
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::damaged:
+      return "damaged";
+    case Kind::missing:
+      return "missing";
+    case Kind::in_journal:
+      break;
+  }
+  return "in-journal";
+}
+
 JsonValue describe(const StoreReport& found, const std::string& store) {
   JsonList problems;
   for (const StoreReport::Problem& problem : found.problems) {
-    problems.push_back(JsonObject{{"file", problem.file}, {"text", problem.text}});
+    problems.push_back(JsonObject{
+        {"file", problem.file}, {"text", problem.text}, {"kind", name_of(problem.kind)}});
   }
   return JsonObject{{"store", absolute_name(store)},
                     {"sound", found.problems.empty()},
@@ -40,15 +56,36 @@ std::string text_of(const StoreReport& found, const std::string& store) {
   return text;
 }
 
+std::string first_of(const StoreReport& found, bool in_journal) {
+  const auto first = std::find_if(
+      found.problems.begin(), found.problems.end(),
+      [&](const auto& problem) { return (problem.kind == Kind::in_journal) == in_journal; });
+  return first->file + ": " + first->text;
+}
+
+[[noreturn]] void refuse(const StoreReport& found, const std::string& store) {
+  const auto in_journals =
+      std::count_if(found.problems.begin(), found.problems.end(),
+                    [](const auto& problem) { return problem.kind == Kind::in_journal; });
+  const auto lost = static_cast<std::ptrdiff_t>(found.problems.size()) - in_journals;
+  if (lost == 0) {
+    throw InputError(
+        store, fmt::format("{} in journals only, first {}", in_journals, first_of(found, true)),
+        "nothing is lost: start kolskyd on this store, and it files them");
+  }
+  throw InputError(
+      store, fmt::format("{} damaged or missing, first {}", lost, first_of(found, false)),
+      "restore those files from a backup; the others are sound" +
+          (in_journals == 0 ? std::string()
+                            : fmt::format(", and {} more are whole in journals, kolskyd files them",
+                                          in_journals)));
+}
+
 int run(const std::string& store, Context& context) {
   const StoreReport found = verify_store({store});
   context.out << (context.json ? to_text(describe(found, store)) + "\n" : text_of(found, store));
   if (!found.problems.empty()) {
-    const StoreReport::Problem& first = found.problems.front();
-    throw InputError(store,
-                     fmt::format("{} damaged or missing, first {}: {}", found.problems.size(),
-                                 first.file, first.text),
-                     "restore those files from a backup; the others are sound");
+    refuse(found, store);
   }
   return kDone;
 }
@@ -61,6 +98,7 @@ Command verify_command() {
   command.name = "verify";
   command.purpose =
       "check every journal and capture of a store against its checksums\n"
+      "And that every shot of journals and catalogue has its capture. "
       "Changes nothing. Exit code 0: all sound; 2: something is damaged, and it says what.";
   command.examples = "  kolsky verify store\n";
   command.arguments = {

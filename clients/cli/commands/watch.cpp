@@ -186,7 +186,17 @@ void refuse_endless_json(const Settings& settings) {
   }
 }
 
+void refuse_nothing(const Settings& settings) {
+  if (settings.count == 0U) {
+    throw InputError("kolsky watch: --count", "0 results are there already", "give 1 or more");
+  }
+  if (settings.seconds.has_value() && !(*settings.seconds > 0.0)) {
+    throw InputError("kolsky watch: --for", "is not a time to listen", "give more than 0 seconds");
+  }
+}
+
 int run(const Settings& settings, Context& context) {
+  refuse_nothing(settings);
   if (context.json) {
     refuse_endless_json(settings);
   }

@@ -121,6 +121,12 @@ TEST_F(WithDaemon, AForcedWindowIsStoredAndSaidNotToBeReducible) {
   EXPECT_EQ(result["quality"]["reducible"], false);
   EXPECT_FALSE(result["quality"]["reason"].get<std::string>().empty());
   EXPECT_EQ(result["stress_Pa"], json::array());
+  EXPECT_TRUE(result["arrival_s"].is_null()) << result["arrival_s"];
+  EXPECT_TRUE(result["band_limit_Hz"].is_null());
+  const json listed = json_of(ask({"shots", "--json"}))["shots"][0];
+  for (const char* number : {"peak_stress_Pa", "peak_strain", "peak_force_N", "restitution"}) {
+    EXPECT_TRUE(listed[number].is_null()) << number << " of " << listed;
+  }
   const Answer text = ask({"get", id});
   EXPECT_EQ(text.code, 0);
   EXPECT_NE(text.out.find("not reducible: "), std::string::npos) << text.out;
@@ -201,8 +207,42 @@ TEST_F(WithDaemon, VerifyFindsTheStoreSoundUntilAByteChanges) {
   const Answer damaged = kolsky({"verify", setup_.store().string(), "--json"});
   EXPECT_EQ(damaged.code, 2);
   EXPECT_EQ(json::parse(damaged.out)["sound"], false);
-  EXPECT_EQ(json::parse(damaged.out)["problems"].size(), 1U);
+  ASSERT_EQ(json::parse(damaged.out)["problems"].size(), 1U);
+  EXPECT_EQ(json::parse(damaged.out)["problems"][0]["kind"], "in-journal");
   EXPECT_NE(damaged.err.find(id), std::string::npos) << damaged.err;
+  EXPECT_NE(damaged.err.find("nothing is lost: start kolskyd"), std::string::npos) << damaged.err;
+
+  // Without the journal it has to come from a backup, and without the capture too.
+  std::filesystem::remove_all(setup_.store() / "journal");
+  std::filesystem::create_directory(setup_.store() / "journal");
+  const Answer lost = kolsky({"verify", setup_.store().string(), "--json"});
+  EXPECT_EQ(json::parse(lost.out)["problems"][0]["kind"], "damaged");
+  std::filesystem::remove(capture);
+  const Answer missing = kolsky({"verify", setup_.store().string(), "--json"});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_EQ(json::parse(missing.out)["problems"][0]["kind"], "missing");
+  EXPECT_NE(missing.err.find("backup"), std::string::npos) << missing.err;
+}
+
+TEST(AnotherRun, KnowsTheLastShotOfTheOneBefore) {
+  scene::Lab lab;
+  const scene::Installation setup(lab.uri(), lab.bench());
+  std::string id;
+  for (const bool first : {true, false}) {
+    Daemon daemon(setup.read());
+    daemon.start();
+    const auto ask = [&](const std::vector<std::string>& words, const std::string& name) {
+      return kolsky(words,
+                    {"KOLSKY_ENDPOINT=" + daemon.endpoints().control, "KOLSKY_OPERATOR=" + name});
+    };
+    if (first) {
+      ASSERT_TRUE(scene::eventually([&] { return ask({"arm"}, "anna").code == 0; }));
+      EXPECT_TRUE(refused(ask({"disarm"}, "ben"), {"anna"}));
+      id = json_of(ask({"fire", "--wait", "10", "--json"}, "anna"))["shot"];
+    } else {
+      EXPECT_EQ(json_of(ask({"get", "last", "--json"}, "anna"))["shot"], id);
+    }
+  }
 }
 
 TEST(OnReplay, FireIsRefused) {

@@ -60,6 +60,12 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"shots", "--most", "-1"}, {"--most", "not negative"}},
         Misuse{{"shots", "--most", "1.5"}, {"--most"}},
         Misuse{{"watch", "--json"}, {"--json", "--count"}},
+        Misuse{{"watch", "--count", "0"}, {"--count", "1 or more"}},
+        Misuse{{"watch", "--for", "-1"}, {"--for", "more than 0"}},
+        Misuse{{"shots", "--most", "0"}, {"--most", "1 or more"}},
+        Misuse{{"fire", "--wait", "-1"}, {"--wait", "more than 0"}},
+        Misuse{{"reduce", "a.h5", "--softening", "-1"}, {"--softening", "0 to 1"}},
+        Misuse{{"reduce", "a.h5", "--svg", "x", "--csv", "./x"}, {"x", "two files"}},
         Misuse{{"fire", "now"}, {"\"now\" is one word too many"}}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -113,6 +119,14 @@ TEST_F(BadFiles, ATableThatIsNoneLeavesNoCapture) {
   bench_.write("words.csv", "time_s,g1,g2\n0,zero,0\n1e-6,0,0\n");
   EXPECT_TRUE(refused(import("empty.csv", "bench.toml"), {"empty.csv"}));
   EXPECT_TRUE(refused(import("words.csv", "bench.toml"), {"words.csv", "2"}));
+  EXPECT_FALSE(std::filesystem::exists(bench_.file("x.h5")));
+}
+
+TEST_F(BadFiles, ATableGivenTwiceIsRefused) {
+  EXPECT_TRUE(
+      refused(scene::kolsky({"import", "csv", bench_.file("shot.csv"), bench_.file("./shot.csv"),
+                             "--bench", bench_.file("bench.toml"), "-o", bench_.file("x.h5")}),
+              {"shot.csv", "twice"}));
   EXPECT_FALSE(std::filesystem::exists(bench_.file("x.h5")));
 }
 

@@ -215,21 +215,41 @@ TEST_P(BadValueTest, IsRefusedWithItsPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadValueTest,
-    testing::Values(BadValue{"[trigger]", "level_sigma = 0.5", "level_sigma"},
-                    BadValue{"[trigger]", "pre_samples = -1", "pre_samples"},
-                    BadValue{"[trigger]", "post_samples = 0", "post_samples"},
-                    BadValue{"[trigger]", "post_samples = 3.5", "post_samples"},
-                    BadValue{"[trigger]", "minimum_width_s = 3", "minimum_width_s"},
-                    BadValue{"[trigger]", "minimum_width_s = 1e-6\nmaximum_rise_s = nan",
-                             "maximum_rise_s"},
-                    BadValue{"[digitiser]", "block_samples = 1", "block_samples"},
-                    BadValue{"[digitiser]", "speed = -1", "speed"},
-                    BadValue{"[digitiser]", "channels = \"voltage0\"", "channels"},
-                    BadValue{"[ring]", "seconds = 0", "seconds"},
-                    BadValue{"[store]", "journal_limit_bytes = 100", "journal_limit_bytes"},
-                    BadValue{"[endpoints]", "results = \"localhost:5600\"", "results"},
-                    BadValue{"[endpoints]", "preview = \"tcp://127.0.0.1:5602\"", "control"},
-                    BadValue{"[meta]", "list = [1]", "list"}));
+    testing::Values(
+        BadValue{"[trigger]", "level_sigma = 0.5", "level_sigma"},
+        BadValue{"[trigger]", "pre_samples = -1", "pre_samples"},
+        BadValue{"[trigger]", "post_samples = 0", "post_samples"},
+        BadValue{"[trigger]", "post_samples = 3.5", "post_samples"},
+        BadValue{"[trigger]", "minimum_width_s = 3", "minimum_width_s"},
+        BadValue{"[trigger]", "minimum_width_s = 1e-6\nmaximum_rise_s = nan", "maximum_rise_s"},
+        BadValue{"[digitiser]", "block_samples = 1", "block_samples"},
+        BadValue{"[digitiser]", "speed = -1", "speed"},
+        BadValue{"[digitiser]", "channels = \"voltage0\"", "channels"},
+        BadValue{"[ring]", "seconds = 0", "seconds"},
+        BadValue{"[store]", "journal_limit_bytes = 100", "journal_limit_bytes"},
+        BadValue{"[endpoints]", "results = \"localhost:5600\"", "results"},
+        BadValue{"[endpoints]", "preview = \"tcp://127.0.0.1:5602\"", "control"},
+        BadValue{"[meta]", "list = [1]", "list"},
+        BadValue{"[meta]", "temperature_K = \"abc\"", "temperature_K"},
+        BadValue{"[meta]", "temperature_K = 20", "temperature_K"},
+        BadValue{"[meta]", "striker_speed_m_per_s = 1e6", "striker_speed_m_per_s"},
+        BadValue{"[digitiser]", "speed = 2", "digitiser.speed"},
+        BadValue{"[trigger]", "post_samples = 5000000", "post_samples"},
+        BadValue{"[trigger]", "pre_samples = 2000000\npost_samples = 2000000", "post_samples"}));
+
+TEST_F(ConfigTest, RefusesAFolderWithoutAName) {
+  std::string text = kLeast;
+  text.replace(text.find("\"store\""), 7, "\"\"");
+  EXPECT_TRUE(holds(error_of(text), {"store.folder", "empty"}));
+}
+
+TEST_F(ConfigTest, RefusesUrisThatNameNoDigitiser) {
+  for (const std::string uri : {"ip:", "xml:foo.xml", "serial:", "http://lab"}) {
+    std::string text = kLeast;
+    text.replace(text.find("ip:127.0.0.1:30431"), 18, uri);
+    EXPECT_TRUE(holds(error_of(text), {"digitiser.uri", uri.c_str(), "give"}));
+  }
+}
 
 TEST_F(ConfigTest, RefusesAUriWithoutAScheme) {
   std::string text = kLeast;

@@ -42,6 +42,14 @@ TEST(ShotId, TellsDateBootAndCount) {
   EXPECT_EQ(ids.next(kMoment_ns), "20250117T102530123Z-89ef-0002");
 }
 
+TEST(ShotId, GivesItsTimeBack) {
+  ShotIdSource ids(1);
+  EXPECT_EQ(utc_of_shot_id(ids.next(kMoment_ns)), kMoment_ns / 1'000'000 * 1'000'000);
+  EXPECT_EQ(utc_of_shot_id("20251317T102530123Z-89ef-0001"), std::nullopt) << "month 13";
+  EXPECT_EQ(utc_of_shot_id("steel-7"), std::nullopt);
+  EXPECT_EQ(utc_of_shot_id(""), std::nullopt);
+}
+
 TEST(ShotId, SortsByTimeAcrossBoots) {
   ShotIdSource early(0xFFFF);
   ShotIdSource late(0x0001);

@@ -44,8 +44,7 @@ void flip(std::vector<std::byte>& bytes, std::size_t position, unsigned bit) {
 /// like.
 void write_resealed(const std::filesystem::path& path, const std::vector<std::byte>& image) {
   write_bytes(path, image);
-  const std::string seal = seal_of_file(path);
-  std::ofstream(path, std::ios::app) << seal;
+  std::ofstream(path, std::ios::app) << seal_of(image);
 }
 
 class DamagedCapture : public ::testing::Test {

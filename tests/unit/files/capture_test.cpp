@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "drivers/files/capture.hpp"
+#include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
@@ -135,6 +136,24 @@ TEST(CapturesIn, RefusesWhereThereIsNone) {
   const TemporaryFolder folder;
   expect_refused([&] { (void)captures_in(folder.path()); }, {"no captures"});
   expect_refused([&] { (void)captures_in(folder / "gone"); }, {"does not exist"});
+}
+
+TEST(Capture, AFullDiskIsRefusedAndHoldsNothingBack) {
+  const TemporaryFolder folder;
+  const Shot shot = make_shot(1);
+  write_capture(shot, folder / "whole.h5");
+  const auto bytes = std::filesystem::file_size(folder / "whole.h5");
+  const auto open_files = testing::entries_of("/proc/self/fd");
+  {
+    const testing::FullDisk disk(bytes - 1);
+    for (int i = 0; i < 3; ++i) {
+      expect_refused([&] { write_capture(shot, folder / "x.h5"); }, {"x.h5", "space on the disk"});
+    }
+    EXPECT_EQ(testing::entries_of("/proc/self/fd"), open_files);
+    EXPECT_EQ(testing::entries_of(folder.path()), 1);
+  }
+  write_capture(shot, folder / "x.h5");
+  expect_same(read_capture(folder / "x.h5"), shot);
 }
 
 }  // namespace

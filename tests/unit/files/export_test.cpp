@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "drivers/files/hdf5_handles.hpp"
+#include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
@@ -134,6 +135,28 @@ TEST(ExportMat, WritesAColumnPerVariable) {
   EXPECT_EQ(std::string(static_cast<const char*>(id->data), id->nbytes), "shot-4");
   Mat_VarFree(id);
   Mat_Close(file);
+}
+
+// With room for nothing, for a part, and for all but the last byte.
+TEST(Export, RefusesOnAFullDiskAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const Shot shot = make_shot(4, {2, 3000});
+  const Reduction reduction = make_reduction();
+  const std::pair<ExportFormat, std::string> formats[] = {{ExportFormat::csv, "whole.csv"},
+                                                          {ExportFormat::mat, "whole.mat"},
+                                                          {ExportFormat::hdf5, "whole.h5"}};
+  for (const auto& [format, whole] : formats) {
+    export_shot(shot, reduction, format, folder / whole);
+    const auto left = testing::entries_of(folder.path());
+    const auto bytes = std::filesystem::file_size(folder / whole);
+    for (const auto room : {std::uintmax_t{0}, bytes / 3, bytes - 1}) {
+      const testing::FullDisk disk(room);
+      const auto message = expect_refused(
+          [&] { export_shot(shot, reduction, format, folder / ("x" + whole)); }, {"space"});
+      EXPECT_NE(message.find(folder.path().string()), std::string::npos) << message;
+      EXPECT_EQ(testing::entries_of(folder.path()), left) << whole << " with room for " << room;
+    }
+  }
 }
 
 TEST(ExportMat, WritesAShotThatCannotBeReduced) {

@@ -93,14 +93,17 @@ TEST_F(Pruning, KeepsAJournalWhoseShotIsInADifferentCapture) {
   EXPECT_EQ(journals(store_), std::set<std::string>{"1.kj"});
 }
 
-TEST_F(Pruning, KeepsAJournalWhoseCaptureIsDamaged) {
+TEST_F(Pruning, KeepsAJournalWhoseCaptureIsDamagedUntilItIsRestored) {
   const auto capture = store_.capture_of(make_shot(1, kShape).id);
   auto bytes = testing::bytes_of(capture);
   bytes[bytes.size() / 2] ^= std::byte{1};
   std::filesystem::permissions(capture, std::filesystem::perms::owner_all);
   testing::write_bytes(capture, bytes);
-  EXPECT_FALSE(recover_store(store_, DoneJournals::prune).problems.empty());
-  EXPECT_EQ(journals(store_), std::set<std::string>{"1.kj"});
+  EXPECT_FALSE(prune_journal(store_, store_.journals() / "1.kj").problems.empty());
+  EXPECT_TRUE(journals(store_).contains("1.kj"));
+  EXPECT_TRUE(recover_store(store_, DoneJournals::prune).problems.empty());
+  EXPECT_TRUE(journals(store_).empty());
+  expect_all_captured(store_);
 }
 
 TEST_F(Pruning, KeepsADamagedJournal) {

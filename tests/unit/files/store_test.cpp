@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "drivers/files/capture.hpp"
+#include "drivers/files/catalogue.hpp"
 #include "drivers/files/journal.hpp"
 #include "drivers/files/new_file.hpp"
 #include "tests/unit/files/stored_shots.hpp"
@@ -129,22 +130,91 @@ TEST_F(Store, ACaptureWithOtherMetadataIsReported) {
   EXPECT_NE(report.problems[0].text.find("shot differs"), std::string::npos);
 }
 
-TEST_F(Store, ADamagedCaptureIsReportedAndKept) {
+TEST_F(Store, ADamagedCaptureIsSetAsideAndRestoredFromItsJournal) {
   journal("a.kj", {make_shot(1)});
+  const auto restore = [&](const std::string& aside) {
+    auto bytes = bytes_of(layout_.capture_of("shot-1"));
+    bytes[bytes.size() / 2] ^= std::byte{4};
+    std::filesystem::remove(layout_.capture_of("shot-1"));
+    write_bytes(layout_.capture_of("shot-1"), bytes);
+    const auto before = verify_store(layout_);
+    ASSERT_EQ(before.problems.size(), 1U);
+    EXPECT_NE(before.problems[0].file.find("shot-1.h5"), std::string::npos);
+    EXPECT_NE(before.problems[0].text.find("a.kj"), std::string::npos);
+    EXPECT_EQ(before.problems[0].kind, StoreReport::Problem::Kind::in_journal);
+    const auto report = recover_store(layout_);
+    EXPECT_TRUE(report.problems.empty());
+    EXPECT_EQ(report.recovered, std::vector<std::string>{"shot-1"});
+    EXPECT_EQ(report.set_aside, std::vector<std::string>{(layout_.shots() / aside).string()});
+    EXPECT_EQ(bytes_of(layout_.shots() / aside), bytes);
+    expect_same(read_capture(layout_.capture_of("shot-1")), make_shot(1));
+    EXPECT_TRUE(verify_store(layout_).problems.empty());
+  };
+  capture(make_shot(1));
+  restore("shot-1.h5.damaged");
+  restore("shot-1.h5.damaged-2");
+}
+
+TEST_F(Store, ADamagedCaptureWithoutAJournalIsReportedAndKept) {
   capture(make_shot(1));
   auto bytes = bytes_of(layout_.capture_of("shot-1"));
   bytes[bytes.size() / 2] ^= std::byte{4};
   write_bytes(layout_.capture_of("shot-1"), bytes);
-  for (const auto& report : {recover_store(layout_), verify_store(layout_)}) {
-    ASSERT_EQ(report.problems.size(), 1U);
-    EXPECT_NE(report.problems[0].file.find("shot-1.h5"), std::string::npos);
-    EXPECT_TRUE(report.recovered.empty());
-  }
+  EXPECT_TRUE(recover_store(layout_).set_aside.empty());
+  const auto report = verify_store(layout_);
+  ASSERT_EQ(report.problems.size(), 1U);
+  EXPECT_EQ(report.problems[0].kind, StoreReport::Problem::Kind::damaged);
   EXPECT_EQ(bytes_of(layout_.capture_of("shot-1")), bytes);
-  // The mend it names works.
-  std::filesystem::rename(layout_.capture_of("shot-1"), folder_ / "kept.h5");
-  EXPECT_EQ(recover_store(layout_).recovered.size(), 1U);
+}
+
+TEST_F(Store, AShotOfTheCatalogueThatIsNowhereIsMissing) {
+  journal("a.kj", {make_shot(1)});
+  capture(make_shot(2));
+  Catalogue catalogue(layout_.catalogue());
+  for (const std::string id : {"shot-1", "shot-2", "shot-3"}) {
+    CatalogueEntry entry;
+    entry.id = id;
+    entry.capture = id + ".h5";
+    catalogue.put(entry);
+  }
+  const auto report = verify_store(layout_);
+  ASSERT_EQ(report.problems.size(), 2U);
+  EXPECT_EQ(report.problems[0].kind, StoreReport::Problem::Kind::in_journal);
+  EXPECT_NE(report.problems[0].text.find("shot-1"), std::string::npos);
+  EXPECT_EQ(report.problems[1].kind, StoreReport::Problem::Kind::missing);
+  EXPECT_NE(report.problems[1].file.find("shot-3.h5"), std::string::npos);
+}
+
+TEST_F(Store, VerifyingChangesNoCatalogueAndMindsNoBrokenOne) {
+  std::ofstream(layout_.catalogue()) << "no database";
+  const auto bytes = bytes_of(layout_.catalogue());
   EXPECT_TRUE(verify_store(layout_).problems.empty());
+  EXPECT_EQ(bytes_of(layout_.catalogue()), bytes);
+}
+
+TEST_F(Store, FilesWhatIsAskedForOutOfJournalsInUse) {
+  Journal open(layout_.journals() / "a.kj");
+  for (std::uint32_t i = 1; i <= 3; ++i) {
+    open.append_shot(make_shot(i));
+  }
+  const auto report = file_journaled(layout_, {"shot-1", "shot-3", "shot-9"});
+  EXPECT_EQ(report.recovered, (std::vector<std::string>{"shot-1", "shot-3"}));
+  EXPECT_TRUE(report.problems.empty());
+  EXPECT_FALSE(std::filesystem::exists(layout_.capture_of("shot-2")));
+  expect_same(read_capture(layout_.capture_of("shot-3")), make_shot(3));
+  EXPECT_EQ(file_journaled(layout_, {"shot-1"}).recovered, std::vector<std::string>{"shot-1"})
+      << "a capture that is there already, as of a crash before the catalogue had it";
+}
+
+TEST_F(Store, CountsTheShotsOfTheJournalsThatItRemoves) {
+  journal("a.kj", {make_shot(1), make_shot(2)});
+  journal("b.kj", {make_shot(3)});
+  Shot other = make_shot(3);
+  other.channels[0].codes[1] ^= 1;
+  capture(other);  // so that the second journal has to stay
+  const auto report = recover_store(layout_, DoneJournals::prune);
+  EXPECT_EQ(report.pruned.size(), 1U);
+  EXPECT_EQ(report.pruned_shots, 2U);
 }
 
 TEST_F(Store, ADamagedJournalStillGivesItsOtherShots) {

@@ -131,12 +131,27 @@ TEST(Program, PrintsABenchThatFitsItsOptions) {
 }
 
 TEST(Program, RefusesBadUsageWithOneLineAnd2) {
-  for (const char* arguments :
-       {"--frob", "--scenario nowhere", "--bits 11", "--bits x", "--speed -1", "--period -1",
-        "--period 0.001", "--listen nowhere", "--faults /nowhere/at/all", "--play /nowhere/at/all",
-        "--play /tmp --scenario core", "--play /nowhere --bits 12", "--noise-microstrain -4",
-        "--range-microstrain 0", "--truth /nowhere/at/all.csv", "--scenario bar --truth t.csv",
-        "--seed -1", "core"}) {
+  for (const char* arguments : {"--frob",
+                                "--scenario nowhere",
+                                "--bits 11",
+                                "--bits x",
+                                "--speed -1",
+                                "--period -1",
+                                "--period 0.001",
+                                "--listen nowhere",
+                                "--faults /nowhere/at/all",
+                                "--play /nowhere/at/all",
+                                "--play /tmp --scenario core",
+                                "--play /nowhere --bits 12",
+                                "--noise-microstrain -4",
+                                "--range-microstrain 0",
+                                "--truth /nowhere/at/all.csv",
+                                "--scenario bar --truth t.csv",
+                                "--seed -1",
+                                "core",
+                                "--faults /tmp",
+                                "--noise-microstrain 1e99",
+                                "--offset-microstrain 1e99"}) {
     const Outcome outcome = run(arguments, true);
     EXPECT_EQ(outcome.exit, 2) << arguments;
     const std::size_t at = outcome.out.find("kolsky-digitiser: ");
@@ -146,6 +161,18 @@ TEST(Program, RefusesBadUsageWithOneLineAnd2) {
         1)
         << outcome.out;
   }
+}
+
+TEST(Program, RefusesBeforeItComputes) {
+  for (const char* arguments : {"--listen nowhere", "--truth /nowhere/at/all.csv"}) {
+    const Outcome outcome = run(arguments, true);
+    EXPECT_EQ(outcome.exit, 2) << arguments;
+    EXPECT_EQ(outcome.out.find("computed"), std::string::npos) << outcome.out;
+  }
+}
+
+TEST(Program, RefusesASeedInAFewWords) {
+  EXPECT_LT(run("--seed -1", true).out.size(), 150U);
 }
 
 TEST_F(TemporaryFolder, RefusesAWrongFaultScriptByItsLine) {
