@@ -213,11 +213,16 @@ std::string bad_data(const Shot& shot) {
              " samples: it was cut off there";
     }
   }
-  const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
-  if (!pulse) {
-    return "gauge " + shot.bench.gauges[reference].name +
-           " holds no pulse that stands out of its noise";
+  const auto pulse_at = [&](std::size_t gauge) {
+    return first_pulse(readings_of(shot.channels[gauge]), shot.rate.Hz());
+  };
+  // Behind a soft specimen there may be none; along one bar it comes to every gauge.
+  for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
+    if ((j == reference || shot.bench.kind == BenchKind::bar) && !pulse_at(j)) {
+      return "gauge " + shot.bench.gauges[j].name + " holds no pulse that stands out of its noise";
+    }
   }
+  const auto pulse = pulse_at(reference);
   if (pulse->quiet < kFewestQuiet) {
     return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
            " of at least " + std::to_string(kFewestQuiet);

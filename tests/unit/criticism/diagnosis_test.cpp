@@ -252,6 +252,19 @@ TEST(BadData, SeesATopThatWasCutOff) {
   EXPECT_NE(bad_data(made.shots.front()).find("cut off"), std::string::npos);
 }
 
+// A record that ends before the pulse comes to the last gauge tells nothing of that gauge.
+TEST(BadData, SeesAGaugeThatThePulseNeverReached) {
+  Made made = make(83, {});
+  Shot& shot = made.shots.front();
+  ASSERT_EQ(bad_data(shot), "");
+  ChannelRecord& last = shot.channels.back();
+  for (std::size_t n = 128; n < last.codes.size(); ++n) {
+    last.codes[n] = last.codes[n % 128];
+  }
+  EXPECT_NE(bad_data(shot).find(last.gauge + " holds no pulse"), std::string::npos)
+      << bad_data(shot);
+}
+
 TEST(BadData, IsNotARoundTopInCoarseSteps) {
   Made made = make(83, {});
   Shot& shot = made.shots.front();
