@@ -12,7 +12,7 @@
 #include "daemon/daemon.hpp"
 #include "daemon/live/sd_notify.hpp"
 #include "daemon/log.hpp"
-#include "drivers/iio/library_messages.hpp"
+#include "drivers/digitiser/library_messages.hpp"
 #include "processing/base/error.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "processing/criticism/effect_starts.hpp"
 #include "processing/criticism/candidates.hpp"
+#include "processing/criticism/effect_starts.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {

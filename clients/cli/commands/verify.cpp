@@ -98,7 +98,7 @@ Command verify_command() {
   command.name = "verify";
   command.purpose =
       "check every journal and capture of a store against its checksums\n"
-      "And that every shot of journals and catalogue has its capture. "
+      "And that every shot of journals and catalogue has its capture.\n"
       "Changes nothing. Exit code 0: all sound; 2: something is damaged, and it says what.";
   command.examples = "  kolsky verify store\n";
   command.arguments = {

@@ -99,6 +99,13 @@ v1::Status status() {
   return status;
 }
 
+/// With what a later version counts beside it.
+v1::Status status_of_full_disk() {
+  v1::Status full = status();
+  full.set_journal_failures(30);
+  return full;
+}
+
 v1::Preview preview() {
   v1::Preview preview;
   *preview.mutable_first() = tick();
@@ -480,11 +487,17 @@ void describe(const Descriptor& type, std::vector<std::string>& lines) {
 
 std::vector<Fixture> fixtures() {
   std::vector<Fixture> all = {
-      fixture("envelope", envelope()),       fixture("status", status()),
-      fixture("preview", preview()),         fixture("shot", shot()),
-      fixture("result", result()),           fixture("result_irreducible", irreducible()),
-      fixture("result_ball", ball_result()), fixture("fault", fault()),
-      fixture("comparison", comparison()),   fixture("diagnosis", diagnosis()),
+      fixture("envelope", envelope()),
+      fixture("status", status()),
+      fixture("preview", preview()),
+      fixture("shot", shot()),
+      fixture("result", result()),
+      fixture("result_irreducible", irreducible()),
+      fixture("result_ball", ball_result()),
+      fixture("fault", fault()),
+      fixture("comparison", comparison()),
+      fixture("diagnosis", diagnosis()),
+      fixture("status_full_disk", status_of_full_disk()),
   };
   std::ranges::move(request_fixtures(), std::back_inserter(all));
   std::ranges::move(reply_fixtures(), std::back_inserter(all));

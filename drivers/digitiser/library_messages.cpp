@@ -1,4 +1,4 @@
-#include "drivers/iio/library_messages.hpp"
+#include "drivers/digitiser/library_messages.hpp"
 
 #include <unistd.h>
 
