@@ -17,7 +17,7 @@ constexpr std::size_t kMostShots = 12;  ///< with plots of their own
 constexpr std::size_t kMostPlaces = 25;
 
 std::string number_text(double value) {
-  return value == 0.0 ? "0" : fmt::format("{:.3g}", value);
+  return std::isnan(value) ? "" : value == 0.0 ? "0" : fmt::format("{:.3g}", value);
 }
 
 std::vector<std::string> gauge_names(const Campaign& campaign) {

@@ -1,7 +1,9 @@
 #include "processing/calibration/null_directions.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
+
+#include "processing/algebra/algebra.hpp"
 
 namespace kolsky {
 
@@ -35,7 +37,7 @@ std::vector<std::string> null_directions(const Eigen::MatrixXd& information,
                                          const std::vector<std::string>& names) {
   constexpr double kUnseen = 1.0;
   constexpr double kMember = 0.03;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  const SymmetricEigen solver(information);
   Eigen::Index count = 0;
   while (count < information.rows() && solver.eigenvalues()[count] < kUnseen) {
     ++count;

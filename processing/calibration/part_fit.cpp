@@ -1,12 +1,13 @@
 #include "processing/calibration/part_fit.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <set>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/calibration/null_directions.hpp"
 #include "processing/calibration/part_model.hpp"
 #include "processing/criticism/candidates.hpp"
@@ -152,7 +153,7 @@ class PartFit {
     Eigen::MatrixXd without = fit.jacobian.transpose() * fit.jacobian;
     without.diagonal() += weight;
     const double variance =
-        std::abs(without.ldlt().solve(Eigen::VectorXd::Unit(weight.size(), i))[i]) *
+        std::abs(solve_symmetric(without, Eigen::VectorXd::Unit(weight.size(), i))[i]) *
         fitted.widening();
     const double mean = free.prior_mean / free.scale;
     const double at = fit.theta[static_cast<std::size_t>(i)];

@@ -100,6 +100,7 @@ std::vector<CandidateResult> first_order_table(const Tried& tried) {
       result.verdict = "not needed";
     } else {
       result.detectable = result.identifiable = INFINITY;
+      result.strength = result.sd = NAN;
       result.verdict = "untestable";
     }
     if (known != at.end()) {

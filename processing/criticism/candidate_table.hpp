@@ -13,7 +13,7 @@ struct CandidateResult {
   std::string effect;
   std::string parameter;
   std::string unit;
-  double strength = 0.0;
+  double strength = 0.0;  ///< not a number: untestable here
   double sd = 0.0;
   double log_p = 0.0;  ///< ln of its probability under noise, the search over all included
   double gain = 0.0;   ///< of chi2, in units of the noise found

@@ -1,4 +1,5 @@
 #include "processing/criticism/candidates.hpp"
+#include "processing/algebra/algebra.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -239,8 +240,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, const
       direction.freedom -= 1.0;
     }
   }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(information);
-  direction.step = solver.solve(direction.pull);
+  direction.step = least_norm_solution(information, direction.pull);
   if (candidate.one_sided && count > 0) {
     const EffectParameter& p = candidate.use.effect->about().parameters.front();
     const bool up = p.null_value <= p.lower;

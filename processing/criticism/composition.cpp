@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/identification/known_unknowns.hpp"
 
@@ -187,7 +188,7 @@ Eigen::MatrixXd Composition::prior_precision() const {
             correlation[numbers_[own[a]].parameter * all + numbers_[own[b]].parameter];
       }
     }
-    const Eigen::MatrixXd inverse = among.inverse();
+    const Eigen::MatrixXd inverse = inverse_of(among);
     for (std::size_t a = 0; a < own.size(); ++a) {
       for (std::size_t b = 0; b < own.size(); ++b) {
         const FreeNumber& p = numbers_[own[a]];

@@ -25,8 +25,7 @@ constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effec
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
   const auto mean = [&](const Studied& studied) {
-    const std::vector<double> squares =
-        held_out_squares(studied, study.residuals(), study.executor());
+    const std::vector<double> squares = held_out_squares(studied, study);
     return (std::accumulate(squares.begin(), squares.end(), 0.0) + studied.fit.penalty) /
            static_cast<double>(study.residuals().size());
   };
@@ -172,13 +171,13 @@ class Diagnostician {
                                       [&](const Refit& refit) { return claimable(search, refit); });
     std::vector<Certification> held_out;
     const std::size_t per_shot = study_.residuals().per_shot();
-    const std::vector<double> before = held_out_of(base);
+    const std::vector<double> before = held_out_squares(base, study_);
     for (const Refit& refit : refits) {
       const bool near = leading != refits.end() && plausible(search, refit) &&
                         refit.evidence > leading->evidence - 2.0 * kTie;
       const Studied& own = refit.studied;
       held_out.push_back(certification(
-          before, near ? held_out_of(own) : held_out_squares(own, per_shot),
+          before, near ? held_out_squares(own, study_) : foretold_squares(own, study_),
           base.fit.penalty - own.fit.penalty,
           shot_strengths(own, search.candidates()[refit.candidate].id(), per_shot).weight));
     }
@@ -240,10 +239,6 @@ class Diagnostician {
         misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
     Model after = fitted(model, composition, fit);
     return {std::move(after), std::move(composition), std::move(fit), misfit};
-  }
-
-  std::vector<double> held_out_of(const Studied& studied) {
-    return held_out_squares(studied, study_.residuals(), study_.executor());
   }
 
   /// Backward: what others have made superfluous goes, but for so many of the last.
@@ -319,7 +314,7 @@ class Diagnostician {
     }
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
-          "one shot: nothing was held out over shots; repeat the shot to certify");
+          "one shot: held out were parts of its record, not shots; repeat the shot to certify");
     }
   }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "processing/algebra/algebra.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -16,7 +18,7 @@ constexpr double kNothing = 1e-6;
 
 /// (information)^-1/2 over the part that is there at all.
 Eigen::MatrixXd whitener_of(const Direction& direction) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(direction.information);
+  const SymmetricEigen solver(direction.information);
   const double least = kNothing * direction.unprojected.diagonal().maxCoeff();
   Eigen::VectorXd scale = solver.eigenvalues();
   for (Eigen::Index i = 0; i < scale.size(); ++i) {
@@ -30,7 +32,7 @@ double cosine(const Direction& a, const Direction& b, const Eigen::MatrixXd& cov
   const Eigen::MatrixXd shared =
       a.columns.transpose() * b.columns - a.model_share.transpose() * covariance * b.model_share;
   const Eigen::MatrixXd own = whitener_of(a).transpose() * shared * whitener_of(b);
-  return std::min(1.0, Eigen::JacobiSVD<Eigen::MatrixXd>(own).singularValues()[0]);
+  return std::min(1.0, singular_values(own).values[0]);
 }
 
 bool there(const Direction& direction) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "processing/algebra/algebra.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -99,7 +101,7 @@ void FitSteps::linearise() {
       information_(i, i) = 1.0;
     }
   }
-  promised_ = downhill_.dot(information_.ldlt().solve(downhill_));
+  promised_ = downhill_.dot(solve_symmetric(information_, downhill_));
 }
 
 FitSteps::Step FitSteps::tried(double damping) {
@@ -107,7 +109,7 @@ FitSteps::Step FitSteps::tried(double damping) {
   Eigen::MatrixXd damped = information_;
   damped.diagonal() += damping * information_.diagonal() +
                        Eigen::VectorXd::Constant(count, 1e-12 * information_.diagonal().maxCoeff());
-  const Eigen::VectorXd move = damped.ldlt().solve(downhill_);
+  const Eigen::VectorXd move = solve_symmetric(damped, downhill_);
   Step step;
   step.theta = fit_.theta;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -138,7 +140,7 @@ ModelFit FitSteps::done(bool converged) {
     return std::move(fit_);
   }
   // Numbers that neither data nor prior hold are left out of the inverse.
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(fit_.information);
+  SymmetricEigen solver(fit_.information);
   Eigen::VectorXd inverse = solver.eigenvalues();
   const double least = 1e-13 * inverse.maxCoeff();
   for (Eigen::Index i = 0; i < count; ++i) {

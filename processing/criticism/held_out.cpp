@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/record_parts.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -36,8 +39,7 @@ Foretold foretold(const Studied& studied, Eigen::Index shot, Eigen::Index size) 
   }
   const Eigen::MatrixXd columns = rows(Eigen::all, shared);
   const Eigen::MatrixXd others = fit.information(shared, shared) - columns.transpose() * columns;
-  const Eigen::VectorXd move =
-      others.completeOrthogonalDecomposition().solve(columns.transpose() * residual);
+  const Eigen::VectorXd move = least_norm_solution(others, columns.transpose() * residual);
   for (std::size_t a = 0; a < shared.size(); ++a) {
     const auto at = static_cast<std::size_t>(shared[a]);
     const FreeNumber& number = studied.composition.numbers()[at];
@@ -126,6 +128,18 @@ std::vector<double> held_out_squares(const Studied& studied, ShotResiduals& resi
     squares[shot] = held_out_square(studied, residuals, shot, worker);
   });
   return squares;
+}
+
+std::vector<double> held_out_squares(const Studied& studied, Study& study) {
+  return study.campaign().shots.size() > 1
+             ? held_out_squares(studied, study.residuals(), study.executor())
+             : foretold_squares(studied, study);
+}
+
+std::vector<double> foretold_squares(const Studied& studied, Study& study) {
+  return study.campaign().shots.size() > 1
+             ? held_out_squares(studied, study.residuals().per_shot())
+             : held_out_parts(studied.fit, study.residuals().others().size());
 }
 
 Certification certification(const std::vector<double>& before, const std::vector<double>& after,

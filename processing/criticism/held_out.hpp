@@ -17,6 +17,13 @@ namespace kolsky {
 [[nodiscard]] std::vector<double> held_out_squares(const Studied& studied, ShotResiduals& residuals,
                                                    const Workers& executor);
 
+/// What is held out of a campaign: shot by shot, or of a single shot's record part by part, to
+/// first order.
+[[nodiscard]] std::vector<double> held_out_squares(const Studied& studied, Study& study);
+
+/// The same, to first order of shots too.
+[[nodiscard]] std::vector<double> foretold_squares(const Studied& studied, Study& study);
+
 /// What an effect brought on shots that the fits did not see.
 struct Certification {
   double gain = 0.0;       ///< of chi2

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/candidates.hpp"
 #include "processing/criticism/effect_starts.hpp"
 #include "processing/criticism/statistics.hpp"
@@ -282,7 +283,7 @@ ImpactComparison ImpactStudy::compare(const Studied& studied) {
                 2.0 * static_cast<double>(window.count) * records.window.period_s;
             tile.low_Hz = static_cast<double>(from) / cycle_s;
             tile.high_Hz = static_cast<double>(end) / cycle_s;
-            tile.chi2 = part.dot(spread.ldlt().solve(part));
+            tile.chi2 = part.dot(solve_symmetric(spread, part));
             tile.freedom = static_cast<double>(end - from);
             tile.sigma = std::sqrt(tile.chi2 / tile.freedom);
             tile.percent_of_peak =
@@ -317,8 +318,7 @@ std::vector<double> held_out_speeds(const Studied& studied, const ImpactRecords&
     }
     const Eigen::MatrixXd columns = rows_of(fit.jacobian, group, size);
     const Eigen::MatrixXd others = fit.information - columns.transpose() * columns;
-    const Eigen::VectorXd move =
-        others.completeOrthogonalDecomposition().solve(columns.transpose() * own);
+    const Eigen::VectorXd move = least_norm_solution(others, columns.transpose() * own);
     squares.push_back((own + columns * move).squaredNorm());
   }
   return squares;

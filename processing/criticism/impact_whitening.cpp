@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "processing/algebra/algebra.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -23,7 +25,7 @@ Eigen::VectorXd mistimed(const ImpactShape& shape) {
 }  // namespace
 
 Eigen::MatrixXd symmetric_power(const Eigen::MatrixXd& matrix, double power) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  const SymmetricEigen solver(matrix);
   const double least = 1e-14 * solver.eigenvalues().maxCoeff();
   return solver.eigenvectors() *
          solver.eigenvalues().cwiseMax(least).array().pow(power).matrix().asDiagonal() *

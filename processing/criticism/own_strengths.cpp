@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/search_trials.hpp"
 
 namespace kolsky {
@@ -181,9 +182,8 @@ std::optional<ProductTest> product_test_of(const Studied& studied, const std::st
   const Eigen::Map<const Eigen::VectorXd> theta(studied.fit.theta.data(),
                                                 studied.fit.covariance.rows());
   const Eigen::MatrixXd covariance = studied.fit.covariance(own, own);
-  const auto size = covariance.rows();
-  return test_products(theta(own), covariance.ldlt().solve(Eigen::MatrixXd::Identity(size, size)),
-                       campaign.shots.size(), campaign.gauges());
+  return test_products(theta(own), symmetric_inverse(covariance), campaign.shots.size(),
+                       campaign.gauges());
 }
 
 }  // namespace kolsky

@@ -1,11 +1,13 @@
 #include "processing/criticism/product_test.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/search_trials.hpp"
 
 namespace kolsky {
@@ -30,16 +32,16 @@ class Products {
     double best = 0.0;
     const Eigen::VectorXd strengths = root_.transpose() * z;
     const Eigen::Map<const Eigen::MatrixXd> by_gauge(strengths.data(), gauges_, 2 * shots_);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(by_gauge, Eigen::ComputeThinU);
-    const Eigen::Index starts = std::min<Eigen::Index>(2, svd.matrixU().cols());
+    const Eigen::MatrixXd left = singular_values(by_gauge).left;
+    const Eigen::Index starts = std::min<Eigen::Index>(2, left.cols());
     for (Eigen::Index start = 0; start < starts; ++start) {
-      Eigen::VectorXd shares = svd.matrixU().col(start);
+      Eigen::VectorXd shares = left.col(start);
       double found = 0.0;
       for (int step = 0; step < kSteps; ++step) {
         const Eigen::MatrixXd of_shots = by_shot(shares);
-        const Eigen::VectorXd amplitudes = solved(of_shots, z);
+        const Eigen::VectorXd amplitudes = least_squares(of_shots, z);
         const Eigen::MatrixXd of_gauges = by_share(amplitudes);
-        shares = solved(of_gauges, z);
+        shares = least_squares(of_gauges, z);
         found = share_of(of_gauges, shares, z);
         shares.normalize();
       }
@@ -53,15 +55,12 @@ class Products {
     double best = 0.0;
     for (Eigen::Index gauge = 0; gauge < gauges_; ++gauge) {
       const Eigen::MatrixXd of_shots = by_shot(Eigen::VectorXd::Unit(gauges_, gauge));
-      best = std::max(best, share_of(of_shots, solved(of_shots, z), z));
+      best = std::max(best, share_of(of_shots, least_squares(of_shots, z), z));
     }
     return best;
   }
 
  private:
-  static Eigen::VectorXd solved(const Eigen::MatrixXd& columns, const Eigen::VectorXd& z) {
-    return columns.colPivHouseholderQr().solve(z);
-  }
   static double share_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& x,
                          const Eigen::VectorXd& z) {
     return z.squaredNorm() - (z - columns * x).squaredNorm();
@@ -97,7 +96,7 @@ struct Moments {
 Moments shares_of_noise(const Products& products, const Eigen::MatrixXd& root,
                         const Eigen::VectorXd& white, std::size_t places) {
   const auto count = static_cast<Eigen::Index>(places);
-  const Eigen::VectorXd found = root.transpose() * (root * root.transpose()).ldlt().solve(white);
+  const Eigen::VectorXd found = root.transpose() * solve_symmetric(root * root.transpose(), white);
   const Eigen::Map<const Eigen::MatrixXd> parts(found.data(), count, 2);
   const Eigen::Matrix2d power = parts.transpose() * parts / static_cast<double>(places);
   const Eigen::Matrix2d spread = power.llt().matrixU();
@@ -135,7 +134,7 @@ ProductTest test_products(const Eigen::VectorXd& strengths, const Eigen::MatrixX
     return {};
   }
   // What the records say without the prior, in the directions in which they say anything.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  const SymmetricEigen solver(information);
   const Eigen::VectorXd lambda = solver.eigenvalues().array() - 1.0;
   const Eigen::Index seen = (lambda.array() > kSeen).count();
   const Eigen::MatrixXd root = lambda.tail(seen).cwiseSqrt().asDiagonal() *

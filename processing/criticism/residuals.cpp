@@ -1,5 +1,6 @@
 #include "processing/criticism/residuals.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
@@ -40,7 +41,7 @@ double independent_trials(const Studied& studied, const std::vector<Candidate>& 
   }
   Eigen::MatrixXd gram =
       columns.transpose() * columns - shares.transpose() * studied.fit.covariance * shares;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+  const SymmetricEigen solver(gram);
   const Eigen::MatrixXd root =
       solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::mt19937_64 random(kSearchSeed);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
@@ -97,7 +98,7 @@ ShotStrengths shot_strengths(const Studied& studied, const std::string& id, std:
   for (const Eigen::Index column : own) {
     share[column] = 0.0;
   }
-  clear -= fit.jacobian * rest.ldlt().solve(share);
+  clear -= fit.jacobian * solve_symmetric(rest, share);
   ShotStrengths list;
   const double noise = std::max(1.0, studied.misfit.noise_scale);
   for (Eigen::Index n = 0; n < shots; ++n) {

@@ -1,6 +1,6 @@
 #include "processing/criticism/tile_noise.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/candidates.hpp"
 #include "processing/criticism/distortion.hpp"
 #include "processing/criticism/statistics.hpp"
@@ -68,7 +69,7 @@ Extended clear_columns(Study& study, const Studied& studied) {
 /// Orthonormal directions that the distortions span.
 Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns) {
   constexpr double kResolved = 1e-4;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(columns.transpose() * columns);
+  const SymmetricEigen solver(columns.transpose() * columns);
   const Eigen::VectorXd& values = solver.eigenvalues();
   const Eigen::Index count = (values.array() > kResolved).count();
   return columns * solver.eigenvectors().rightCols(count) *

@@ -6,6 +6,7 @@
 
 #include "processing/criticism/candidates.hpp"
 #include "processing/criticism/held_out.hpp"
+#include "processing/criticism/record_parts.hpp"
 
 namespace kolsky {
 
@@ -149,13 +150,16 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
   const Studied last = study.fit(lineage.back().model);
   Waterfall fall;
   fall.shots = fall.folds = study.campaign().shots.size();
+  if (fall.shots < 2) {
+    fall.fold = "parts";
+    fall.folds = kRecordParts;
+  }
   fall.strain_rate_per_s = usual_rate(last, study.campaign());
   std::vector<double> before;
   double penalty = 0.0;
   for (const LineageStep& own : lineage) {
     const Studied studied = best_of_two(study, own.model, last);
-    const std::vector<double> squares =
-        held_out_squares(studied, study.residuals(), study.executor());
+    const std::vector<double> squares = held_out_squares(studied, study);
     WaterfallStep step;
     step.effect = own.effect;
     step.removed = own.removed;

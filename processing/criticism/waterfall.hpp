@@ -68,7 +68,7 @@ struct Waterfall {
   double signal = 0.0;             ///< chi2 per residual of the records themselves
   double strain_rate_per_s = 0.0;  ///< of the curves
   std::size_t shots = 0;
-  std::string fold = "shots";  ///< what is held out at a time: one of the shots, or of the speeds
+  std::string fold = "shots";  ///< held out one at a time: shots, speeds, or "parts" of one record
   std::size_t folds = 0;
 
   /// Of what stood over the floor at first, the share that is gone; 1 where nothing stood there.

@@ -5,6 +5,8 @@
 
 #include "processing/criticism/impact_diagnosis.hpp"
 
+#include "processing/algebra/algebra.hpp"
+
 namespace kolsky {
 
 std::vector<std::string> what_records_hold(ImpactStudy& study, const Studied& studied) {
@@ -43,7 +45,7 @@ std::vector<std::string> what_records_hold(ImpactStudy& study, const Studied& st
     if (!columns.allFinite()) {
       continue;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(columns.transpose() * columns);
+    const SymmetricEigen solver(columns.transpose() * columns);
     constexpr double kKnown = 0.1;
     int known = 0;
     for (Eigen::Index i = 0; i < 3; ++i) {

@@ -1,10 +1,11 @@
 #include "processing/identification/bar_fit.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/identification/bar_likelihood.hpp"
 
@@ -82,7 +83,7 @@ Place look(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd&
 Eigen::VectorXd step_from(const Place& place, double damping, std::size_t logs) {
   Eigen::MatrixXd damped = place.information;
   damped.diagonal() *= 1.0 + damping;
-  Eigen::VectorXd step = -damped.ldlt().solve(place.gradient);
+  Eigen::VectorXd step = -solve_symmetric(damped, place.gradient);
   const double longest = step.head(static_cast<Eigen::Index>(logs)).cwiseAbs().maxCoeff();
   if (longest > kLongestLogStep) {
     step *= kLongestLogStep / longest;
@@ -156,7 +157,7 @@ ShotEstimate estimate_of(const ShotTerms& shot, const Place& common, const Prior
   const auto n = static_cast<Eigen::Index>(likelihood.model().solid_parameters());
   const Eigen::MatrixXd prior_information = prior.weight.head(n).asDiagonal();
   const Eigen::MatrixXd covariance =
-      (shot.information.topLeftCorner(n, n) + prior_information).inverse();
+      inverse_of(shot.information.topLeftCorner(n, n) + prior_information);
   const Eigen::VectorXd own_step = -covariance * shot.gradient.head(n);
   const auto judged =
       static_cast<double>(likelihood.residuals()) / static_cast<double>(likelihood.data().shots());
@@ -186,7 +187,7 @@ BarFit describe(const BarLikelihood& likelihood, const Prior& prior, const Place
   fit.log_evidence =
       -0.5 * (place.objective + static_cast<double>(model.first_unknown()) *
                                     std::log(static_cast<double>(likelihood.residuals())));
-  const Eigen::MatrixXd posterior = place.information.inverse() * std::max(1.0, fit.chi2_reduced);
+  const Eigen::MatrixXd posterior = inverse_of(place.information) * std::max(1.0, fit.chi2_reduced);
   fit.at.assign(place.at.data(), place.at.data() + place.at.size());
   fit.posterior = rows_of(posterior);
   fit.parameters = numbers_of(model.theory().solid, place.at, posterior);

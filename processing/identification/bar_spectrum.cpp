@@ -1,9 +1,10 @@
 #include "processing/identification/bar_spectrum.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/identification/bar_likelihood.hpp"
 #include "processing/identification/spectrum_gathering.hpp"
 
@@ -57,7 +58,7 @@ Eigen::MatrixXd root_of_bench_covariance(const BarFit& fit, const BarModel& mode
   if (size == 0) {
     return covariance;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  const SymmetricEigen solver(covariance);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 

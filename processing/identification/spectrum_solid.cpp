@@ -1,9 +1,10 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/identification/bar_spectrum.hpp"
 
 namespace kolsky {
@@ -73,10 +74,10 @@ Minimum least_squares(const Fitted& fitted) {
   double damping = 1e-3;
   for (int step = 0; step < kSteps; ++step) {
     best.slope = fitted.slopes(best.at, best.residual);
-    Eigen::Matrix3d normal = best.slope.transpose() * best.slope;
+    Eigen::MatrixXd normal = best.slope.transpose() * best.slope;
     normal.diagonal() *= 1.0 + damping;
     const Eigen::Vector3d next =
-        best.at - normal.ldlt().solve(best.slope.transpose() * best.residual);
+        best.at - solve_symmetric(normal, best.slope.transpose() * best.residual);
     const Eigen::VectorXd there = fitted.residuals(next);
     if (!there.allFinite() || there.squaredNorm() > best.residual.squaredNorm()) {
       damping *= 10.0;
@@ -102,8 +103,8 @@ std::vector<FittedNumber> three_elements_through(const BarSpectrum& spectrum, do
   }
   const Minimum best = least_squares(fitted);
   const auto freedom = static_cast<double>(2 * fitted.used - 3);
-  const Eigen::Matrix3d covariance =
-      (best.slope.transpose() * best.slope).inverse() * best.residual.squaredNorm() / freedom;
+  const Eigen::MatrixXd covariance =
+      inverse_of(best.slope.transpose() * best.slope) * best.residual.squaredNorm() / freedom;
   std::vector<FittedNumber> numbers;
   const auto& family = parameters_of(SolidKind::three_element);
   for (Eigen::Index m = 0; m < 3; ++m) {

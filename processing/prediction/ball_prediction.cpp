@@ -1,5 +1,6 @@
 #include "processing/prediction/ball_prediction.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "processing/specimen/shpb_unknowns.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace kolsky {

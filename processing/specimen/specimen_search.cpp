@@ -1,10 +1,11 @@
 #include "processing/specimen/specimen_search.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky {
@@ -125,7 +126,7 @@ SpecimenMinimum SpecimenSearch::minimise(const std::vector<double>& start) {
     const Eigen::VectorXd slope = J.transpose() * r;
     const Eigen::VectorXd scale = normal.diagonal();
     normal.diagonal() += damping * scale;
-    Eigen::VectorXd change = -normal.ldlt().solve(slope);
+    Eigen::VectorXd change = -solve_symmetric(normal, slope);
     const double longest = change.head(solids_).cwiseAbs().maxCoeff();
     if (longest > kLongestStep) {
       change *= kLongestStep / longest;
@@ -155,8 +156,7 @@ SpecimenMinimum SpecimenSearch::minimise(const std::vector<double>& start) {
   minimum.parameters.assign(x.data(), x.data() + solids_);
   minimum.moves.assign(x.data() + solids_, x.data() + x.size());
   minimum.chi2 = r.squaredNorm();
-  minimum.covariance =
-      (J.transpose() * J).ldlt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
+  minimum.covariance = symmetric_inverse(J.transpose() * J);
   return minimum;
 }
 

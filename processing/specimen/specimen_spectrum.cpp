@@ -1,11 +1,12 @@
 #include "processing/specimen/specimen_spectrum.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "processing/waves/transform.hpp"
@@ -119,7 +120,7 @@ SolidFit fit_solid(const Points& points) {
     const Eigen::MatrixXd J = slopes(points, fit.x);
     Eigen::MatrixXd normal = J.transpose() * J;
     normal.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd change = -normal.ldlt().solve(J.transpose() * r);
+    const Eigen::VectorXd change = -solve_symmetric(normal, J.transpose() * r);
     const Eigen::VectorXd moved = fit.x + change.cwiseMax(-1.0).cwiseMin(1.0);
     const Eigen::VectorXd next = misfit(points, moved);
     if (next.squaredNorm() < r.squaredNorm()) {
@@ -135,7 +136,7 @@ SolidFit fit_solid(const Points& points) {
   }
   const Eigen::MatrixXd J = slopes(points, fit.x);
   const auto dof = std::max<Eigen::Index>(1, r.size() - kParameters);
-  fit.covariance = (J.transpose() * J).inverse() * r.squaredNorm() / static_cast<double>(dof);
+  fit.covariance = inverse_of(J.transpose() * J) * r.squaredNorm() / static_cast<double>(dof);
   return fit;
 }
 

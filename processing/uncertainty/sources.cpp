@@ -1,6 +1,6 @@
 #include "processing/uncertainty/sources.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <utility>
 

@@ -1,6 +1,7 @@
 #include "tests/generators/solid_bar_shots.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "tests/generators/bar_readings.hpp"

@@ -107,9 +107,10 @@ std::string report(const Diagnosis& diagnosis) {
   constexpr std::size_t kShown = 14;
   for (std::size_t i = 0; i < std::min(kShown, ranked.size()); ++i) {
     const CandidateResult& c = ranked[i];
-    text += fmt::format("  {:<26} {:>24} {:>12.1f} {:>11.2g} {:>13.2g}  {}\n", c.effect,
-                        fmt::format("{:.3g} ± {:.1g} {}", c.strength, c.sd, c.unit), c.gain,
-                        c.detectable, c.identifiable, c.verdict);
+    const std::string strength =
+        std::isnan(c.strength) ? "" : fmt::format("{:.3g} ± {:.1g} {}", c.strength, c.sd, c.unit);
+    text += fmt::format("  {:<26} {:>24} {:>12.1f} {:>11.2g} {:>13.2g}  {}\n", c.effect, strength,
+                        c.gain, c.detectable, c.identifiable, c.verdict);
   }
   for (const NextExperiment& next : diagnosis.next_experiment) {
     text += "\n  next: " + next.change + "\n";

@@ -42,7 +42,10 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
                            "is fitted to them again, under one measure of the noise"
                          : "not the captures that the model's ledger names: every model of the "
                            "lineage is fitted to these");
-  if (fall.folds < 2) {
+  if (fall.fold == "parts") {
+    notes.emplace_back(
+        "one shot: held out are parts of its record, not shots; repeat the shot to certify");
+  } else if (fall.folds < 2) {
     notes.emplace_back("one shot: nothing is held out; repeat the shot to certify");
   }
   if (fall.steps.size() == 1) {

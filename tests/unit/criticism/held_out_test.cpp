@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numeric>
+#include <random>
 
 #include "processing/criticism/branch_order.hpp"
+#include "processing/criticism/record_parts.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -106,6 +110,77 @@ TEST(HeldOut, IsExactWhereFirstOrderIsNot) {
     most_wrong = std::max(most_wrong, std::abs(first_order[left_out] - truth) / truth);
   }
   EXPECT_GT(most_wrong, 0.5);
+}
+
+/// Spectra, two channels side by side, of columns that are given in time.
+Eigen::MatrixXd spectra_of(const Eigen::MatrixXd& times, Eigen::Index bins) {
+  const Eigen::Index instants = 2 * bins + 1;
+  Eigen::MatrixXd spectra(4 * bins, times.cols());
+  for (Eigen::Index column = 0; column < times.cols(); ++column) {
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      for (Eigen::Index k = 0; k < bins; ++k) {
+        std::complex<double> sum;
+        for (Eigen::Index n = 0; n < instants; ++n) {
+          const double phase = -2.0 * 3.14159265358979323846 * static_cast<double>((k + 1) * n) /
+                               static_cast<double>(instants);
+          sum += times(c * instants + n, column) * std::polar(1.0, phase);
+        }
+        sum *= std::sqrt(2.0 / static_cast<double>(instants));
+        spectra(2 * (2 * k + c), column) = sum.real();
+        spectra(2 * (2 * k + c) + 1, column) = sum.imag();
+      }
+    }
+  }
+  return spectra;
+}
+
+// Two numbers fitted to the other parts of a record by themselves, in time.
+TEST(HeldOutParts, AreWhatAFitToTheOthersForetells) {
+  constexpr Eigen::Index kBins = 160;
+  constexpr Eigen::Index kInstants = 2 * kBins + 1;
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd times(2 * kInstants, 3);  // two columns of derivatives, and a record
+  for (double& value : times.reshaped()) {
+    value = normal(random);
+  }
+  for (Eigen::Index c = 0; c < 2; ++c) {
+    for (Eigen::Index column = 0; column < 3; ++column) {
+      auto part = times.col(column).segment(c * kInstants, kInstants);
+      part.array() -= part.mean();  // spectra hold no constant
+    }
+  }
+  times.col(2) += 3.0 * times.col(0) - times.col(1);
+  const Eigen::MatrixXd spectra = spectra_of(times, kBins);
+  constexpr double kPrior = 5.0;  // of both numbers about 0
+  ModelFit fit;
+  fit.jacobian = spectra.leftCols(2);
+  fit.information =
+      fit.jacobian.transpose() * fit.jacobian + kPrior * Eigen::MatrixXd::Identity(2, 2);
+  const Eigen::VectorXd best =
+      -fit.information.inverse() * (fit.jacobian.transpose() * spectra.col(2));
+  fit.theta = {best[0], best[1]};
+  fit.residual = spectra.col(2) + fit.jacobian * best;
+  const std::vector<double> parts = held_out_parts(fit, 2);
+  ASSERT_EQ(parts.size(), kRecordParts);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    std::vector<Eigen::Index> own;
+    std::vector<Eigen::Index> others;
+    for (Eigen::Index row = 0; row < times.rows(); ++row) {
+      const Eigen::Index stretch = (row % kInstants) * 64 / kInstants;
+      (stretch % 8 == static_cast<Eigen::Index>(part) ? own : others).push_back(row);
+    }
+    const Eigen::MatrixXd J = times(others, std::vector<int>{0, 1});
+    const Eigen::VectorXd y = times(others, 2);
+    const Eigen::MatrixXd normal_matrix =
+        J.transpose() * J + kPrior * Eigen::MatrixXd::Identity(2, 2);
+    const Eigen::VectorXd at = -normal_matrix.inverse() * (J.transpose() * y);
+    const Eigen::MatrixXd J_own = times(own, std::vector<int>{0, 1});
+    const double wanted = (times(own, 2) + J_own * at).squaredNorm();
+    EXPECT_NEAR(parts[part], wanted, 1e-8 * wanted) << part;
+  }
+  // What foretells nothing costs more on parts that it did not see than on those it did.
+  EXPECT_GT(std::accumulate(parts.begin(), parts.end(), 0.0), fit.residual.squaredNorm());
 }
 
 TEST(Certification, CountsWhatFiledNumbersAreRelievedOf) {

@@ -1,6 +1,7 @@
 #include "processing/criticism/impact_study.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // Strengths by shot and gauge that are products, noise, or one gauge's own.
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <random>

@@ -2,8 +2,8 @@
 #include "processing/identification/bar_identification.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <complex>
 #include <cstdio>
