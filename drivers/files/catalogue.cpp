@@ -180,14 +180,14 @@ struct Catalogue::Database {
   }
 };
 
-std::vector<CatalogueEntry> read_catalogue(const std::filesystem::path& path) {
+std::optional<std::vector<CatalogueEntry>> read_catalogue(const std::filesystem::path& path) {
   sqlite3* handle = nullptr;
   const int opened = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READONLY, nullptr);
   const std::unique_ptr<sqlite3, decltype(&sqlite3_close)> closing(handle, &sqlite3_close);
-  std::vector<CatalogueEntry> entries;
   if (opened != SQLITE_OK) {
-    return entries;
+    return std::nullopt;
   }
+  std::vector<CatalogueEntry> entries;
   sqlite3_busy_timeout(handle, kBusy_ms);
   try {
     Statement rows(handle, kSelect);
@@ -195,7 +195,7 @@ std::vector<CatalogueEntry> read_catalogue(const std::filesystem::path& path) {
       entries.push_back(entry_of(rows));
     }
   } catch (const std::runtime_error&) {
-    entries.clear();
+    return std::nullopt;
   }
   return entries;
 }

@@ -24,9 +24,10 @@ struct CatalogueEntry {
   double restitution = 0.0;   ///< of the same, by speed or else by impulse; 0 where not known
 };
 
-/// The entries of a catalogue that may be in use, and stays as it is; none where it is not there
-/// or cannot be read: it is derived data.
-[[nodiscard]] std::vector<CatalogueEntry> read_catalogue(const std::filesystem::path& path);
+/// The entries of a catalogue that may be in use, and stays as it is; nothing where it is not there
+/// or cannot be read without changing it, as after a crash: it is derived data.
+[[nodiscard]] std::optional<std::vector<CatalogueEntry>> read_catalogue(
+    const std::filesystem::path& path);
 
 /// Derived data, `store/catalogue.sqlite`; lost or broken, it is made again from the captures.
 class Catalogue {

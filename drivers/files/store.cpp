@@ -270,7 +270,8 @@ void StoreLayout::create() const {
 
 StoreReport verify_store(const StoreLayout& store) {
   StoreReport report;
-  const std::vector<CatalogueEntry> listed = read_catalogue(store.catalogue());
+  const auto listed = read_catalogue(store.catalogue());
+  report.catalogue_read = listed.has_value();
   const auto nothing_read = [](const Shot&, const JournaledShot&) { return false; };
   const JournaledShots journaled = visit_journals(store, report, nothing_read).shots;
   for (const auto& path : files_in(store.shots(), ".h5")) {
@@ -285,7 +286,9 @@ StoreReport verify_store(const StoreLayout& store) {
                                  StoreReport::Problem::Kind::in_journal});
     }
   }
-  check_listed(store, listed, journaled, report);
+  if (listed) {
+    check_listed(store, *listed, journaled, report);
+  }
   return report;
 }
 

@@ -44,6 +44,8 @@ struct StoreReport {
                                        ///< shot
   std::vector<std::string> pruned;     ///< journals removed: all they held is in captures
   std::size_t pruned_shots = 0;        ///< shots in those
+  bool catalogue_read = false;         ///< by verify_store: a crash may leave one that only the
+                                       ///< daemon's next start can read
   std::vector<Problem> problems;
 };
 

@@ -24,10 +24,14 @@ std::string describe(const Bench& bench, const Material& viscoelastic, bool assu
 }
 
 void require_reducible_bench(const Shot& shot) {
-  if (shot.bench.kind != BenchKind::shpb || !shot.bench.output || !shot.bench.specimen) {
-    throw InputError("kind", "is not \"shpb\", so there is no specimen to reduce",
-                     "use a bench file of kind \"shpb\" with bars.output and specimen, or "
-                     "\"impact\" with a ball");
+  if (shot.bench.kind == BenchKind::bar) {
+    throw InputError("kind", "is \"bar\", a bar by itself: there is no specimen to reduce",
+                     "`kolsky identify bar` finds its moduli; a specimen wants a bench of kind "
+                     "\"shpb\"");
+  }
+  if (!shot.bench.output || !shot.bench.specimen) {
+    throw InputError("kind", "is \"shpb\", but there is no specimen between two bars to reduce",
+                     "file bars.output and specimen");
   }
   if (shot.channels.size() != shot.bench.gauges.size()) {
     throw InputError("gauges",

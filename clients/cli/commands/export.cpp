@@ -6,7 +6,9 @@
 #include "clients/cli/daemon_shot.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/reduced_shot.hpp"
+#include "drivers/files/capture.hpp"
 #include "drivers/files/export.hpp"
+#include "processing/reduction/quality.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -24,11 +26,24 @@ ExportFormat format_of(const std::string& name) {
   return name == "mat" ? ExportFormat::mat : ExportFormat::hdf5;
 }
 
+/// A bar by itself has gauges only, as has a shot that cannot be reduced.
+ReducedShot exportable(const std::string& capture) {
+  Shot shot = read_capture(capture);
+  if (shot.bench.kind != BenchKind::bar) {
+    return reduce_capture(capture, {});
+  }
+  ReducedShot bar;
+  bar.shot = std::move(shot);
+  bar.capture = absolute_name(capture);
+  bar.reduction = not_reducible("a bar by itself has no specimen (see `kolsky identify bar`)");
+  return bar;
+}
+
 ReducedShot find(const std::string& what, const std::string& endpoint) {
   const bool is_file =
       std::filesystem::exists(what) || what.find('/') != std::string::npos || what.ends_with(".h5");
   if (is_file) {
-    return reduce_capture(what, {});
+    return exportable(what);
   }
   ControlClient client = connect_patiently(endpoint);
   return fetch_shot(client, what);

@@ -39,6 +39,7 @@ JsonValue describe(const StoreReport& found, const std::string& store) {
                     {"journaled_shots", static_cast<std::uint64_t>(found.journaled_shots)},
                     {"captures", static_cast<std::uint64_t>(found.captures)},
                     {"bytes_ignored", found.bytes_ignored},
+                    {"catalogue_checked", found.catalogue_read},
                     {"problems", std::move(problems)}};
 }
 
@@ -50,6 +51,11 @@ std::string text_of(const StoreReport& found, const std::string& store) {
         fmt::format(", {} bytes of records that a crash cut short (harmless)", found.bytes_ignored);
   }
   text += found.problems.empty() ? ": every checksum is right\n" : "\n";
+  if (!found.catalogue_read) {
+    text +=
+        "  catalogue.sqlite: is not there or cannot be read now, so captures that only it knows "
+        "of are not missed; kolskyd makes it anew from the captures\n";
+  }
   for (const StoreReport::Problem& problem : found.problems) {
     text += "  " + problem.file + ": " + problem.text + "\n";
   }

@@ -194,6 +194,7 @@ TEST_F(WithDaemon, VerifyFindsTheStoreSoundUntilAByteChanges) {
   daemon_.stop();
   const json sound = json_of(kolsky({"verify", setup_.store().string(), "--json"}));
   EXPECT_EQ(sound["sound"], true);
+  EXPECT_EQ(sound["catalogue_checked"], true);
   EXPECT_EQ(sound["captures"], 1);
   EXPECT_EQ(sound["journaled_shots"], 1);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "drivers/files/material_file.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
@@ -61,6 +62,21 @@ class IdentifyBar : public ::testing::Test {
   scene::Folder folder_;
   std::vector<std::string> captures_;
 };
+
+TEST_F(IdentifyBar, IsWhatReducingABarPointsToAndItsGaugesAreExported) {
+  EXPECT_TRUE(refused(scene::kolsky({"reduce", captures_.front()}),
+                      {"kind", "a bar by itself", "kolsky identify bar"}));
+  const std::string table = (folder_ / "bar.csv").string();
+  const json told = json_of(
+      scene::kolsky({"export", captures_.front(), "--format", "csv", "-o", table, "--json"}));
+  EXPECT_EQ(told["reducible"], false);
+  EXPECT_NE(told["reason"].get<std::string>().find("identify bar"), std::string::npos);
+  std::ifstream gauges((folder_ / "bar-gauges.csv").string());
+  std::string header;
+  std::getline(gauges, header);
+  EXPECT_EQ(header.substr(0, 6), "time_s") << header;
+  EXPECT_NE(header.find("g4"), std::string::npos) << header;
+}
 
 TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
   std::vector<std::string> words = {"identify", "bar"};

@@ -178,6 +178,7 @@ TEST_F(Store, AShotOfTheCatalogueThatIsNowhereIsMissing) {
     catalogue.put(entry);
   }
   const auto report = verify_store(layout_);
+  EXPECT_TRUE(report.catalogue_read);
   ASSERT_EQ(report.problems.size(), 2U);
   EXPECT_EQ(report.problems[0].kind, StoreReport::Problem::Kind::in_journal);
   EXPECT_NE(report.problems[0].text.find("shot-1"), std::string::npos);
@@ -188,7 +189,9 @@ TEST_F(Store, AShotOfTheCatalogueThatIsNowhereIsMissing) {
 TEST_F(Store, VerifyingChangesNoCatalogueAndMindsNoBrokenOne) {
   std::ofstream(layout_.catalogue()) << "no database";
   const auto bytes = bytes_of(layout_.catalogue());
-  EXPECT_TRUE(verify_store(layout_).problems.empty());
+  const auto report = verify_store(layout_);
+  EXPECT_TRUE(report.problems.empty());
+  EXPECT_FALSE(report.catalogue_read);
   EXPECT_EQ(bytes_of(layout_.catalogue()), bytes);
 }
 
