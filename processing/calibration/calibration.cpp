@@ -10,8 +10,6 @@ namespace kolsky {
 
 namespace {
 
-/// Above this more than noise is left.
-constexpr double kMoreThanNoise = 1.3;
 constexpr double kDeviations = 3.0;
 
 void require_trusted(const Bench& bench, const std::vector<std::string>& trusted) {
@@ -92,6 +90,8 @@ std::string name_of(Standing standing) {
       return "tied";
     case Standing::unseen:
       return "unseen";
+    case Standing::unexplained:
+      return "unexplained";
     case Standing::unfiled:
       break;
   }
@@ -136,9 +136,16 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
     }
     if (fitted.chi2_reduced > kMoreThanNoise) {
       undecided = true;
-      result.reasons.push_back(name_of(part.lay) +
-                               ": no number of the bench explains all that is left; "
-                               "`kolsky diagnose` looks for what else it may be");
+      const bool something_else =
+          std::any_of(fitted.numbers.begin(), fitted.numbers.end(),
+                      [](const auto& number) { return number.standing == Standing::unexplained; });
+      result.reasons.push_back(
+          name_of(part.lay) +
+          (something_else
+               ? ": no numbers of the bench explain these records, so none is called wrong; a "
+                 "specimen between the bars, or a bar model that is not theirs, would leave that"
+               : ": no number of the bench explains all that is left; "
+                 "`kolsky diagnose` looks for what else it may be"));
     }
     if (fitted.areas.momentum) {
       const Measured& gain = fitted.areas.momentum->gain;

@@ -15,11 +15,12 @@ namespace kolsky {
 /// How a filed number stands beside the shots.
 enum class Standing {
   agrees,
-  differs,   ///< and nothing explains the records as simply
-  doubtful,  ///< by more than three deviations, as chance does to one of so many numbers
-  tied,      ///< it or one of `tied_with` differs: the shots cannot tell which
-  unseen,    ///< the shots say less of it than is filed
-  unfiled,   ///< nothing is filed of it: found by the shots
+  differs,      ///< and nothing explains the records as simply
+  doubtful,     ///< by more than three deviations, as chance does to one of so many numbers
+  tied,         ///< it or one of `tied_with` differs: the shots cannot tell which
+  unseen,       ///< the shots say less of it than is filed
+  unexplained,  ///< it fits better elsewhere, and still leaves most of what these records differ by
+  unfiled,      ///< nothing is filed of it: found by the shots
 };
 
 [[nodiscard]] std::string name_of(Standing standing);

@@ -306,6 +306,10 @@ class PartFit {
     const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
     if (!number.believed) {
       out.standing = Standing::unfiled;
+    } else if ((tied != ties_.end() || released || std::abs(out.deviations) > kNamed) &&
+               leaves_most()) {
+      out.standing = Standing::unexplained;
+      out.combined = out.filed;
     } else if (tied != ties_.end()) {
       out.standing = Standing::tied;
       out.tied_with = tied->second;
@@ -318,6 +322,16 @@ class PartFit {
       out.standing = Standing::unseen;
     }
     return out;
+  }
+
+  /// Whether what was released explains too little of the misfit to be what differs: the records
+  /// are of something else than bars lying like this.
+  [[nodiscard]] bool leaves_most() const {
+    constexpr double kFarOff = 20.0;
+    const double left = result_.chi2_reduced - 1.0;
+    const double most = result_.chi2_reduced > kFarOff ? 0.1 : 0.5;
+    return result_.chi2_reduced > kMoreThanNoise &&
+           !(left < most * (result_.chi2_reduced_as_filed - 1.0));
   }
 
   /// Phase speed in the input bar with these moduli and, last, the density by this factor.

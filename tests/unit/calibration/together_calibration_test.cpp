@@ -66,6 +66,18 @@ TEST(BarsTogether, RightBenchPasses) {
   EXPECT_NEAR(part.wave_speed_m_per_s.value, 2173.72, 0.05);
 }
 
+// The core between them: no position and no gain makes bars that touch out of these records.
+TEST(BarsTogether, ASpecimenBetweenThemIsNotLaidToTheBench) {
+  const testing::LinearShpb model;
+  const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 2), {});
+  EXPECT_EQ(calibration.certificate, Certificate::undecided);
+  EXPECT_TRUE(standing(calibration, Standing::differs).empty());
+  EXPECT_TRUE(standing(calibration, Standing::tied).empty());
+  EXPECT_FALSE(standing(calibration, Standing::unexplained).empty());
+  ASSERT_FALSE(calibration.reasons.empty());
+  EXPECT_NE(calibration.reasons.front().find("specimen"), std::string::npos);
+}
+
 TEST(BarsTogether, WhichOfTwoGainsIsOffIsSaidToBeOpen) {
   testing::LinearShpb model = one_long_bar();
   const Bench filed = model.bench();
