@@ -218,8 +218,8 @@ void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimu
     point.J2_per_Pa = -mean.imag();
     point.J1_sd = std::hypot(scatter1, common1);
     point.J2_sd = std::hypot(scatter2, common2);
-    point.J1_mean_sd = std::hypot(scatter1 / std::sqrt(shots), common1);
-    point.J2_mean_sd = std::hypot(scatter2 / std::sqrt(shots), common2);
+    point.J1_sd_of_mean = std::hypot(scatter1 / std::sqrt(shots), common1);
+    point.J2_sd_of_mean = std::hypot(scatter2 / std::sqrt(shots), common2);
     fit.spectrum.push_back(point);
   }
 }
@@ -244,7 +244,7 @@ void warn(SpecimenFit& fit) {
   }
   constexpr double kClearly = 4.0;
   for (const CompliancePoint& p : fit.spectrum) {
-    if (p.J2_per_Pa < -kClearly * p.J2_mean_sd) {
+    if (p.J2_per_Pa < -kClearly * p.J2_sd_of_mean) {
       fit.warnings.push_back("J2 is negative at " + std::to_string(std::lround(p.frequency_Hz)) +
                              " Hz: no passive material does that");
       break;

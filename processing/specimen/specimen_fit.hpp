@@ -33,8 +33,8 @@ struct CompliancePoint {
   double J2_per_Pa = 0.0;
   double J1_sd = 0.0;  ///< of one shot; what all shots share (bench, bars) is in it too
   double J2_sd = 0.0;
-  double J1_mean_sd = 0.0;  ///< of the mean over the shots
-  double J2_mean_sd = 0.0;
+  double J1_sd_of_mean = 0.0;  ///< of the mean over the shots
+  double J2_sd_of_mean = 0.0;
 };
 
 /// The maximum-likelihood fit of a specimen's compliance to whole gauge records of all shots.

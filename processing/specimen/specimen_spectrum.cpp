@@ -214,8 +214,8 @@ SpectralEstimate estimate_spectrum(const std::vector<Shot>& shots, const Materia
       }
       point.J1_sd = std::sqrt(point.J1_sd);
       point.J2_sd = std::sqrt(point.J2_sd);
-      point.J1_mean_sd = point.J1_sd / std::sqrt(count);
-      point.J2_mean_sd = point.J2_sd / std::sqrt(count);
+      point.J1_sd_of_mean = point.J1_sd / std::sqrt(count);
+      point.J2_sd_of_mean = point.J2_sd / std::sqrt(count);
     }
     estimate.spectrum.push_back(point);
   }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <complex>
 #include <memory>
+#include <numbers>
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
@@ -13,6 +15,7 @@
 #include "processing/base/error.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 #include "processing/specimen/specimen_spectrum.hpp"
+#include "processing/waves/compliance.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -127,7 +130,16 @@ JsonObject numbers(const std::vector<FittedNumber>& list) {
   return object;
 }
 
-JsonObject describe(const std::vector<CompliancePoint>& spectrum) {
+/// The complex wavenumber k - i alpha = w sqrt(rho (J1 - i J2)) of a thin rod of the specimen's
+/// material: paper, (9).
+Complex wavenumber_of(const CompliancePoint& point, double density_kg_m3) {
+  return 2.0 * std::numbers::pi * point.frequency_Hz *
+         std::sqrt(density_kg_m3 * Complex(point.J1_per_Pa, -point.J2_per_Pa));
+}
+
+/// @param density  none filed: no wavenumber
+JsonObject describe(const std::vector<CompliancePoint>& spectrum,
+                    const std::optional<Measured>& density) {
   const auto column = [&](double CompliancePoint::*member) {
     std::vector<double> values;
     values.reserve(spectrum.size());
@@ -136,13 +148,25 @@ JsonObject describe(const std::vector<CompliancePoint>& spectrum) {
     }
     return values;
   };
-  return {{"frequency_Hz", column(&CompliancePoint::frequency_Hz)},
-          {"J1_per_Pa", column(&CompliancePoint::J1_per_Pa)},
-          {"J1_sd", column(&CompliancePoint::J1_sd)},
-          {"J1_mean_sd", column(&CompliancePoint::J1_mean_sd)},
-          {"J2_per_Pa", column(&CompliancePoint::J2_per_Pa)},
-          {"J2_sd", column(&CompliancePoint::J2_sd)},
-          {"J2_mean_sd", column(&CompliancePoint::J2_mean_sd)}};
+  JsonObject object{{"frequency_Hz", column(&CompliancePoint::frequency_Hz)},
+                    {"J1_per_Pa", column(&CompliancePoint::J1_per_Pa)},
+                    {"J1_sd", column(&CompliancePoint::J1_sd)},
+                    {"J1_sd_of_mean", column(&CompliancePoint::J1_sd_of_mean)},
+                    {"J2_per_Pa", column(&CompliancePoint::J2_per_Pa)},
+                    {"J2_sd", column(&CompliancePoint::J2_sd)},
+                    {"J2_sd_of_mean", column(&CompliancePoint::J2_sd_of_mean)}};
+  if (density) {
+    std::vector<double> alpha_per_m;
+    std::vector<double> wavenumber_per_m;
+    for (const CompliancePoint& point : spectrum) {
+      const Complex wavenumber = wavenumber_of(point, *density);
+      alpha_per_m.push_back(-wavenumber.imag());
+      wavenumber_per_m.push_back(wavenumber.real());
+    }
+    object.push_back({"alpha_per_m", std::move(alpha_per_m)});
+    object.push_back({"wavenumber_per_m", std::move(wavenumber_per_m)});
+  }
+  return object;
 }
 
 JsonValue spectral_json(const Outcome& outcome) {
@@ -150,7 +174,8 @@ JsonValue spectral_json(const Outcome& outcome) {
     return JsonObject{{"refused", outcome.spectral_refused}};
   }
   return JsonObject{{"parameters", numbers(outcome.spectral->parameters)},
-                    {"spectrum", describe(outcome.spectral->spectrum)},
+                    {"spectrum", describe(outcome.spectral->spectrum,
+                                          outcome.shots.front().bench.specimen->density_kg_m3)},
                     {"band_limit_Hz", outcome.spectral->band_limit_Hz},
                     {"window_s", outcome.spectral->window_s}};
 }
@@ -179,23 +204,24 @@ JsonValue describe(const Outcome& outcome) {
   }
   const bool assumed = !elastic_bars(outcome.shots.front().bench) && !outcome.bars &&
                        !outcome.shots.front().bar_model;
-  return JsonObject{{"solid", name_of(fit.solid)},
-                    {"parameters", numbers(fit.parameters)},
-                    {"covariance", std::move(covariance)},
-                    {"spectrum", describe(fit.spectrum)},
-                    {"chi2_reduced", fit.chi2_reduced},
-                    {"degrees_of_freedom", static_cast<std::uint64_t>(fit.degrees_of_freedom)},
-                    {"theory", describe(fit.theory)},
-                    {"tried", std::move(tried)},
-                    {"band_limit_Hz", fit.band_limit_Hz},
-                    {"judged_s", fit.judged_s},
-                    {"past_first_return", fit.to_the_end},
-                    {"bench", numbers(fit.bench)},
-                    {"spectral", spectral_json(outcome)},
-                    {"bar_model", bars_in_words(outcome)},
-                    {"bar_model_assumed", assumed},
-                    {"shots", static_cast<std::uint64_t>(outcome.shots.size())},
-                    {"warnings", fit.warnings}};
+  return JsonObject{
+      {"solid", name_of(fit.solid)},
+      {"parameters", numbers(fit.parameters)},
+      {"covariance", std::move(covariance)},
+      {"spectrum", describe(fit.spectrum, outcome.shots.front().bench.specimen->density_kg_m3)},
+      {"chi2_reduced", fit.chi2_reduced},
+      {"degrees_of_freedom", static_cast<std::uint64_t>(fit.degrees_of_freedom)},
+      {"theory", describe(fit.theory)},
+      {"tried", std::move(tried)},
+      {"band_limit_Hz", fit.band_limit_Hz},
+      {"judged_s", fit.judged_s},
+      {"past_first_return", fit.to_the_end},
+      {"bench", numbers(fit.bench)},
+      {"spectral", spectral_json(outcome)},
+      {"bar_model", bars_in_words(outcome)},
+      {"bar_model_assumed", assumed},
+      {"shots", static_cast<std::uint64_t>(outcome.shots.size())},
+      {"warnings", fit.warnings}};
 }
 
 std::string table_of(const std::vector<FittedNumber>& list) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <random>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
@@ -130,9 +131,20 @@ TEST_F(SpecimenFiles, AreIdentifiedWithBothEstimatorsAndAFileToGoOnWith) {
   }
   const std::size_t count = told["spectrum"]["frequency_Hz"].size();
   EXPECT_GT(count, 10U);
-  for (const char* name : {"J1_per_Pa", "J1_sd", "J2_per_Pa", "J2_sd"}) {
-    EXPECT_EQ(told["spectrum"][name].size(), count) << name;
+  for (const char* name :
+       {"J1_per_Pa", "J1_sd", "J2_per_Pa", "J2_sd", "alpha_per_m", "wavenumber_per_m"}) {
+    ASSERT_EQ(told["spectrum"][name].size(), count) << name;
   }
+  // Paper, (9).
+  const auto at = [&](const char* name) { return told["spectrum"][name][4].get<double>(); };
+  const double inertia =
+      1140.0 *
+      std::pow(2.0 * std::numbers::pi * told["spectrum"]["frequency_Hz"][4].get<double>(), 2);
+  EXPECT_NEAR((std::pow(at("wavenumber_per_m"), 2) - std::pow(at("alpha_per_m"), 2)) /
+                  (inertia * at("J1_per_Pa")),
+              1.0, 1e-9);
+  EXPECT_NEAR(2.0 * at("alpha_per_m") * at("wavenumber_per_m") / (inertia * at("J2_per_Pa")), 1.0,
+              1e-9);
   EXPECT_LE(told["band_limit_Hz"].get<double>(), 40e3) << "the bars are not known beyond";
   EXPECT_EQ(told["bar_model_assumed"], false);
   EXPECT_EQ(told["shots"], 3);

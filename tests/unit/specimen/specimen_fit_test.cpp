@@ -228,8 +228,8 @@ TEST(FitSpecimen, TheSpectrumHoldsTheTruthTo15kHz) {
         break;
       }
       const Complex J = compliance(model.specimen, point.frequency_Hz);
-      EXPECT_NEAR(point.J1_per_Pa, J.real(), 4.5 * point.J1_mean_sd) << point.frequency_Hz;
-      EXPECT_NEAR(point.J2_per_Pa, -J.imag(), 4.5 * point.J2_mean_sd) << point.frequency_Hz;
+      EXPECT_NEAR(point.J1_per_Pa, J.real(), 4.5 * point.J1_sd_of_mean) << point.frequency_Hz;
+      EXPECT_NEAR(point.J2_per_Pa, -J.imag(), 4.5 * point.J2_sd_of_mean) << point.frequency_Hz;
       inside += std::abs(point.J1_per_Pa - J.real()) < point.J1_sd ? 1U : 0U;
       inside += std::abs(point.J2_per_Pa + J.imag()) < point.J2_sd ? 1U : 0U;
       count += 2;
@@ -274,8 +274,8 @@ TEST(SpectralEstimate, IsStrainOverStressOfAMasslessSpecimen) {
   ASSERT_GT(estimate.spectrum.size(), 5U);
   for (const CompliancePoint& point : estimate.spectrum) {
     const Complex J = compliance(model.specimen, point.frequency_Hz);
-    EXPECT_NEAR(point.J1_per_Pa, J.real(), 5.0 * point.J1_mean_sd + 0.02 * std::abs(J));
-    EXPECT_NEAR(point.J2_per_Pa, -J.imag(), 5.0 * point.J2_mean_sd + 0.02 * std::abs(J));
+    EXPECT_NEAR(point.J1_per_Pa, J.real(), 5.0 * point.J1_sd_of_mean + 0.02 * std::abs(J));
+    EXPECT_NEAR(point.J2_per_Pa, -J.imag(), 5.0 * point.J2_sd_of_mean + 0.02 * std::abs(J));
   }
 }
 
