@@ -56,9 +56,26 @@ bool is_abandoned_name(const std::string& name) {
   return name.size() > kSuffix.size() && name.front() == '.' && name.ends_with(kSuffix);
 }
 
+/// A file beside another, to be put in its place.
+struct Replacement {
+  std::string name;
+  int file = -1;
+
+  explicit Replacement(const std::filesystem::path& path)
+      : name((folder_of(path) / ".kolsky-replacing-XXXXXX").string()),
+        file(::mkostemp(name.data(), O_CLOEXEC)) {
+    if (file < 0) {
+      throw unwritable(path, errno);
+    }
+  }
+};
+
 // A model, a page and a picture each begin in their own way.
 void refuse_other_kind(const std::filesystem::path& path, const std::string& text) {
   constexpr std::size_t kTelling = 5;
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
+    throw unwritable(path, EISDIR);
+  }
   std::ifstream there(path, std::ios::binary);
   std::string begin(kTelling, '\0');
   if (!there || !there.read(begin.data(), kTelling)) {
@@ -137,14 +154,16 @@ bool rename_without_overwriting(const std::filesystem::path& from,
   return true;
 }
 
+void require_replaceable(const std::filesystem::path& path, const std::string& beginning) {
+  refuse_other_kind(path, beginning);
+  const Replacement tried(path);
+  ::close(tried.file);
+  ::unlink(tried.name.c_str());
+}
+
 void replace_file(const std::filesystem::path& path, const std::string& text) {
   refuse_other_kind(path, text);
-  const std::filesystem::path folder = folder_of(path);
-  std::string name = (folder / ".kolsky-replacing-XXXXXX").string();
-  const int file = ::mkostemp(name.data(), O_CLOEXEC);
-  if (file < 0) {
-    throw unwritable(path, errno);
-  }
+  const auto [name, file] = Replacement(path);
   std::size_t written = 0;
   int error = 0;
   while (written < text.size() && error == 0) {
@@ -165,7 +184,7 @@ void replace_file(const std::filesystem::path& path, const std::string& text) {
     ::unlink(name.c_str());
     throw unwritable(path, error);
   }
-  sync_folder(folder);
+  sync_folder(folder_of(path));
 }
 
 void sync_folder(const std::filesystem::path& folder) {

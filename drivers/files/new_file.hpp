@@ -48,6 +48,11 @@ bool rename_without_overwriting(const std::filesystem::path& from, const std::fi
 ///   does and so is something else (a capture, a bench file)
 void replace_file(const std::filesystem::path& path, const std::string& text);
 
+/// What `replace_file` would refuse, before the work whose result it is to put there.
+/// @param beginning  of the text that it will be given
+/// @throws InputError as `replace_file`
+void require_replaceable(const std::filesystem::path& path, const std::string& beginning);
+
 /// Makes a folder's entries durable. @throws InputError
 void sync_folder(const std::filesystem::path& folder);
 

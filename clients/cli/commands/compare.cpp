@@ -9,6 +9,7 @@
 #include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
@@ -84,6 +85,7 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
 
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
+  require_page_output(settings.report);
   const Campaign campaign = read_campaign(read_shots(settings.captures));
   if (file.model.kind == BenchKind::impact) {
     return run_impacts(settings, file, campaign, context);

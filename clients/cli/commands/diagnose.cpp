@@ -13,6 +13,7 @@
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/nearest_name.hpp"
@@ -175,6 +176,9 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
                   bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
   if (auto verdict = verdict_without_fit(shots)) {
+    if (settings.report) {
+      verdict->notes.push_back("nothing was fitted, so there is no report");
+    }
     return *std::move(verdict);
   }
   DiagnosisOptions options;
@@ -211,6 +215,8 @@ std::string noted(const Settings& settings, const std::vector<std::string>& with
 int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   const Safeguards safeguards = safeguards_without(settings.without);
+  require_model_output(settings.output);
+  require_page_output(settings.report);
   Diagnosis diagnosis = examine(settings, file.model, safeguards, !context.json);
   const std::vector<std::string> without = left_out(safeguards);
   for (const std::string& name : without) {

@@ -9,6 +9,7 @@
 #include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/model_file.hpp"
 #include "drivers/files/new_file.hpp"
@@ -37,6 +38,7 @@ Studied fit(const Model& model, const Campaign& campaign, double band_limit_Hz,
 
 int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
+  require_model_output(settings.output);
   const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
   const Studied studied = fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);

@@ -5,6 +5,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/impact_criticism.hpp"
 #include "clients/cli/model_text.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/cli/waterfall_text.hpp"
 #include "drivers/files/model_file.hpp"
@@ -72,6 +73,8 @@ Waterfall fall_of(const Settings& settings, const ModelFile& file, const Model& 
 
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
+  require_page_output(settings.report);
+  require_picture_output(settings.svg);
   const Model first =
       file.history.empty()
           ? file.model

@@ -147,6 +147,30 @@ TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
   }
 }
 
+TEST_F(SimulatedBar, RefusesAPlaceForItsResultBeforeTheWork) {
+  // No capture is there: what is refused first is what is said.
+  const std::string none = file("no-such.h5");
+  const std::string nowhere = file("no/such/folder/m.toml");
+  const std::string bench = file("bench.toml");
+  const std::vector<std::string> model{"--model", file("m.toml")};
+  const auto asked = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), model.begin(), model.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return kolsky(words);
+  };
+  std::ofstream(bench) << "kind = \"bar\"\n";
+  for (const std::string& output : {nowhere, bench, file("shots")}) {
+    EXPECT_TRUE(refused(asked({"fit", none}, {"-o", output}), {output})) << output;
+    EXPECT_TRUE(refused(asked({"diagnose", none}, {"-o", output}), {output})) << output;
+    EXPECT_TRUE(refused(asked({"diagnose", none}, {"--report", output}), {output})) << output;
+    EXPECT_TRUE(refused(asked({"compare", none}, {"--report", output}), {output})) << output;
+    EXPECT_TRUE(
+        refused(kolsky({"model", "waterfall", file("m.toml"), none, "--svg", output}), {output}))
+        << output;
+  }
+  EXPECT_EQ(content(bench), "kind = \"bar\"\n");
+}
+
 TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
   EXPECT_TRUE(refused(kolsky({"model", "diff", file("m.toml") + "@3", file("m.toml")}),
                       {"names no step", "from 0 to 0"}));

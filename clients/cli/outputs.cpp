@@ -1,0 +1,28 @@
+#include "clients/cli/outputs.hpp"
+
+#include "drivers/files/new_file.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+void require(const std::optional<std::string>& path, const char* beginning) {
+  if (path) {
+    require_replaceable(*path, beginning);
+  }
+}
+
+}  // namespace
+
+void require_model_output(const std::optional<std::string>& path) {
+  require(path, "kolsky_model");
+}
+
+void require_page_output(const std::optional<std::string>& path) {
+  require(path, "<!DOCTYPE html>");
+}
+
+void require_picture_output(const std::optional<std::string>& path) {
+  require(path, "<svg ");
+}
+
+}  // namespace kolsky::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace kolsky::cli {
+
+// Before long work: whether its result may be put where it is asked for.
+
+/// @throws InputError where the file cannot be written or is there and no model
+void require_model_output(const std::optional<std::string>& path);
+/// @throws InputError where the file cannot be written or is there and no page
+void require_page_output(const std::optional<std::string>& path);
+/// @throws InputError where the file cannot be written or is there and no picture
+void require_picture_output(const std::optional<std::string>& path);
+
+}  // namespace kolsky::cli
