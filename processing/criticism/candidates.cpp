@@ -157,20 +157,27 @@ Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries
   return out;
 }
 
+std::optional<std::size_t> place_in(const Composition& from, const Composition& to,
+                                    std::size_t number, const std::vector<bool>& taken) {
+  const FreeNumber& wanted = to.numbers()[number];
+  for (std::size_t k = 0; k < taken.size(); ++k) {
+    const FreeNumber& held = from.numbers()[k];
+    if (!taken[k] && held.parameter == wanted.parameter &&
+        from.uses()[held.use].id() == to.uses()[wanted.use].id()) {
+      return k;
+    }
+  }
+  return std::nullopt;
+}
+
 std::vector<double> carry(const Composition& from, const std::vector<double>& theta,
                           const Composition& to) {
   std::vector<double> out = to.start();
   std::vector<bool> taken(theta.size(), false);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const FreeNumber& wanted = to.numbers()[i];
-    for (std::size_t k = 0; k < theta.size(); ++k) {
-      const FreeNumber& held = from.numbers()[k];
-      if (!taken[k] && held.parameter == wanted.parameter &&
-          from.uses()[held.use].id() == to.uses()[wanted.use].id()) {
-        out[i] = wanted.theta_of(held.value_at(theta[k]));
-        taken[k] = true;
-        break;
-      }
+    if (const auto held = place_in(from, to, i, taken)) {
+      out[i] = to.numbers()[i].theta_of(from.numbers()[*held].value_at(theta[*held]));
+      taken[*held] = true;
     }
   }
   return out;

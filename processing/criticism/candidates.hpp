@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,12 @@ struct Direction {
 /// keeps its start.
 [[nodiscard]] std::vector<double> carry(const Composition& from, const std::vector<double>& theta,
                                         const Composition& to);
+
+/// Where one composition has what is a number of another.
+/// @param taken  by number of `from`: what stands for others already
+[[nodiscard]] std::optional<std::size_t> place_in(const Composition& from, const Composition& to,
+                                                  std::size_t number,
+                                                  const std::vector<bool>& taken);
 
 [[nodiscard]] Direction direction_of(const Candidate& candidate, const Studied& studied,
                                      const Campaign& campaign, ShotResiduals& residuals,

@@ -35,9 +35,21 @@ bool astray(const Studied& studied) {
              studied.model.effects.begin(), studied.model.effects.end(), [](const auto& use) {
                return use.effect->about().base &&
                       std::any_of(use.values.begin(), use.values.end(), [](const ModelValue& own) {
-                        return own.free && own.sd > std::abs(own.value);
+                        return own.free && own.prior_sd == 0.0 && own.sd > std::abs(own.value);
                       });
              });
+}
+
+/// The bar's own relaxation time; 0 where there is none.
+double own_branch_s(const Model& model) {
+  const EffectUse* bar = model.find("three-element-bar");
+  return bar != nullptr ? bar->values[2].value / bar->values[1].value : 0.0;
+}
+
+/// The material's effects take each other's places at a finite size: what a dashpot does, the
+/// material's own branch and a further one can do together.
+bool of_material(const Candidate& candidate) {
+  return candidate.use.effect->about().stage == Stage::material;
 }
 
 }  // namespace
@@ -73,23 +85,63 @@ std::vector<Refit> Search::refits() {
   });
   std::vector<Refit> list;
   for (auto& own : done) {
-    if (own && std::isfinite(own->studied.fit.objective()) &&
-        !beyond_the_record(own->studied, *own) &&
-        (!safeguards_.own_strengths ||
-         own_strengths_confirmed(own->studied, candidates_[own->candidate].id(), study_.campaign(),
-                                 Claim::fresh))) {
+    if (own && admissible(*own)) {
       list.push_back(std::move(*own));
     }
   }
+  rate_in_order(list);
+  refine(list);
+  return list;
+}
+
+bool Search::admissible(const Refit& refit) const {
+  return std::isfinite(refit.studied.fit.objective()) && !beyond_the_record(refit.studied, refit) &&
+         (!safeguards_.own_strengths ||
+          own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
+                                  study_.campaign(), Claim::fresh));
+}
+
+void Search::rate_in_order(std::vector<Refit>& list) const {
   rate(list);
   std::sort(list.begin(), list.end(),
             [](const Refit& a, const Refit& b) { return a.evidence > b.evidence; });
-  return list;
+}
+
+/// What stands near the best is fitted with derivatives of its own.
+void Search::refine(std::vector<Refit>& list) {
+  constexpr double kNear = 30.0;  // as a square of a normal deviate
+  constexpr double kShare = 0.05;
+  const auto near = [&](const Refit& own) {
+    const double best = list.front().evidence;
+    return own.rough && own.evidence > best - std::max(kNear, kShare * best);
+  };
+  while (true) {
+    std::vector<std::size_t> at;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (near(list[i])) {
+        at.push_back(i);
+      }
+    }
+    if (at.empty()) {
+      return;
+    }
+    study_.executor().run(at.size(), [&](std::size_t i, std::size_t worker) {
+      Refit& own = list[at[i]];
+      Studied& studied = own.studied;
+      ModelFit fit =
+          fit_model(studied.composition, study_.residuals(), serial_on(worker), studied.fit.theta);
+      const Model model = with(base_.model, candidates_[own.candidate], true);
+      own = described(own.candidate, model, std::move(studied.composition), std::move(fit), worker);
+    });
+    std::erase_if(list, [&](const Refit& own) { return !admissible(own); });
+    rate_in_order(list);
+  }
 }
 
 /// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
 /// (a dashpot, a spring) that it only imitates. So is one whose strength and time grow together
-/// without end, which shows in a strength less than its own deviation.
+/// without end, which shows in a strength less than its own deviation, and one that has taken the
+/// material's own place, whose branch stands in for a dashpot.
 bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
   const Candidate& candidate = candidates_[refit.candidate];
   const EffectUse* use = studied.model.find(candidate.id());
@@ -97,6 +149,10 @@ bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const
   constexpr double kMuchSlower = 5.0;
   const double period_s = study_.residuals().judged_period_s();
   const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
+  if (candidate.use.effect->about().id == "second-relaxation" &&
+      own_branch_s(studied.model) > kMuchSlower * record_s) {
+    return true;
+  }
   bool timed = false;
   bool unbounded = false;
   for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
@@ -149,14 +205,31 @@ std::vector<std::size_t> Search::worth_refitting() const {
       chosen.push_back(i);
     }
   }
-  // At one gauge a delay, a filter and a length differ by their second order only.
+  add_relatives(ranked, chosen);
+  return chosen;
+}
+
+/// What differs from a chosen candidate by more than first order only.
+void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ranked,
+                           std::vector<std::size_t>& chosen) const {
+  const auto is_chosen = [&](std::size_t i) {
+    return std::find(chosen.begin(), chosen.end(), i) != chosen.end();
+  };
+  // At one gauge a delay, a filter and a length.
   for (const auto& [evidence, i] : ranked) {
-    if (at_one_gauge(candidates_[i], candidates_[ranked.front().second]) &&
-        std::find(chosen.begin(), chosen.end(), i) == chosen.end()) {
+    if (at_one_gauge(candidates_[i], candidates_[ranked.front().second]) && !is_chosen(i)) {
       chosen.push_back(i);
     }
   }
-  return chosen;
+  const bool material = std::any_of(chosen.begin(), chosen.end(),
+                                    [&](std::size_t i) { return of_material(candidates_[i]); });
+  for (std::size_t i = 0; material && i < candidates_.size(); ++i) {
+    const EffectUse& use = candidates_[i].use;
+    if (of_material(candidates_[i]) && use.effect->about().parameters.size() == 1 &&
+        !use.per_shot && !is_chosen(i)) {
+      chosen.push_back(i);
+    }
+  }
 }
 
 /// Where first order says the strengths and the model's numbers are, or as far on the way as
@@ -226,13 +299,48 @@ std::vector<double> Search::begin_large(const Candidate& candidate, const Compos
   return best;
 }
 
+/// Derivatives by a composition's numbers as they are beside the model without the candidate; none
+/// where these say too little: of a relaxation time while its strength is null, of what grows by
+/// its square, or where the model is far off.
+std::optional<Eigen::MatrixXd> Search::chord_of(const Candidate& candidate,
+                                                const Direction& direction,
+                                                const Composition& composition) const {
+  if (astray(base_)) {
+    return std::nullopt;
+  }
+  const auto& numbers = composition.numbers();
+  Eigen::MatrixXd chord(base_.fit.residual.size(), static_cast<Eigen::Index>(numbers.size()));
+  std::vector<bool> taken(base_.fit.theta.size(), false);
+  Eigen::Index strength = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::optional<std::size_t> held = place_in(base_.composition, composition, i, taken);
+    const auto column = static_cast<Eigen::Index>(i);
+    if (numbers[i].power != 1.0) {
+      return std::nullopt;
+    }
+    if (held) {
+      taken[*held] = true;
+      const double scale = numbers[i].scale / base_.composition.numbers()[*held].scale;
+      chord.col(column) = scale * base_.fit.jacobian.col(static_cast<Eigen::Index>(*held));
+    } else if (composition.uses()[numbers[i].use].id() == candidate.id() &&
+               strength < direction.columns.cols()) {
+      chord.col(column) = direction.columns.col(strength++);
+    } else {
+      return std::nullopt;
+    }
+  }
+  return chord;
+}
+
 std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   const Candidate& candidate = candidates_[index];
   const Direction& direction = directions_[index];
   const Model model = with(base_.model, candidate, true);
   Composition composition(model, study_.campaign());
-  ModelFit fit = fit_model(composition, study_.residuals(), serial_on(worker),
-                           begin_near(candidate, direction, composition, worker));
+  const auto chord = chord_of(candidate, direction, composition);
+  ModelFit fit =
+      fit_model(composition, study_.residuals(), serial_on(worker),
+                begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
   if (astray(base_)) {
     // Begin again from where the model's numbers started.
     Model fresh = with(start_, candidate, true);
@@ -258,6 +366,14 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   if (put_branches_in_order(composition, fit.theta)) {
     fit = fit_model(composition, study_.residuals(), serial_on(worker), fit.theta);
   }
+  Refit out = described(index, model, std::move(composition), std::move(fit), worker);
+  out.rough = chord.has_value();
+  return out;
+}
+
+Refit Search::described(std::size_t index, const Model& model, Composition composition,
+                        ModelFit fit, std::size_t worker) {
+  const Candidate& candidate = candidates_[index];
   const Misfit misfit =
       misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
   Refit out{index,

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processing/criticism/candidates.hpp"
@@ -22,6 +23,9 @@ struct Refit {
   double gain = 0.0;      ///< of the objective, over the noise
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
   double log_p = 0.0;
+  /// With derivatives of the model without the candidate: cheap, and near enough for what is far
+  /// behind.
+  bool rough = false;
 };
 
 /// One search for what a fitted model lacks: every candidate tested at first order, those near the
@@ -48,6 +52,8 @@ class Search {
   [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
   [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const;
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
+  void add_relatives(const std::vector<std::pair<double, std::size_t>>& ranked,
+                     std::vector<std::size_t>& chosen) const;
   [[nodiscard]] std::vector<double> begin_near(const Candidate& candidate,
                                                const Direction& direction,
                                                const Composition& composition,
@@ -55,7 +61,15 @@ class Search {
   [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
                                                 const Composition& composition,
                                                 std::size_t worker) const;
+  [[nodiscard]] std::optional<Eigen::MatrixXd> chord_of(const Candidate& candidate,
+                                                        const Direction& direction,
+                                                        const Composition& composition) const;
   [[nodiscard]] std::optional<Refit> refit(std::size_t index, std::size_t worker);
+  [[nodiscard]] Refit described(std::size_t index, const Model& model, Composition composition,
+                                ModelFit fit, std::size_t worker);
+  void refine(std::vector<Refit>& list);
+  [[nodiscard]] bool admissible(const Refit& refit) const;
+  void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;
 

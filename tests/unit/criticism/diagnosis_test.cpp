@@ -129,6 +129,26 @@ INSTANTIATE_TEST_SUITE_P(Effects, Single,
                                            "end-reflection=0.2", "series-dashpot=3e-8",
                                            "temperature=0.004", "crosstalk:g2=0.02"));
 
+// At little noise the material's own branch can turn dashpot and a further relaxation take its
+// place, with the same records to show for it; beside it a dashpot says little at first order.
+TEST(Diagnosis, TellsADashpotFromARelaxationThatTookTheMaterialsPlace) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 31;
+  wishes.shots = 5;
+  wishes.samples = 3000;
+  wishes.noise_strain = 5e-7;
+  wishes.tolerances = testing::Tolerances::filed;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("series-dashpot=3e-8"));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  ASSERT_EQ(diagnosis.effects, std::vector<std::string>{"series-dashpot"});
+  const CandidateResult& dashpot = result_of(diagnosis, "series-dashpot");
+  EXPECT_LT(std::abs(dashpot.strength - 3e-8), 4.0 * dashpot.sd);
+  for (const ModelValue& value : diagnosis.model->find("three-element-bar")->values) {
+    EXPECT_LT(value.sd, 0.1 * value.value);
+  }
+}
+
 TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   const Made made = make(78, {"gauge-position:g3=0.003", "temperature=0.004"});
   Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
