@@ -155,22 +155,19 @@ std::pair<std::vector<Eigen::VectorXd>, double> ImpactResiduals::scatter_of(
   for (const std::size_t n : group.shots) {
     mean += residual[n] / count;
   }
-  const auto faster = [&](std::size_t n) {
-    return *campaign_.shots[n].facts.incident_speed_m_per_s - group.speed_m_per_s;
-  };
   Eigen::VectorXd trend = Eigen::VectorXd::Zero(mean.size());
   double squares = 0.0;
-  for (const std::size_t n : group.shots) {
-    trend += faster(n) * (residual[n] - mean);
-    squares += faster(n) * faster(n);
+  for (std::size_t i = 0; i < group.shots.size(); ++i) {
+    trend += group.faster[i] * (residual[group.shots[i]] - mean);
+    squares += group.faster[i] * group.faster[i];
   }
   const bool told = group.shots.size() > 2 && squares > 0.0;
   std::vector<Eigen::VectorXd> offs;
   offs.reserve(group.shots.size());
-  for (const std::size_t n : group.shots) {
-    offs.emplace_back(residual[n] - mean);
+  for (std::size_t i = 0; i < group.shots.size(); ++i) {
+    offs.emplace_back(residual[group.shots[i]] - mean);
     if (told) {
-      offs.back() -= trend * (faster(n) / squares);
+      offs.back() -= trend * (group.faster[i] / squares);
     }
   }
   return {std::move(offs), count - (told ? 2.0 : 1.0)};
@@ -198,8 +195,12 @@ void ImpactResiduals::calibrate(const Composition& composition, const std::vecto
     }
     const auto [offs, left_free] = scatter_of(g, foretold.residual);
     // The force grows with the speed nearly in its own shape: arrivals and offsets are in `own`.
-    const Eigen::MatrixXd inverse =
-        symmetric_power(whitening_->own(g).topLeftCorner(size, size), -1.0);
+    Eigen::MatrixXd covariance = whitening_->own(g).topLeftCorner(size, size);
+    if (const bool trend_is_left = left_free + 1.0 >= count; trend_is_left) {
+      // The trend is in what is left, and in it what the solver's ripple does along the speeds.
+      covariance += whitening_->trend_square(g) * whitening_->slope(g).topLeftCorner(size, size);
+    }
+    const Eigen::MatrixXd inverse = symmetric_power(covariance, -1.0);
     const Eigen::VectorXd direction = inverse * reading;
     const double information = reading.dot(direction);
     for (std::size_t i = 0; i < offs.size(); ++i) {

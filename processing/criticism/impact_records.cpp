@@ -41,6 +41,9 @@ std::vector<SpeedGroup> groups_of(const Campaign& campaign) {
       sum += speed(n);
     }
     group.speed_m_per_s = sum / static_cast<double>(group.shots.size());
+    for (const std::size_t n : group.shots) {
+      group.faster.push_back(speed(n) / group.speed_m_per_s - 1.0);
+    }
     group.low_m_per_s =
         std::min(speed(group.shots.front()), (1.0 - kLeastSpread) * group.speed_m_per_s);
     group.high_m_per_s =

@@ -14,6 +14,7 @@ struct SpeedGroup {
   double low_m_per_s = 0.0;    ///< speeds that are calculated: between them forces are
   double high_m_per_s = 0.0;   ///< interpolated
   std::vector<std::size_t> shots;
+  std::vector<double> faster;  ///< by shot of these: than the mean, relative
 };
 
 /// What of an impact's records is judged: gauge by gauge from before the arrival on, low-passed and

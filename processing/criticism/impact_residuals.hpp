@@ -16,10 +16,10 @@
 namespace kolsky {
 
 /// Another code of the same ball departs from this one smoothly, as effects do, and so mimics them
-/// more than what is allowed for its size says: on campaigns without any effect, made by another
-/// code on meshes of its own, the largest gains among all candidates were five times those of noise
-/// (docs/impact.md). A square of a normal deviate counts over this, at least, and the solver's
-/// share of a number's variance is this many times what was allowed for.
+/// more than what is allowed for its size says: how far, campaigns without any effect show that
+/// another code made on meshes of its own (docs/impact.md). A square of a normal deviate counts
+/// over this, at least, and the solver's share of a number's variance is this many times what was
+/// allowed for.
 inline constexpr double kSolverDoubt = 6.0;
 
 /// Whitened residuals of impacts: the records and the rebound speeds less what the ball's solver

@@ -37,6 +37,7 @@ ImpactWhitening::ImpactWhitening(const ImpactRecords& records,
     : records_(records), size_(shapes.front().reading.size()) {
   set_own(shapes, doubts);
   set_shared(shapes, doubts);
+  set_trends();
   Eigen::MatrixXd means = shared_;
   for (std::size_t g = 0; g < own_.size(); ++g) {
     const auto at = static_cast<Eigen::Index>(g) * size_;
@@ -92,6 +93,7 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
     return static_cast<double>(static_cast<std::size_t>(i) % samples) * records_.window.period_s;
   };
   for (Eigen::Index g = 0; g < groups; ++g) {
+    Eigen::MatrixXd& slope = slopes_.emplace_back(Eigen::MatrixXd::Zero(size_, size_));
     for (Eigen::Index h = 0; h < groups; ++h) {
       const auto a = static_cast<std::size_t>(g);
       const auto b = static_cast<std::size_t>(h);
@@ -104,17 +106,21 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
         for (Eigen::Index j = 0; j < rebound; ++j) {
           const double slow = (time_s(i) - time_s(j)) / kSolverMemory_s;
           const double quick = (time_s(i) - time_s(j)) / kRippleMemory_s;
-          block(i, j) = large[a][i] * large[b][j] *
-                        (alike * std::exp(-0.5 * slow * slow) +
-                         (g == h ? std::exp(-0.5 * quick * quick) : 0.0));
+          const double both = large[a][i] * large[b][j];
+          block(i, j) = both * alike * std::exp(-0.5 * slow * slow);
+          if (g == h) {
+            slope(i, j) = both * std::exp(-0.5 * quick * quick);
+          }
         }
       }
       const double incident = records_.incident(a) * records_.incident(b);
       block(rebound, rebound) += std::pow(kRestitutionDoubt, 2) * incident;
       if (g == h) {
-        block(rebound, rebound) += std::pow(kRestitutionScatter, 2) * incident;
+        slope(rebound, rebound) = std::pow(kRestitutionScatter, 2) * incident;
+        block += slope;
       }
     }
+    slope /= kRippleSpeeds * kRippleSpeeds;
   }
   solver_ = shared_;
   for (std::size_t g = 0; g < shapes.size(); ++g) {
@@ -123,6 +129,21 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
                     size_, size_) += std::pow(records_.common_speed_sd, 2) * mistimed(shapes[g]) *
                                      mistimed(shapes[h]).transpose();
     }
+  }
+}
+
+void ImpactWhitening::set_trends() {
+  for (std::size_t g = 0; g < own_.size(); ++g) {
+    const std::vector<double>& faster = records_.groups[g].faster;
+    Eigen::VectorXd trend =
+        Eigen::Map<const Eigen::VectorXd>(faster.data(), static_cast<Eigen::Index>(faster.size()));
+    const double square = trend.squaredNorm();
+    if (square > 0.0) {
+      trend /= std::sqrt(square);
+    }
+    trends_.push_back(std::move(trend));
+    trend_squares_.push_back(square);
+    trend_roots_.push_back(symmetric_power(own_[g] + square * slopes_[g], -0.5));
   }
 }
 
@@ -160,10 +181,17 @@ Eigen::VectorXd ImpactWhitening::white(const std::vector<Eigen::VectorXd>& resid
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
     const double share = 1.0 / std::sqrt(static_cast<double>(group.shots.size()));
-    for (const std::size_t n : group.shots) {
-      white.segment(static_cast<Eigen::Index>(n) * size_, size_) =
-          roots_[g] * (residual[n] - mean_of(g)) +
-          share * shared.segment(static_cast<Eigen::Index>(g) * size_, size_);
+    Eigen::VectorXd trend = Eigen::VectorXd::Zero(size_);
+    for (std::size_t i = 0; i < group.shots.size(); ++i) {
+      trend += trends_[g][static_cast<Eigen::Index>(i)] * residual[group.shots[i]];
+    }
+    const Eigen::VectorXd white_trend = trend_roots_[g] * trend;
+    for (std::size_t i = 0; i < group.shots.size(); ++i) {
+      const double along = trends_[g][static_cast<Eigen::Index>(i)];
+      const auto n = static_cast<Eigen::Index>(group.shots[i]);
+      white.segment(n * size_, size_) =
+          roots_[g] * (residual[group.shots[i]] - mean_of(g) - along * trend) +
+          along * white_trend + share * shared.segment(static_cast<Eigen::Index>(g) * size_, size_);
     }
   }
   return white;

@@ -52,7 +52,8 @@ TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
   ImpactRecords records;
   records.window.samples = 4;
   records.window.period_s = 30e-6;
-  records.groups = {{31.0, 30.9, 31.1, {0, 1, 2}}, {50.0, 49.8, 50.2, {3, 4}}};
+  records.groups = {{31.0, 30.9, 31.1, {0, 1, 2}, {-0.01, 0.002, 0.008}},
+                    {50.0, 49.8, 50.2, {3, 4}, {0.0, 0.0}}};
   records.group_of = {0, 0, 0, 1, 1};
   records.rebound.assign(5, Measured{5e-3, 1e-5});
   records.wave_speed_m_per_s = 5000.0;
@@ -82,6 +83,13 @@ TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
       covariance.block(5 * n, 5 * m, 5, 5) = whitening.shared(g, h);
       if (n == m) {
         covariance.block(5 * n, 5 * m, 5, 5) += whitening.own(g);
+      }
+      if (g == h) {
+        const std::vector<double>& faster = records.groups[g].faster;
+        const Eigen::Index first = g == 0 ? 0 : 3;
+        covariance.block(5 * n, 5 * m, 5, 5) += faster[static_cast<std::size_t>(n - first)] *
+                                                faster[static_cast<std::size_t>(m - first)] *
+                                                whitening.slope(g);
       }
     }
   }
