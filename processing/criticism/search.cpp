@@ -221,12 +221,13 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       chosen.push_back(i);
     }
   }
+  // Of the material, what can say nothing at first order for standing at its bound.
   const bool material = std::any_of(chosen.begin(), chosen.end(),
                                     [&](std::size_t i) { return of_material(candidates_[i]); });
   for (std::size_t i = 0; material && i < candidates_.size(); ++i) {
     const EffectUse& use = candidates_[i].use;
-    if (of_material(candidates_[i]) && use.effect->about().parameters.size() == 1 &&
-        !use.per_shot && !is_chosen(i)) {
+    if (of_material(candidates_[i]) && candidates_[i].one_sided &&
+        use.effect->about().parameters.size() == 1 && !use.per_shot && !is_chosen(i)) {
       chosen.push_back(i);
     }
   }
