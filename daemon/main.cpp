@@ -12,6 +12,7 @@
 #include "daemon/daemon.hpp"
 #include "daemon/live/sd_notify.hpp"
 #include "daemon/log.hpp"
+#include "daemon/thread_priority.hpp"
 #include "drivers/digitiser/library_messages.hpp"
 #include "processing/base/error.hpp"
 
@@ -107,6 +108,7 @@ int guarded_run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  kolsky::keep_freed_memory();
   CLI::App app(kAbout, "kolskyd");
   app.footer(kGoOn);
   app.set_version_flag("--version", "kolskyd " KOLSKY_VERSION);

@@ -1,5 +1,6 @@
 #include "daemon/thread_priority.hpp"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 
@@ -22,6 +23,15 @@ bool run_in_real_time(RealTime priority) noexcept {
 void run_as_usual() noexcept {
   const sched_param parameters{};
   sched_setscheduler(0, SCHED_OTHER, &parameters);
+}
+
+void keep_freed_memory() noexcept {
+  constexpr int kMost_bytes = 256 << 20;
+  constexpr int kAtOnce_bytes = 16 << 20;
+  constexpr int kMostOnHeap_bytes = 32 << 20;  // the C library takes no more
+  mallopt(M_TRIM_THRESHOLD, kMost_bytes);
+  mallopt(M_MMAP_THRESHOLD, kMostOnHeap_bytes);
+  mallopt(M_TOP_PAD, kAtOnce_bytes);
 }
 
 bool IdleCheck::rests() noexcept {

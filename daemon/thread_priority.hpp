@@ -15,6 +15,11 @@ void name_thread(const char* name) noexcept;
 bool run_in_real_time(RealTime priority) noexcept;
 void run_as_usual() noexcept;
 
+/// Has the process keep the memory that it frees for what it asks for next: a page that went back
+/// to the system costs a fault when it is used again, and on virtual machines that takes up to
+/// milliseconds, between a sample and its result too.
+void keep_freed_memory() noexcept;
+
 /// Tells when the calling thread has been at work nearly all the time. A real-time thread that does
 /// not sleep takes a processor from everybody else for good, so it should go back to running as
 /// usual.
