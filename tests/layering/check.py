@@ -13,6 +13,7 @@ import sys
 # The folder with the longest matching name decides. Names from the top of the tree.
 ALLOWED = {
     "processing": ["processing/"],
+    "processing/algebra": ["processing/algebra/"],
     "processing/base": ["processing/base/"],
     "processing/bridge": ["processing/base/", "processing/bridge/"],
     "processing/trigger": ["processing/base/", "processing/trigger/"],
