@@ -91,8 +91,7 @@ void ShotRecorder::rehearse(const ShotSettings& settings) {
   v1::Shot shot_message;
   v1::Result result_message;
   wire::encode(shot, "", shot_message);
-  const std::lock_guard lock(reducer_mutex_);
-  wire::encode(reducer_.reduce(shot), "", result_message);
+  wire::encode(reducing_.rehearse(shot), "", result_message);
 }
 
 ShotRecorder::Counters ShotRecorder::counters() const noexcept {
@@ -210,13 +209,18 @@ void ShotRecorder::record(const Window& window) {
     return;
   }
   watch.lap("copy");
-  if (!journal(*shot)) {
+  const bool written = journaled(*shot, [&] { parts_.journal.write_shot(*shot); });
+  watch.lap("journal");
+  // Now that no crash takes the shot it is reduced, while the disk takes it.
+  reducing_.begin(shot);
+  if (!written || !journaled(*shot, [&] { parts_.journal.make_durable(*shot); })) {
     file_unjournaled(shot);
     return;
   }
-  watch.lap("journal");
+  journaled_.fetch_add(1);
+  watch.lap("durable");
   announce(*shot, watch);
-  const Reduction reduction = reduce(*shot);
+  const Reduction reduction = reducing_.finish();
   watch.lap("reduce");
   wire::encode(reduction, shot->id, messages_->result);
   watch.lap("encode");
@@ -259,22 +263,16 @@ std::shared_ptr<Shot> ShotRecorder::cut(const Window& whole) {
   return shot;
 }
 
-Reduction ShotRecorder::reduce(const Shot& shot) {
-  const std::lock_guard lock(reducer_mutex_);
-  return reduce_or_say_why(reducer_, shot);
-}
-
 /// Its capture may still find room where the journal did not. It is in the list then, but not
 /// published: that is for what is durable.
 void ShotRecorder::file_unjournaled(const std::shared_ptr<Shot>& shot) {
   parts_.archivist.expect_shot();
-  parts_.archivist.store(shot, summarise(*shot, reduce(*shot), ""));
+  parts_.archivist.store(shot, summarise(*shot, reducing_.finish(), ""));
 }
 
-bool ShotRecorder::journal(const Shot& shot) {
+bool ShotRecorder::journaled(const Shot& shot, const std::function<void()>& step) {
   try {
-    parts_.journal.append_shot(shot);
-    journaled_.fetch_add(1);
+    step();
     return true;
   } catch (const std::exception& error) {
     journal_failures_.fetch_add(1);

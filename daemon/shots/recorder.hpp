@@ -15,9 +15,9 @@
 #include "daemon/publish/publisher.hpp"
 #include "daemon/shots/archivist.hpp"
 #include "daemon/shots/gap_log.hpp"
+#include "daemon/shots/reducing_thread.hpp"
 #include "daemon/shots/shared_journal.hpp"
 #include "daemon/shots/shot_id.hpp"
-#include "processing/reduction/reducer.hpp"
 
 namespace kolsky {
 
@@ -38,8 +38,8 @@ struct StageDuration {
 class Stopwatch;
 
 /// The thread that makes shots out of complete windows: copies the window from the ring, journals
-/// it, reduces it, publishes both and hands it to the archivist. Nothing is published before it is
-/// durable. It also publishes what the acquisition thread reports as lost.
+/// it, reduces it while the disk takes it, publishes both and hands it to the archivist. Nothing is
+/// published before it is durable. It also publishes what the acquisition thread reports as lost.
 class ShotRecorder {
  public:
   /// Everything referred to must outlive the recorder.
@@ -91,8 +91,8 @@ class ShotRecorder {
   void handle(const AcquisitionEvent& event);
   void record(const Window& window);
   [[nodiscard]] std::shared_ptr<Shot> cut(const Window& whole);
-  [[nodiscard]] bool journal(const Shot& shot);
-  [[nodiscard]] Reduction reduce(const Shot& shot);
+  /// A step of the journal's. @return whether it was done; if not, a fault says why
+  [[nodiscard]] bool journaled(const Shot& shot, const std::function<void()>& step);
   void file_unjournaled(const std::shared_ptr<Shot>& shot);
   void announce(const Shot& shot, Stopwatch& watch);
   void report_loss(const AcquisitionEvent& event);
@@ -104,8 +104,7 @@ class ShotRecorder {
   ShotIdSource ids_;
   std::unique_ptr<Messages> messages_;
 
-  std::mutex reducer_mutex_;  ///< contended only while settings change
-  Reducer reducer_;
+  ReducingThread reducing_;
 
   mutable std::mutex mutex_;
   std::shared_ptr<const ShotSettings> settings_;

@@ -53,8 +53,18 @@ std::shared_ptr<Journal> SharedJournal::append(const Append& write) {
   return journal;
 }
 
-void SharedJournal::append_shot(const Shot& shot) {
-  auto journal = append([&](Journal& open) { open.append_shot(shot); });
+void SharedJournal::write_shot(const Shot& shot) {
+  written_ = append([&](Journal& open) { open.write_shot(shot); });
+}
+
+void SharedJournal::make_durable(const Shot& shot) {
+  std::shared_ptr<Journal> journal = std::exchange(written_, nullptr);
+  try {
+    journal->make_durable();
+  } catch (const std::runtime_error&) {
+    give_up(journal);
+    journal = append([&](Journal& open) { open.append_shot(shot); });
+  }
   const std::lock_guard lock(mutex_);
   not_stored_[shot.id] = std::move(journal);
 }

@@ -23,8 +23,12 @@ class SharedJournal {
   /// @throws InputError where the store cannot be written
   SharedJournal(const StoreLayout& store, std::uint64_t boot_id, std::uint64_t limit_bytes);
 
-  /// Returns when the shot is durable. @throws std::runtime_error or InputError if it is not
-  void append_shot(const Shot& shot);
+  /// The shot survives the end of the process, not yet that of the machine.
+  /// @throws std::runtime_error or InputError if no journal took it
+  void write_shot(const Shot& shot);
+  /// Returns when this shot, the last one written, is durable.
+  /// @throws std::runtime_error if it is not
+  void make_durable(const Shot& shot);
   void append_stored(const std::string& shot_id, const std::filesystem::path& capture);
 
   /// Whether a journal has this shot, and it is not stored yet.
@@ -53,6 +57,7 @@ class SharedJournal {
   int files_ = 0;
   std::shared_ptr<Journal> journal_;
   std::map<std::string, std::shared_ptr<Journal>> not_stored_;  ///< by shot
+  std::shared_ptr<Journal> written_;  ///< has the last shot; the recorder's alone
   /// Held by nobody else, they are done: no shot of theirs is in `not_stored_` and none is on its
   /// way there.
   std::vector<std::shared_ptr<Journal>> ended_;

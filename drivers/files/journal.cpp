@@ -66,7 +66,7 @@ Journal::Journal(const std::filesystem::path& path) : path_(path) {
     writer.put_text(KOLSKY_VERSION);
     record::finish(record::Kind::opened, buffer_);
     append();
-    sync();
+    make_durable();
     sync_folder(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
   } catch (const std::runtime_error& error) {
     ::close(file_);
@@ -82,14 +82,25 @@ Journal::~Journal() {
   ::close(file_);
 }
 
-void Journal::append_shot(const Shot& shot) {
+void Journal::write_shot(const Shot& shot) {
   check_storable(shot);
   const std::scoped_lock lock(append_mutex_);
   record::begin(buffer_);
   encode_shot(shot, buffer_);
   record::finish(record::Kind::shot, buffer_);
   append();
-  sync();
+}
+
+void Journal::make_durable() {
+  if (::fdatasync(file_) != 0) {
+    failed_ = true;
+    throw failure(path_, "a record cannot be made durable", errno);
+  }
+}
+
+void Journal::append_shot(const Shot& shot) {
+  write_shot(shot);
+  make_durable();
 }
 
 void Journal::append_stored(const std::string& shot_id, const std::filesystem::path& capture) {
@@ -125,13 +136,6 @@ void Journal::append() {
     throw failure(path_, "a record cannot be written", error);
   }
   end_ += buffer_.size();
-}
-
-void Journal::sync() {
-  if (::fdatasync(file_) != 0) {
-    failed_ = true;
-    throw failure(path_, "a record cannot be made durable", errno);
-  }
 }
 
 void Journal::make_room(std::uint64_t end) {

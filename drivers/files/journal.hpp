@@ -25,12 +25,19 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// Appends the shot and returns when it is durable: one write and one fdatasync.
+  /// Appends the shot: the end of the process cannot take it any more, the end of the machine can
+  /// until `make_durable` has returned.
   /// @throws InputError if it could never become a capture (see check_storable), nothing is written
   /// then
-  /// @throws std::runtime_error on a write error; after one of fdatasync this journal takes no
-  /// more, since
-  ///   what the disk holds is unknown: go on with a new one
+  /// @throws std::runtime_error on a write error
+  void write_shot(const Shot& shot);
+
+  /// Returns when all that was written is durable: one fdatasync.
+  /// @throws std::runtime_error where it fails; this journal takes no more then, since what the
+  /// disk holds is unknown: go on with a new one
+  void make_durable();
+
+  /// Both of these.
   void append_shot(const Shot& shot);
 
   /// Says that the capture of this shot is durable at `capture`. Lost in a crash it harms nothing,
@@ -44,7 +51,6 @@ class Journal {
 
  private:
   void append();
-  void sync();
   void make_room(std::uint64_t end);
   void fill_ahead(std::uint64_t end);
 

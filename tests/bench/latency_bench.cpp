@@ -1,6 +1,7 @@
 // How long a shot takes from the last sample of its window leaving the digitiser to its result
 // being published, stage by stage, on the simulated digitiser at 1 MS/s x 2 through libiio. The
-// floor beside each stage is the same work with nothing round it, on this machine, now. The row
+// floor beside each stage is the same work with nothing round it, on this machine, now; that of
+// "reduce" is all of it, of which the stage is what the disk left to wait for. The row
 // "the machine" is as much work as a usual shot's by itself: what is above its p50 there nobody
 // here did.
 //
@@ -48,12 +49,17 @@ double percentile(Durations durations, double share) {
 }
 
 template <typename Work>
+double time_once_ms(Work work) {
+  const std::int64_t start = monotonic_ns();
+  work();
+  return static_cast<double>(monotonic_ns() - start) * 1e-6;
+}
+
+template <typename Work>
 Durations time_ms(int repeats, Work work) {
   Durations durations;
   for (int i = 0; i < repeats; ++i) {
-    const std::int64_t start = monotonic_ns();
-    work();
-    durations.push_back(static_cast<double>(monotonic_ns() - start) * 1e-6);
+    durations.push_back(time_once_ms(work));
   }
   return durations;
 }
@@ -67,8 +73,13 @@ Durations floor_copy(const Shot& shot) {
   });
 }
 
+struct JournalFloor {
+  Durations write;
+  Durations durable;
+};
+
 /// The codes into a file that has its room already, and fdatasync.
-Durations floor_journal(const Shot& shot, const std::filesystem::path& folder) {
+JournalFloor floor_journal(const Shot& shot, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "floor";
   const std::vector<char> bytes(shot.samples() * shot.channels.size() * 2);
   const int file = open(path.c_str(), O_CREAT | O_RDWR, 0644);
@@ -76,15 +87,18 @@ Durations floor_journal(const Shot& shot, const std::filesystem::path& folder) {
   bool good = write(file, room.data(), room.size()) == static_cast<ssize_t>(room.size()) &&
               fsync(file) == 0;
   off_t end = 0;
-  Durations durations = time_ms(kFloorRepeats, [&] {
-    good = good &&
-           pwrite(file, bytes.data(), bytes.size(), end) == static_cast<ssize_t>(bytes.size()) &&
-           fdatasync(file) == 0;
+  JournalFloor floor;
+  for (int i = 0; i < kFloorRepeats; ++i) {
+    floor.write.push_back(time_once_ms([&] {
+      good = good &&
+             pwrite(file, bytes.data(), bytes.size(), end) == static_cast<ssize_t>(bytes.size());
+    }));
+    floor.durable.push_back(time_once_ms([&] { good = good && fdatasync(file) == 0; }));
     end += static_cast<off_t>(bytes.size());
-  });
+  }
   close(file);
   std::filesystem::remove(path);
-  return good ? durations : Durations{};
+  return good ? floor : JournalFloor{};
 }
 
 Durations floor_reduce(const Shot& shot) {
@@ -117,9 +131,8 @@ Durations floor_publish(const Shot& shot) {
   zmq::message_t received;
   Durations durations;
   for (int i = 0; i < kFloorRepeats; ++i) {
-    const Durations one =
-        time_ms(1, [&] { publisher.send(zmq::buffer(payload), zmq::send_flags::none); });
-    durations.push_back(one.front());
+    durations.push_back(
+        time_once_ms([&] { publisher.send(zmq::buffer(payload), zmq::send_flags::none); }));
     static_cast<void>(subscriber.recv(received));
   }
   return durations;
@@ -224,12 +237,11 @@ int main(int argc, char** argv) {
 
   const Shot shot = read_capture(captures_in(installation.store() / "shots").front());
   run_in_real_time(RealTime::recording);  // as the recorder does
+  const JournalFloor journal = floor_journal(shot, installation.folder().path());
   std::map<std::string, Durations> floors{
-      {"copy", floor_copy(shot)},
-      {"journal", floor_journal(shot, installation.folder().path())},
-      {"reduce", floor_reduce(shot)},
-      {"encode", floor_encode(shot)},
-      {"publish", floor_publish(shot)}};
+      {"copy", floor_copy(shot)},     {"journal", journal.write},
+      {"durable", journal.durable},   {"reduce", floor_reduce(shot)},
+      {"encode", floor_encode(shot)}, {"publish", floor_publish(shot)}};
   std::printf("%d shots of %zu x %zu samples, %s priority\n", shots, shot.channels.size(),
               shot.samples(), daemon.real_time() ? "real-time" : "ordinary");
   std::printf("%-14s %26s   %17s\n", "", "measured, ms", "floor, ms");

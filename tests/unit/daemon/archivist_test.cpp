@@ -44,7 +44,8 @@ class ArchivistTest : public ::testing::Test {
   void store(std::uint32_t seed, bool journaled = true) {
     const auto shot = std::make_shared<Shot>(make_shot(seed));
     if (journaled) {
-      journal_->append_shot(*shot);
+      journal_->write_shot(*shot);
+      journal_->make_durable(*shot);
     }
     archivist_->expect_shot();
     archivist_->store(shot, summarise(*shot, Reduction{}, ""));

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "daemon/shots/gap_log.hpp"
+#include "daemon/shots/reducing_thread.hpp"
 #include "daemon/shots/shared_journal.hpp"
 #include "daemon/shots/shot_context.hpp"
 #include "daemon/shots/shot_id.hpp"
@@ -201,9 +202,13 @@ TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
   Shot shot = rehearsal_shot(blank_shot(some_config(), apparatus, strain_stream()), 400, 3600);
   shot.id = "one";
   SharedJournal journal(store, 0x12, 1 << 20);
-  journal.append_shot(shot);
+  journal.write_shot(shot);
+  journal.make_durable(shot);
   shot.id = "two";
-  journal.append_shot(shot);
+  journal.write_shot(shot);
+  EXPECT_FALSE(journal.holds("two")) << "a power cut could still take it";
+  journal.make_durable(shot);
+  EXPECT_TRUE(journal.holds("two"));
   journal.append_stored("one", store.capture_of("one"));
   const JournalContents contents = read_journal(store.journals() / "0000000000000012.kj");
   ASSERT_EQ(contents.shots.size(), 2U);
@@ -218,7 +223,8 @@ class TurningOver : public testing::Test {
  protected:
   void append(const std::string& id) {
     shot_.id = id;
-    journal_.append_shot(shot_);
+    journal_.write_shot(shot_);
+    journal_.make_durable(shot_);
   }
   [[nodiscard]] std::vector<std::string> ids_in(const std::string& journal) const {
     std::vector<std::string> ids;
@@ -263,6 +269,19 @@ TEST_F(TurningOver, NamesAJournalOnceAllOfItIsStored) {
   EXPECT_TRUE(journal_.take_done().empty());
 }
 
+TEST_F(TurningOver, KeepsAJournalWithAShotOnItsWay) {
+  shot_.id = "one";
+  journal_.write_shot(shot_);
+  EXPECT_EQ(ids_in("0000000000000012.kj"), std::vector<std::string>{"one"})
+      << "a crash from here on loses it";
+  journal_.turn_over();
+  EXPECT_TRUE(journal_.take_done().empty());
+  journal_.make_durable(shot_);
+  EXPECT_TRUE(journal_.take_done().empty());
+  journal_.append_stored("one", store_.capture_of("one"));
+  EXPECT_EQ(journal_.take_done(), std::vector{store_.journals() / "0000000000000012.kj"});
+}
+
 TEST_F(TurningOver, GoesOnInTheOldFileWhereNoNewOneCanBeMade) {
   append("one");
   const auto elsewhere = store_.root / "elsewhere";
@@ -271,6 +290,25 @@ TEST_F(TurningOver, GoesOnInTheOldFileWhereNoNewOneCanBeMade) {
   append("two");
   std::filesystem::rename(elsewhere, store_.journals());
   EXPECT_EQ(ids_in("0000000000000012.kj"), (std::vector<std::string>{"one", "two"}));
+}
+
+TEST(ReducingThread, GivesEachShotItsReductionWhoeverComesFirst) {
+  const Shot blank = blank_shot(some_config(), pmma_bench(), strain_stream());
+  const auto whole = std::make_shared<const Shot>(rehearsal_shot(blank, 400, 3600));
+  Shot cut_short = *whole;
+  cut_short.channels.pop_back();
+  const auto not_reducible = std::make_shared<const Shot>(cut_short);
+  const std::vector<double> expected_Pa = Reducer().reduce(*whole).stress_Pa;
+  ReducingThread reducing;
+  for (int i = 0; i < 60; ++i) {
+    reducing.begin(i % 2 == 0 ? whole : not_reducible);
+    if (i % 3 == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the thread comes first
+    }
+    const Reduction reduction = reducing.finish();
+    EXPECT_EQ(reduction.quality.reducible, i % 2 == 0) << i;
+    EXPECT_EQ(reduction.stress_Pa, i % 2 == 0 ? expected_Pa : std::vector<double>{}) << i;
+  }
 }
 
 TEST(Summary, TakesPeaksAndVerdict) {
