@@ -36,6 +36,7 @@ using scene::Listener;
 
 constexpr double kBound_ms = 2.0;
 constexpr int kFloorRepeats = 200;
+constexpr std::chrono::milliseconds kBetweenShots{40};
 
 using Durations = std::vector<double>;  // in ms
 
@@ -78,7 +79,8 @@ struct JournalFloor {
   Durations durable;
 };
 
-/// The codes into a file that has its room already, and fdatasync.
+/// The codes into a file that has its room already, and fdatasync. As long apart as shots are: a
+/// processor that has slept takes longer to hear of the disk than one that has just done so.
 JournalFloor floor_journal(const Shot& shot, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "floor";
   const std::vector<char> bytes(shot.samples() * shot.channels.size() * 2);
@@ -95,6 +97,7 @@ JournalFloor floor_journal(const Shot& shot, const std::filesystem::path& folder
     }));
     floor.durable.push_back(time_once_ms([&] { good = good && fdatasync(file) == 0; }));
     end += static_cast<off_t>(bytes.size());
+    std::this_thread::sleep_for(kBetweenShots);
   }
   close(file);
   std::filesystem::remove(path);
@@ -178,7 +181,7 @@ Timings shoot(Listener& listener, int shots) {
                                         1e-6);
     // The pulse's echoes and the trigger's hold-off; no two shots meet the preview at the same
     // phase.
-    std::this_thread::sleep_for(std::chrono::microseconds(40'000 + 1300 * (i % 7)));
+    std::this_thread::sleep_for(kBetweenShots + std::chrono::microseconds(1300 * (i % 7)));
   }
   measured.status = listener.control().status();
   return measured;
