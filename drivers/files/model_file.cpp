@@ -38,9 +38,12 @@ ModelValue read_value(const TomlTable& table, const EffectParameter& parameter) 
                       fmt::format("give a number from {} to {} {}", parameter.lower,
                                   parameter.upper, parameter.unit));
   }
-  if (value.sd < 0.0 || value.prior_sd < 0.0) {
-    throw table.error(value.sd < 0.0 ? "sd" : "prior_sd", "is negative",
-                      "give a standard deviation of 0 or more");
+  if (value.sd < 0.0) {
+    throw table.error("sd", "is negative", "give a standard deviation of 0 or more");
+  }
+  if (table.has("prior_sd") && !(value.prior_sd > 0.0)) {
+    throw table.error("prior_sd", "is not a standard deviation",
+                      "give more than 0, or `free = false` for a number that is known");
   }
   return value;
 }

@@ -30,12 +30,26 @@ std::size_t reference_of(const Bench& bench) {
   return reference;
 }
 
-/// The step between neighbouring codes where the record takes few enough values to show it.
-double step_of(const std::vector<double>& strain) {
-  std::vector<double> values(strain);
+/// The values of every so many samples, each once, in order.
+std::vector<double> values_of(const std::vector<double>& record, std::size_t every) {
+  std::vector<double> values;
+  values.reserve(record.size() / every + 1);
+  for (std::size_t n = 0; n < record.size(); n += every) {
+    values.push_back(record[n]);
+  }
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+/// The step between neighbouring codes where the record takes few enough values to show it.
+double step_of(const std::vector<double>& strain) {
   constexpr std::size_t kSamplesPerValue = 4;
+  constexpr std::size_t kEnough = 3;  // of these samples show most records to have fine steps
+  if (values_of(strain, kEnough).size() * kSamplesPerValue > strain.size()) {
+    return 0.0;
+  }
+  const std::vector<double> values = values_of(strain, 1);
   if (values.size() < 3 || values.size() * kSamplesPerValue > strain.size()) {
     return 0.0;
   }

@@ -149,7 +149,7 @@ const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window,
   }
   return noise_
       .emplace(std::pair{window.weight, quiet},
-               tile_noise(window.weight, quiet, residuals_.band().bins_judged, ranges))
+               tile_noise(transform_, window.weight, quiet, residuals_.band().bins_judged, ranges))
       .first->second;
 }
 

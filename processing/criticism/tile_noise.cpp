@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "processing/criticism/statistics.hpp"
-#include "processing/waves/transform.hpp"
 
 namespace kolsky {
 
@@ -15,13 +14,14 @@ namespace {
 class Lines {
  public:
   Lines(DampedTransform& transform, std::span<const double> record) : length_(record.size()) {
-    std::vector<Complex> half(transform.bins());
-    transform.forward(record, half);
     lines_.resize(3 * length_);
-    for (std::size_t k = 0; k < lines_.size(); ++k) {
-      const std::size_t folded = k % length_;
-      lines_[k] = folded < half.size() ? half[folded] : std::conj(half[length_ - folded]);
+    const auto once = lines_.begin();
+    const auto twice = once + static_cast<std::ptrdiff_t>(length_);
+    transform.forward(record, std::span(lines_).first(transform.bins()));
+    for (std::size_t k = transform.bins(); k < length_; ++k) {
+      lines_[k] = std::conj(lines_[length_ - k]);
     }
+    std::copy(once, twice, std::copy(once, twice, twice));
   }
 
   [[nodiscard]] Complex at(std::ptrdiff_t frequency) const {
@@ -215,9 +215,9 @@ TileNoise& TileNoise::operator+=(const TileNoise& other) {
   return *this;
 }
 
-std::vector<TileNoise> tile_noise(std::span<const double> window, std::span<const double> quiet,
-                                  std::size_t judged, std::span<const BinRange> ranges) {
-  DampedTransform transform(window.size(), 1.0, 1.0);
+std::vector<TileNoise> tile_noise(DampedTransform& transform, std::span<const double> window,
+                                  std::span<const double> quiet, std::size_t judged,
+                                  std::span<const BinRange> ranges) {
   const SpectralMoments moments(transform, window, quiet, judged);
   std::vector<double> square(window.begin(), window.end());
   for (double& value : square) {

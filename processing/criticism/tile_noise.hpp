@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "processing/waves/transform.hpp"
+
 namespace kolsky {
 
 /// What noise of unit power per judged component leaves in a tile: a sum of squares of normal
@@ -38,9 +40,11 @@ struct BinRange {
 ///
 /// Bin 0 is not judged, so z floats; it is taken to be zero on average before the pulse: z(t) less
 /// its mean there, weighted by `quiet`. That mean's own noise is counted.
+/// @param transform  of the window's length, without damping
 /// @param window  one weight per sample, an even number of them
 /// @param quiet   weights of the mean, summing to one; empty: nothing is subtracted
-[[nodiscard]] std::vector<TileNoise> tile_noise(std::span<const double> window,
+[[nodiscard]] std::vector<TileNoise> tile_noise(DampedTransform& transform,
+                                                std::span<const double> window,
                                                 std::span<const double> quiet, std::size_t judged,
                                                 std::span<const BinRange> ranges);
 

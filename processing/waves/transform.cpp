@@ -117,12 +117,12 @@ struct DampedTransform::State {
         time(fftw_alloc_real(length)),
         frequency(fftw_alloc_complex(length / 2 + 1)),
         plans(plans_of(length)),
-        damping(length),
-        undamping(length) {
+        damping(length, 1.0),
+        undamping(length, 1.0 / static_cast<double>(length)) {
     if (!time || !frequency) {
       throw std::bad_alloc();
     }
-    for (std::size_t n = 0; n < length; ++n) {
+    for (std::size_t n = 0; eta_per_s > 0.0 && n < length; ++n) {
       const double exponent = eta_per_s * period_s * static_cast<double>(n);
       damping[n] = std::exp(-exponent);
       undamping[n] = std::exp(exponent) / static_cast<double>(length);

@@ -255,5 +255,20 @@ TEST(ModelFile, RefusesUnknownEffectsOutOfBoundsAndWrongUnits) {
                InputError);
 }
 
+TEST(ModelFile, RefusesAPriorThatIsNoDeviation) {
+  const std::string head =
+      "kolsky_model = 1\nkind = \"bar\"\n[[effects]]\nid = \"gauge-factor:g2\"\n"
+      "[effects.parameters.kappa]\nvalue = 0.01\n";
+  EXPECT_EQ(parse_model(head + "prior_sd = 0.01\n", "m").model.effects[0].values[0].prior_sd, 0.01);
+  for (const char* none : {"0", "-0.01", "nan"}) {
+    try {
+      (void)parse_model(head + "prior_sd = " + none + "\n", "m");
+      ADD_FAILURE() << none << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("prior_sd"), std::string::npos) << error.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kolsky
