@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "processing/criticism/carried_noise.hpp"
+#include "processing/criticism/converter_steps.hpp"
 #include "processing/criticism/smooth_power.hpp"
 #include "processing/identification/noise_spectrum.hpp"
 
@@ -89,9 +91,13 @@ Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
   return correlation;
 }
 
+double rounding_square(double step) {
+  return step * step / 12.0;
+}
+
 /// Of a converter whose steps are all the noise there is.
 double least_power(const Campaign& campaign, std::size_t gauge) {
-  return std::max(campaign.step[gauge] * campaign.step[gauge] / 12.0, 1e-24);
+  return std::max(rounding_square(campaign.step[gauge]), 1e-24);
 }
 
 }  // namespace
@@ -159,6 +165,33 @@ std::vector<CarriedBin> GaugeNoise::carried(std::span<const std::vector<double>>
 
 void GaugeNoise::forget() {
   scale_.assign(campaign_.gauges(), std::vector<double>(band_.bins_judged, 1.0));
+}
+
+double GaugeNoise::unrounded_sd(std::size_t gauge) const {
+  std::vector<std::span<const double>> records;
+  for (const CampaignShot& shot : campaign_.shots) {
+    records.emplace_back(shot.strain[gauge]);
+  }
+  return kolsky::unrounded_sd(records, campaign_.step[gauge]);
+}
+
+void GaugeNoise::add_steps(std::size_t gauge, std::span<const std::vector<double>> clean) {
+  const double step = campaign_.step[gauge];
+  const double noise_sd = unrounded_sd(gauge);
+  DampedTransform transform(clean.front().size(), campaign_.period_s, 1.0);
+  std::vector<double> sum(band_.bins_judged, 0.0);
+  for (const std::vector<double>& record : clean) {
+    const std::vector<double> power =
+        rounding_power(transform, record, step, noise_sd, band_.bins_judged);
+    std::transform(sum.begin(), sum.end(), power.begin(), sum.begin(), std::plus<>());
+  }
+  // The judged window's samples are so many times fewer.
+  const auto fewer = static_cast<double>(band_.decimation);
+  const auto j = static_cast<Eigen::Index>(gauge);
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    const double power = sum[k] / static_cast<double>(clean.size()) / (fewer * fewer);
+    scale_[gauge][k] = std::max(scale_[gauge][k], 1.0 + power / quiet_[k](j, j));
+  }
 }
 
 void GaugeNoise::learn(std::size_t gauge, const std::vector<double>& power_over_quiet) {

@@ -41,6 +41,9 @@ class GaugeNoise {
 
   /// Takes the quiet parts at their word again.
   void forget();
+  /// Adds what a coarse converter's steps leave of records that move, where the quiet parts do not
+  /// tell. @param clean  a gauge's records by shot, over the judged window at their own rate
+  void add_steps(std::size_t gauge, std::span<const std::vector<double>> clean);
   /// @param power_over_quiet  of a gauge at each bin, as residuals show it; made smooth
   void learn(std::size_t gauge, const std::vector<double>& power_over_quiet);
 
@@ -49,6 +52,7 @@ class GaugeNoise {
   [[nodiscard]] double flatness() const;
 
  private:
+  [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
   void measure(const std::vector<NoiseSpectrum>& spectra, const Eigen::MatrixXd& correlation);
 
   const Campaign& campaign_;

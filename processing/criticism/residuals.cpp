@@ -353,6 +353,25 @@ void WhiteResiduals::freeze(const Composition& composition, const std::vector<do
   estimate_noise(evaluate(composition, theta));
 }
 
+void WhiteResiduals::know_steps() {
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    if (campaign_.step[j] == 0.0) {
+      continue;
+    }
+    std::vector<std::vector<double>> clean;
+    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+      const std::vector<double>& record = campaign_.shots[n].strain[j];
+      const auto judged = static_cast<std::ptrdiff_t>(band_.judged * band_.decimation);
+      const auto first = static_cast<std::ptrdiff_t>(band_.edge);
+      clean.emplace_back(record.begin() + first, record.begin() + first + judged);
+      std::transform(clean.back().begin(), clean.back().end(), own_noise_[n][j].begin() + first,
+                     clean.back().begin(), std::minus<>());
+    }
+    noise_.add_steps(j, clean);
+  }
+  forget_whitener();
+}
+
 void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
   Workspace& work = *work_.front();
   const std::size_t d = band_.decimation;

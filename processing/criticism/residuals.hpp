@@ -39,6 +39,10 @@ class WhiteResiduals : public ShotResiduals {
   /// of each gauge's noise.
   void freeze(const Composition& composition, const std::vector<double>& theta);
 
+  /// Adds to what is known of each gauge's noise what a coarse converter's steps leave of records
+  /// like those foretold when `freeze` was called.
+  void know_steps();
+
   /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
   /// of the model. How it is shared out matters as much as how much it is: with a wrong share for

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "tests/generators/campaign.hpp"
@@ -19,7 +20,7 @@ struct Made {
 };
 
 Made make(std::uint64_t seed, const std::vector<std::string>& effects, int gauges = 4,
-          bool split = false) {
+          bool split = false, std::optional<int> bits = {}) {
   testing::CampaignWishes wishes;
   wishes.seed = seed;
   wishes.shots = 6;
@@ -27,6 +28,7 @@ Made make(std::uint64_t seed, const std::vector<std::string>& effects, int gauge
   wishes.rate_Hz = 1e6;
   wishes.split = split;
   wishes.gauges = gauges;
+  wishes.bits = bits;
   Made made{testing::draw_campaign(wishes), {}};
   for (const std::string& effect : effects) {
     testing::hide(made.truth, testing::parse_effect(effect));
@@ -158,6 +160,22 @@ TEST(Comparison, FailsNowhereWhereNothingIsHidden) {
     for (const Region& region : compared.comparison.regions) {
       EXPECT_FALSE(region.repeats) << seed;
       EXPECT_NEAR(region.sigma(), 1.0, 5.0 / std::sqrt(2.0 * region.noise.freedom())) << seed;
+    }
+  }
+}
+
+/// What creeps over a coarse converter's steps leaves slow saw teeth, which the quiet before the
+/// pulses does not show.
+TEST(Comparison, TakesACoarseConvertersStepsForNoFailure) {
+  for (const std::uint64_t seed : {3U, 13U, 14U}) {
+    const Campaign campaign = read_campaign(make(seed, {}, 4, false, 8).shots);
+    Study fitting(campaign, 0.0, Workers{});
+    const Model model = fitting.fit(paper_model(BenchKind::bar, false)).model;
+    Study study(campaign, 0.0, Workers{});
+    const Studied studied = study.as_it_is(model);
+    EXPECT_LT(studied.fit.chi2 / static_cast<double>(studied.fit.residual.size()), 1.5) << seed;
+    for (const Region& region : compare(study, studied).regions) {
+      EXPECT_FALSE(region.repeats) << seed;
     }
   }
 }
