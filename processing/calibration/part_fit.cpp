@@ -97,7 +97,10 @@ class PartFit {
     return Fitted(few, options_, model(variant, numbers, {}, kLoosely)).studied.fit.objective();
   }
 
+  void tell(const std::string& step) const { options_.progress(name_of(part_.lay) + ": " + step); }
+
   void choose_variant() {
+    tell("which waves, and whether the far end answers");
     const bool may_return = part_.lay != BarsLay::together && !part_.two_passes;
     variant_.far_end_seen = may_return;
     double best = objective(variant_);
@@ -216,6 +219,8 @@ class PartFit {
 
   void release_what_differs() {
     for (std::size_t round = 0;; ++round) {
+      tell(round == 0 ? "all " + std::to_string(numbers_.size()) + " numbers as filed"
+                      : std::to_string(round) + " set free");
       fitted_ =
           std::make_unique<Fitted>(campaign_, options_, model(variant_, numbers_, released_, 0.0));
       if (round == 0) {
@@ -242,6 +247,7 @@ class PartFit {
     suspects.resize(std::min(suspects.size(), kMostRefits));
     std::vector<Explanation> explanations;
     for (const auto& [z, number] : suspects) {
+      tell("with " + number->id + " free");
       explanations.push_back(explain(*fitted_, *number));
     }
     std::stable_sort(
