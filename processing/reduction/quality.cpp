@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "processing/reduction/formatted.hpp"
+#include "processing/reduction/loop_summary.hpp"
 
 namespace kolsky {
 
@@ -30,12 +31,6 @@ constexpr std::size_t kLastPart = 50;
 constexpr std::size_t kFlatTop = 10;
 
 /// The loading: from the start to the largest strain.
-std::size_t loading_end(const std::vector<double>& strain) {
-  const auto largest = std::max_element(
-      strain.begin(), strain.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return static_cast<std::size_t>(largest - strain.begin()) + 1;
-}
-
 Check equilibrium(const Reduction& r, std::size_t end) {
   double squares = 0.0;
   double sum = 0.0;
@@ -432,7 +427,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
   const std::size_t held = reduction.time_s.size();
   const Check separation = separate(inputs, reduction);
   const bool cut = reduction.time_s.size() < held;
-  const std::size_t end = loading_end(reduction.strain);
+  const std::size_t end = loading_end(reduction);
   const bool assumed = inputs.separated && inputs.separated->assumes_equilibrium;
   const Check agree = equilibrium(reduction, end);
   const Check lag = front_back_lag(reduction, end);
