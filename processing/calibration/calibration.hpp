@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -75,6 +76,8 @@ struct CalibrationOptions {
   double band_limit_Hz = 0.0;
   std::vector<std::string> trusted;  ///< gauges whose gain, place and time count as right
   Workers workers;
+  /// Told what is at hand, from the calling thread.
+  std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 
 /// Holds a bench file against shots that were fired to check it. Each shot's source is free at all

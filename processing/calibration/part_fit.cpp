@@ -97,7 +97,10 @@ class PartFit {
     return Fitted(few, options_, model(variant, numbers, {}, kLoosely)).studied.fit.objective();
   }
 
+  void tell(const std::string& step) const { options_.progress(name_of(part_.lay) + ": " + step); }
+
   void choose_variant() {
+    tell("which waves, and whether the far end answers");
     const bool may_return = part_.lay != BarsLay::together && !part_.two_passes;
     variant_.far_end_seen = may_return;
     double best = objective(variant_);
@@ -216,6 +219,8 @@ class PartFit {
 
   void release_what_differs() {
     for (std::size_t round = 0;; ++round) {
+      tell(round == 0 ? "all " + std::to_string(numbers_.size()) + " numbers as filed"
+                      : std::to_string(round) + " set free");
       fitted_ =
           std::make_unique<Fitted>(campaign_, options_, model(variant_, numbers_, released_, 0.0));
       if (round == 0) {
@@ -242,6 +247,7 @@ class PartFit {
     suspects.resize(std::min(suspects.size(), kMostRefits));
     std::vector<Explanation> explanations;
     for (const auto& [z, number] : suspects) {
+      tell("with " + number->id + " free");
       explanations.push_back(explain(*fitted_, *number));
     }
     std::stable_sort(
@@ -299,15 +305,16 @@ class PartFit {
     }
     out.measured = number_from(number, own.value, own.sd);
     const bool released = released_.count(number.id) > 0;
-    if (number.believed) {
-      out.deviations =
-          (out.measured.value - out.filed.value) / std::hypot(out.measured.sd, out.filed.sd);
+    const double spread = std::hypot(out.measured.sd, out.filed.sd);
+    if (number.believed && spread > 0.0) {
+      out.deviations = (out.measured.value - out.filed.value) / spread;
     }
     const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
     if (!number.believed) {
       out.standing = Standing::unfiled;
-    } else if ((tied != ties_.end() || released || std::abs(out.deviations) > kNamed) &&
-               leaves_most()) {
+    } else if ((tied != ties_.end() || released || std::abs(out.deviations) > kNamed ||
+                !(own.sd > 0.0)) &&
+               explains_nothing()) {
       out.standing = Standing::unexplained;
       out.combined = out.filed;
     } else if (tied != ties_.end()) {
@@ -324,8 +331,26 @@ class PartFit {
     return out;
   }
 
-  /// Whether what was released explains too little of the misfit to be what differs: the records
-  /// are of something else than bars lying like this.
+  /// Whether the records are of something else than bars lying like this.
+  [[nodiscard]] bool explains_nothing() const { return leaves_most() || at_a_limit(); }
+
+  /// Whether more than noise is left with a released number as far off as any may be, a gain at ten
+  /// or a tenth: it goes there for want of what is really between the bars.
+  [[nodiscard]] bool at_a_limit() const {
+    constexpr double kClose = 1e-6;
+    const Composition& composition = fitted_->studied.composition;
+    return result_.chi2_reduced > kMoreThanNoise &&
+           std::any_of(numbers_.begin(), numbers_.end(), [&](const ModelNumber& number) {
+             const std::size_t place = place_of(composition, number);
+             const FreeNumber& free = composition.numbers()[place];
+             const double value = fitted_->studied.fit.theta[place] * free.scale;
+             const double close = kClose * (free.upper - free.lower);
+             return released_.count(number.id) > 0 &&
+                    (value < free.lower + close || value > free.upper - close);
+           });
+  }
+
+  /// Whether what was released explains too little of the misfit to be what differs.
   [[nodiscard]] bool leaves_most() const {
     constexpr double kFarOff = 20.0;
     const double left = result_.chi2_reduced - 1.0;

@@ -1,6 +1,7 @@
 #include "processing/reduction/loop_summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kolsky {
 
@@ -30,6 +31,20 @@ std::size_t first_at(const std::vector<double>& history, double level) {
 }
 
 }  // namespace
+
+std::size_t loading_end(const Reduction& reduction) {
+  if (reduction.strain.empty()) {
+    return 0;
+  }
+  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto stress =
+      std::max_element(reduction.stress_Pa.begin(), reduction.stress_Pa.end(), smaller);
+  const bool tensile = stress != reduction.stress_Pa.end() && *stress < 0.0;
+  const auto& strain = reduction.strain;
+  const auto furthest = tensile ? std::min_element(strain.begin(), strain.end())
+                                : std::max_element(strain.begin(), strain.end());
+  return static_cast<std::size_t>(furthest - strain.begin()) + 1;
+}
 
 LoopSummary summarise(const Reduction& reduction) {
   if (reduction.stress_Pa.empty()) {

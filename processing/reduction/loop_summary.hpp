@@ -13,6 +13,10 @@ struct LoopSummary {
   double mean_strain_rate_per_s = 0.0;  ///< over the loading
 };
 
+/// Samples up to the largest strain, in the sense of the largest stress: what follows, the specimen
+/// unloads, or the histories drift.
+[[nodiscard]] std::size_t loading_end(const Reduction& reduction);
+
 /// All zero for an empty reduction.
 [[nodiscard]] LoopSummary summarise(const Reduction& reduction);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "processing/reduction/formatted.hpp"
+#include "processing/reduction/loop_summary.hpp"
 
 namespace kolsky {
 
@@ -30,12 +31,6 @@ constexpr std::size_t kLastPart = 50;
 constexpr std::size_t kFlatTop = 10;
 
 /// The loading: from the start to the largest strain.
-std::size_t loading_end(const std::vector<double>& strain) {
-  const auto largest = std::max_element(
-      strain.begin(), strain.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return static_cast<std::size_t>(largest - strain.begin()) + 1;
-}
-
 Check equilibrium(const Reduction& r, std::size_t end) {
   double squares = 0.0;
   double sum = 0.0;
@@ -198,31 +193,46 @@ Check loop_closure(const Reduction& r, std::size_t end) {
   return check;
 }
 
-/// First time at which a history passes half of its largest value over the loading.
-double half_rise_s(std::span<const double> time_s, std::span<const double> history) {
+double largest_of(std::span<const double> history) {
   double largest = 0.0;
   for (const double value : history) {
     largest = std::max(largest, std::abs(value));
   }
+  return largest;
+}
+
+/// First time at which a history passes a level that it reaches.
+double rise_s(std::span<const double> time_s, std::span<const double> history, double level) {
   for (std::size_t n = 1; n < history.size(); ++n) {
     const double before = std::abs(history[n - 1]);
     const double now = std::abs(history[n]);
-    if (now >= largest / 2.0) {
-      const double share = now > before ? (largest / 2.0 - before) / (now - before) : 1.0;
+    if (now >= level) {
+      const double share = now > before ? (level - before) / (now - before) : 1.0;
       return time_s[n - 1] + std::clamp(share, 0.0, 1.0) * (time_s[n] - time_s[n - 1]);
     }
   }
   return 0.0;
 }
 
-Check front_back_lag(const Reduction& r, std::size_t end) {
+/// How much later the back force rises than the front force, at levels that both reach. What is
+/// filed wrong moves all levels alike. In a soft specimen under a steep pulse the forces grow in
+/// steps, in turn at front and back, and at some level the back is first: never at all.
+double lag_s(const Reduction& r, std::size_t end) {
   const std::span<const double> time_s(r.time_s.data(), end);
-  const double front_s = half_rise_s(time_s, {r.force_front_N.data(), end});
-  const double back_s = half_rise_s(time_s, {r.force_back_N.data(), end});
+  const std::span<const double> front(r.force_front_N.data(), end);
+  const std::span<const double> back(r.force_back_N.data(), end);
+  const double reached = std::min(largest_of(front), largest_of(back));
+  const auto at = [&](double share) {
+    return rise_s(time_s, back, share * reached) - rise_s(time_s, front, share * reached);
+  };
+  return std::max(at(0.25), at(0.5));
+}
+
+Check front_back_lag(const Reduction& r, std::size_t end) {
   // The back cannot lead: it hears of the pulse through the specimen. Two samples are timing error.
   const double step_s = r.time_s[1] - r.time_s[0];
   Check check{.name = "front_back_lag", .unit = "s", .text = {}};
-  check.value = back_s - front_s;
+  check.value = lag_s(r, end);
   check.limit = -std::max(2.0 * step_s, 1e-6);
   check.verdict = check.value >= check.limit ? Verdict::pass : Verdict::warn;
   check.text =
@@ -417,7 +427,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
   const std::size_t held = reduction.time_s.size();
   const Check separation = separate(inputs, reduction);
   const bool cut = reduction.time_s.size() < held;
-  const std::size_t end = loading_end(reduction.strain);
+  const std::size_t end = loading_end(reduction);
   const bool assumed = inputs.separated && inputs.separated->assumes_equilibrium;
   const Check agree = equilibrium(reduction, end);
   const Check lag = front_back_lag(reduction, end);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/stations.hpp"
@@ -118,15 +119,12 @@ Quotable quotable_part(const Reduction& r) {
   Quotable part;
   part.text = "no part of the curve: the faces never carry the same force while it is loaded";
   const auto apart = disagreement(r);
-  const auto largest = std::max_element(r.strain.begin(), r.strain.end(), [](double a, double b) {
-    return std::abs(a) < std::abs(b);
-  });
-  const auto end = static_cast<std::size_t>(largest - r.strain.begin());
+  const std::size_t end = loading_end(r);
   // The longest stretch of the loading in which the faces agree throughout.
   std::size_t best = 0;
   std::size_t begin = 0;
   std::size_t from = 0;
-  for (std::size_t n = 0; n < end; ++n) {
+  for (std::size_t n = 0; n + 1 < end; ++n) {
     if (!(apart[n] <= kEquilibriumLimit)) {
       from = n + 1;
     } else if (n + 1 - from > best) {

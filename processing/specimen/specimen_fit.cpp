@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "processing/base/error.hpp"
+#include "processing/reduction/formatted.hpp"
+#include "processing/specimen/fit_warnings.hpp"
 #include "processing/specimen/specimen_search.hpp"
 
 namespace kolsky {
@@ -224,31 +226,17 @@ void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimu
   }
 }
 
-std::string percent(double share) {
-  return std::to_string(static_cast<int>(std::lround(100.0 * share))) + " %";
-}
-
 void warn(SpecimenFit& fit) {
-  constexpr double kHardly = 0.3;
   constexpr double kPoor = 1.5;
-  for (const FittedNumber& p : fit.parameters) {
-    if (p.sd > kHardly * p.value) {
-      fit.warnings.push_back(p.name + " is hardly determined by these shots: its deviation is " +
-                             percent(p.sd / p.value));
-    }
-  }
+  fit.warnings = warnings_of(fit.parameters);
   if (fit.chi2_reduced > kPoor) {
-    fit.warnings.push_back("the model leaves more than noise (chi2 per degree of freedom " +
-                           std::to_string(fit.chi2_reduced) +
-                           "): the deviations are widened accordingly");
+    fit.warnings.push_back(
+        formatted("the model leaves more than noise (chi2 per degree of freedom %.3g): the "
+                  "deviations are widened accordingly",
+                  fit.chi2_reduced));
   }
-  constexpr double kClearly = 4.0;
-  for (const CompliancePoint& p : fit.spectrum) {
-    if (p.J2_per_Pa < -kClearly * p.J2_sd_of_mean) {
-      fit.warnings.push_back("J2 is negative at " + std::to_string(std::lround(p.frequency_Hz)) +
-                             " Hz: no passive material does that");
-      break;
-    }
+  for (std::string& warning : warnings_of(fit.spectrum)) {
+    fit.warnings.push_back(std::move(warning));
   }
 }
 

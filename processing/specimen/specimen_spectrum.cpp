@@ -9,6 +9,7 @@
 #include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/specimen/fit_warnings.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -33,10 +34,11 @@ struct Points {
 };
 
 std::vector<Reduction> reduce_all(const std::vector<Shot>& shots, const Material& bars,
-                                  WaveTheory theory) {
+                                  WaveTheory theory, Separation separation) {
   ReductionOptions options;
   options.bar_model = bars;
   options.theory = theory;
+  options.separation = separation;
   Reducer reducer(options);
   std::vector<Reduction> reductions;
   for (const Shot& shot : shots) {
@@ -47,6 +49,24 @@ std::vector<Reduction> reduce_all(const std::vector<Shot>& shots, const Material
     }
   }
   return reductions;
+}
+
+/// Whether the striker still pushed when the specimen's answer hid it at the gauge.
+bool overlap(const std::vector<Reduction>& reductions) {
+  return std::any_of(reductions.begin(), reductions.end(), [](const Reduction& reduction) {
+    return std::any_of(reduction.quality.checks.begin(), reduction.quality.checks.end(),
+                       [](const Check& check) {
+                         return check.name == "window_overlap" && check.verdict != Verdict::pass;
+                       });
+  });
+}
+
+/// As each shot needs it; by equilibrium where time does not part the waves of one.
+std::vector<Reduction> reduce_apart(const std::vector<Shot>& shots, const Material& bars,
+                                    WaveTheory theory) {
+  auto reductions = reduce_all(shots, bars, theory, Separation::as_needed);
+  return overlap(reductions) ? reduce_all(shots, bars, theory, Separation::equilibrium)
+                             : std::move(reductions);
 }
 
 /// Sums over shots: the ratio is then weighed by how hard each shot drove a frequency.
@@ -155,10 +175,11 @@ Eigen::VectorXd jackknife_sd(const std::vector<ShotSpectra>& shots, const std::v
 
 SpectralEstimate estimate_spectrum(const std::vector<Shot>& shots, const Material& bars,
                                    const SpectralOptions& options) {
-  const auto reductions = reduce_all(shots, bars, options.bars);
+  const auto reductions = reduce_apart(shots, bars, options.bars);
   std::size_t samples = std::numeric_limits<std::size_t>::max();
   SpectralEstimate estimate;
   estimate.band_limit_Hz = options.band_limit_Hz;
+  estimate.separation = reductions.front().separation;
   for (const Reduction& reduction : reductions) {
     samples = std::min(samples, reduction.time_s.size());
     estimate.band_limit_Hz = std::min(estimate.band_limit_Hz, reduction.band_limit_Hz);
@@ -218,6 +239,15 @@ SpectralEstimate estimate_spectrum(const std::vector<Shot>& shots, const Materia
       point.J2_sd_of_mean = point.J2_sd / std::sqrt(count);
     }
     estimate.spectrum.push_back(point);
+  }
+  estimate.warnings = warnings_of(estimate.parameters);
+  for (std::string& warning : warnings_of(estimate.spectrum)) {
+    estimate.warnings.push_back(std::move(warning));
+  }
+  if (overlap(reductions)) {
+    estimate.warnings.emplace_back(
+        "waves overlap in these histories (kolsky reduce names the shots): the fit to the records "
+        "is not touched by that");
   }
   return estimate;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "processing/base/shot.hpp"
 #include "processing/identification/bar_fit.hpp"
+#include "processing/reduction/reduction.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 
 namespace kolsky {
@@ -14,6 +16,10 @@ struct SpectralEstimate {
   std::vector<FittedNumber> parameters;   ///< a three-element solid through it
   double band_limit_Hz = 0.0;
   double window_s = 0.0;  ///< of the histories that every shot has
+  /// How the waves of all shots were told apart: by equilibrium, which (25) takes for granted
+  /// anyway, where time does not part them in some shot and the input bar has one gauge only.
+  Separation separation = Separation::never;
+  std::vector<std::string> warnings;  ///< what keeps it from being taken at its word
 };
 
 struct SpectralOptions {

@@ -6,6 +6,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_text.hpp"
 #include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/bench_file.hpp"
 #include "drivers/files/new_file.hpp"
@@ -45,7 +46,10 @@ int run(const Settings& settings, Context& context) {
       rebench(shot, *settings.bench);
     }
   }
-  const Calibration calibration = calibrate(shots, options_from(settings, shots));
+  CalibrationOptions options = options_from(settings, shots);
+  SlowWork progress("kolsky calibrate");
+  options.progress = [&progress](const std::string& step) { progress.at(step); };
+  const Calibration calibration = calibrate(shots, options);
   const Shot& first = shots.front();
   if (settings.bench_out) {
     NewFile file(*settings.bench_out);

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
@@ -15,6 +13,7 @@
 #include "clients/cli/chain_run.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/bench_file.hpp"
@@ -370,23 +369,6 @@ std::vector<ForetoldSpeed> measure(const Settings& settings, const std::vector<S
 }
 
 /// A line on stderr now and then.
-class Progress {
- public:
-  void show(std::size_t done, std::size_t of) {
-    const std::scoped_lock hold(lock_);
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ > every_) {
-      last_ = now;
-      say(fmt::format("{} of {} impacts computed", done, of));
-    }
-  }
-
- private:
-  std::mutex lock_;
-  std::chrono::seconds every_{terminal_of(2).interactive ? 1 : 20};
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 void add_remarks(ChainRun& run) {
   double largest = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -427,12 +409,13 @@ int run_command(const Settings& settings, Context& context) {
   run.cover = fit_of(cover, settings, bars, "cover");
   run.between = between(run.core, run.cover, same_bars(core, cover, settings),
                         same_bench(core.front().bench, cover.front().bench));
-  Progress progress;
+  SlowWork progress("kolsky chain");
   const std::vector<BallPrediction> predictions = foretell_impacts(
       bench,
       {posterior_of(run.core, core_filed), posterior_of(run.cover, cover_filed), run.between},
-      speeds, run.options, all_cores(),
-      [&progress](std::size_t done, std::size_t of) { progress.show(done, of); });
+      speeds, run.options, all_cores(), [&progress](std::size_t done, std::size_t of) {
+        progress.at(fmt::format("{} of {} impacts computed", done, of));
+      });
   for (std::size_t i = 0; i < predictions.size(); ++i) {
     run.speeds[i].foretold = predictions[i];
     compare(run.speeds[i], run.impacts);

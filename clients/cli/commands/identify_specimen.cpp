@@ -169,6 +169,13 @@ JsonObject describe(const std::vector<CompliancePoint>& spectrum,
   return object;
 }
 
+/// How the waves behind the histories were told apart, as `kolsky reduce --separate` has it.
+std::string name_of(Separation separation) {
+  return separation == Separation::equilibrium ? "equilibrium"
+         : separation == Separation::gauges    ? "gauges"
+                                               : "never";
+}
+
 JsonValue spectral_json(const Outcome& outcome) {
   if (!outcome.spectral) {
     return JsonObject{{"refused", outcome.spectral_refused}};
@@ -177,7 +184,9 @@ JsonValue spectral_json(const Outcome& outcome) {
                     {"spectrum", describe(outcome.spectral->spectrum,
                                           outcome.shots.front().bench.specimen->density_kg_m3)},
                     {"band_limit_Hz", outcome.spectral->band_limit_Hz},
-                    {"window_s", outcome.spectral->window_s}};
+                    {"window_s", outcome.spectral->window_s},
+                    {"separation", name_of(outcome.spectral->separation)},
+                    {"warnings", outcome.spectral->warnings}};
 }
 
 std::string name_of_theory(WaveTheory theory) {
@@ -188,6 +197,15 @@ std::string name_of_theory(WaveTheory theory) {
 
 JsonObject describe(const ShpbTheory& theory) {
   return {{"bars", name_of_theory(theory.bars)}, {"specimen", name_of(theory.specimen)}};
+}
+
+/// A list of what was said of each, as `identify bar` gives it.
+JsonList shots_of(const Outcome& outcome) {
+  JsonList list;
+  for (const Shot& shot : outcome.shots) {
+    list.emplace_back(JsonObject{{"capture", shot.id}});
+  }
+  return list;
 }
 
 JsonValue describe(const Outcome& outcome) {
@@ -220,7 +238,7 @@ JsonValue describe(const Outcome& outcome) {
       {"spectral", spectral_json(outcome)},
       {"bar_model", bars_in_words(outcome)},
       {"bar_model_assumed", assumed},
-      {"shots", static_cast<std::uint64_t>(outcome.shots.size())},
+      {"shots", shots_of(outcome)},
       {"warnings", fit.warnings}};
 }
 
@@ -253,6 +271,12 @@ std::string report(const Outcome& outcome) {
     text += fmt::format("  strain over stress, frequency by frequency (eq. 25, up to {})\n",
                         with_unit(outcome.spectral->band_limit_Hz, "Hz"));
     text += table_of(outcome.spectral->parameters);
+    if (outcome.spectral->separation == Separation::equilibrium) {
+      text += "    waves overlap: told apart by the output bar's force, as if in equilibrium\n";
+    }
+    for (const std::string& warning : outcome.spectral->warnings) {
+      text += "    warning: " + warning + "\n";
+    }
   } else {
     text += "  no estimate from the histories: " + outcome.spectral_refused + "\n";
   }

@@ -147,7 +147,10 @@ TEST_F(SpecimenFiles, AreIdentifiedWithBothEstimatorsAndAFileToGoOnWith) {
               1e-9);
   EXPECT_LE(told["band_limit_Hz"].get<double>(), 40e3) << "the bars are not known beyond";
   EXPECT_EQ(told["bar_model_assumed"], false);
-  EXPECT_EQ(told["shots"], 3);
+  ASSERT_EQ(told["shots"].size(), 3U);
+  EXPECT_EQ(told["shots"][0]["capture"], captures_.front());
+  EXPECT_EQ(told["spectral"]["separation"], "never");
+  EXPECT_TRUE(told["spectral"]["warnings"].empty());
 
   const json plan = json_of(
       kolsky({"plan", "--bench", folder_ / "bench.toml", "--specimen", file, "--pulse-strain",

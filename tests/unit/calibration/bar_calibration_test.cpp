@@ -68,6 +68,24 @@ TEST(BarCalibration, BenchFiledWithinItsDeviationsPasses) {
             "gauge-factor:g1, gauge-factor:g2, gauge-factor:g3, gauge-factor:g4");
 }
 
+TEST(BarCalibration, TellsHowFarItIs) {
+  const testing::Campaign made =
+      campaign(3, testing::Tolerances::filed, 2, {"gauge-position:g3=0.005"});
+  std::vector<std::string> steps;
+  CalibrationOptions options;
+  options.progress = [&steps](const std::string& step) { steps.push_back(step); };
+  const Calibration calibration = calibrate(testing::shots_of(made), options);
+  EXPECT_EQ(named(calibration), std::vector<std::string>{"gauge-position:g3"});
+  const auto told = [&steps](const std::string& part) {
+    return std::any_of(steps.begin(), steps.end(), [&](const std::string& step) {
+      return step.find(part) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told("as filed"));
+  EXPECT_TRUE(told("with gauge-position:g3 free"));
+  EXPECT_TRUE(told("1 set free"));
+}
+
 TEST(BarCalibration, GaugeFiveMillimetresOffIsNamedWithItsPlace) {
   const testing::Campaign made =
       campaign(3, testing::Tolerances::filed, 3, {"gauge-position:g3=0.005"});

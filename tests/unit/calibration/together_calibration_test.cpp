@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "processing/calibration/calibration.hpp"
+#include "tests/generators/campaign.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
 
@@ -76,6 +77,33 @@ TEST(BarsTogether, ASpecimenBetweenThemIsNotLaidToTheBench) {
   EXPECT_FALSE(standing(calibration, Standing::unexplained).empty());
   ASSERT_FALSE(calibration.reasons.empty());
   EXPECT_NE(calibration.reasons.front().find("specimen"), std::string::npos);
+}
+
+// Soft enough, and gains of ten and a tenth, the most there are, leave less of it: still no gauge
+// is that far off.
+TEST(BarsTogether, NumbersAtTheirLimitsExplainNothing) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 21;
+  wishes.shots = 2;
+  wishes.gauges = 2;
+  wishes.tolerances = testing::Tolerances::filed;
+  wishes.split = true;
+  const testing::Campaign made = testing::draw_campaign(wishes);
+  CalibrationOptions options;
+  Material bars = paper_pmma();
+  bars.E1_Pa = {made.world.material.E1_Pa};
+  bars.E2_Pa = {made.world.material.E2_Pa};
+  bars.eta2_Pa_s = {made.world.material.eta2_Pa_s};
+  options.bars = BarPrior(bars);
+  const Calibration calibration = calibrate(testing::shots_of(made), options);
+  EXPECT_EQ(calibration.certificate, Certificate::undecided);
+  EXPECT_TRUE(standing(calibration, Standing::differs).empty());
+  EXPECT_TRUE(standing(calibration, Standing::tied).empty());
+  EXPECT_FALSE(standing(calibration, Standing::unexplained).empty());
+  for (const CalibratedNumber& n : calibration.parts.front().numbers) {
+    EXPECT_TRUE(std::isfinite(n.deviations)) << n.id;
+    EXPECT_TRUE(n.measured.sd > 0.0 || n.standing == Standing::unexplained) << n.id;
+  }
 }
 
 TEST(BarsTogether, WhichOfTwoGainsIsOffIsSaidToBeOpen) {

@@ -48,6 +48,31 @@ TEST(Validity, QuotesTheLoadingFromWhereTheFacesAgree) {
   EXPECT_NEAR(part.from_strain, 0.044, 0.003);
 }
 
+// Histories that are asked for beyond what the gauges tell drift, even to more strain of the other
+// sign than there was in the loading.
+TEST(Validity, QuotesNothingOfADriftThatFollows) {
+  Reduction r = by_hand();
+  for (std::size_t n = 150; n < r.strain.size(); ++n) {
+    r.strain[n] = -0.05 - 5e-3 * static_cast<double>(n - 150);
+    r.force_front_N[n] = r.force_back_N[n] = -10.0;
+    r.stress_Pa[n] = -10.0;
+  }
+  const Quotable part = quotable_part(r);
+  ASSERT_TRUE(part.any);
+  EXPECT_NEAR(part.from_s, 44e-6, 3e-6);
+  EXPECT_NEAR(part.to_s, 99e-6, 2e-6);
+}
+
+TEST(Validity, QuotesATensileLoadingToo) {
+  Reduction r = by_hand();
+  for (auto* history : {&r.strain, &r.stress_Pa, &r.force_front_N, &r.force_back_N}) {
+    for (double& value : *history) {
+      value = -value;
+    }
+  }
+  EXPECT_NEAR(quotable_part(r).to_s, 99e-6, 2e-6);
+}
+
 TEST(Validity, QuotesNothingWhereTheFacesNeverAgree) {
   Reduction r = by_hand();
   for (double& force : r.force_front_N) {

@@ -94,5 +94,18 @@ TEST(PaperBench, SaysWhichBarModelWasAssumed) {
   EXPECT_EQ(Reducer().reduce(shot).bar_model, "identified in May");
 }
 
+// A pulse that is over before the core is in equilibrium: waves run to and fro in it, and the back
+// passes half of its own peak early. It is nobody's misfiled position.
+TEST(ShortPulse, DoesNotPutTheBackBeforeTheFront) {
+  BenchModel model = paper_bench(kCore, 0.004);
+  model.pulse.duration_s = 43e-6;
+  model.pulse.ramp_s = 7e-6;
+  const SolvedShot solved = testing::shot_of(model, testing::records_of(model, 2e-3));
+  const Reduction r = Reducer().reduce(solved.shot);
+  EXPECT_EQ(check_of(r, "equilibrium").verdict, Verdict::warn);
+  EXPECT_EQ(check_of(r, "front_back_lag").verdict, Verdict::pass)
+      << check_of(r, "front_back_lag").text;
+}
+
 }  // namespace
 }  // namespace kolsky
