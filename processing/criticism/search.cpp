@@ -140,8 +140,10 @@ void Search::refine(std::vector<Refit>& list) {
 
 /// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
 /// (a dashpot, a spring) that it only imitates. So is one whose strength and time grow together
-/// without end, which shows in a strength less than its own deviation, and one that has taken the
-/// material's own place, whose branch stands in for a dashpot.
+/// without end, which shows in both being less than their own deviations, and one that has taken
+/// the material's own place, whose branch stands in for a dashpot. A strength alone is as uncertain
+/// where the time is near that of the material's own branch, from which it is told by a little
+/// only.
 bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
   const Candidate& candidate = candidates_[refit.candidate];
   const EffectUse* use = studied.model.find(candidate.id());
@@ -153,20 +155,20 @@ bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const
       own_branch_s(studied.model) > kMuchSlower * record_s) {
     return true;
   }
-  bool timed = false;
+  bool timeless = false;
   bool unbounded = false;
   for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
     const ModelValue& own = use->values[p];
     if (!parameters[p].auxiliary()) {
       unbounded = unbounded || std::abs(own.value - parameters[p].null_value) < own.sd;
     } else if (parameters[p].unit == "s") {
-      timed = true;
+      timeless = timeless || own.value < own.sd;
       if (own.value > kMuchSlower * record_s || own.value < 0.5 * study_.campaign().period_s) {
         return true;
       }
     }
   }
-  return timed && unbounded;
+  return timeless && unbounded;
 }
 
 double Search::evidence_of(const Direction& direction, const Candidate& candidate) const {

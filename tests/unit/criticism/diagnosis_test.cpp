@@ -149,6 +149,21 @@ TEST(Diagnosis, TellsADashpotFromARelaxationThatTookTheMaterialsPlace) {
   }
 }
 
+// A relaxation about as quick as the material's own branch can be exchanged for more of that: then
+// its strength is known to less than its own size, and still it is there.
+TEST(Diagnosis, KeepsARelaxationAsQuickAsTheMaterialsOwnAmongWhatMayBeThere) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 7;
+  wishes.shots = 8;
+  wishes.samples = 2048;
+  wishes.rate_Hz = 1e6;
+  wishes.noise_strain = 1e-6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("second-relaxation=3e-12,tau=4e-5"));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
+}
+
 TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   const Made made = make(78, {"gauge-position:g3=0.003", "temperature=0.004"});
   Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
