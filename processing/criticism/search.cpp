@@ -54,6 +54,10 @@ bool of_material(const Candidate& candidate) {
 
 }  // namespace
 
+double lead(const Refit& ahead, const Refit& behind) {
+  return (ahead.evidence - behind.evidence) / std::max(ahead.doubt, behind.doubt);
+}
+
 Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
     : study_(study),
       base_(base),
@@ -401,9 +405,16 @@ void Search::rate(std::vector<Refit>& list) const {
   }
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
   for (Refit& refit : list) {
-    refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
+    const double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+    refit.gain = over_noise / refit.scatter;
     refit.log_p = chance_of(refit);
-    refit.evidence = equivalent_square(log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
+    // The shots' scatter tells how well a gain is known, and only roughly: divided by one rival's
+    // own, what fits best would come behind what fits worse. But slow noise gives additions more
+    // than their rivals.
+    const bool addition = is_addition(*candidates_[refit.candidate].use.effect);
+    refit.doubt = addition ? 1.0 : refit.scatter;
+    refit.evidence = equivalent_square(
+        log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));
     if (refit.products) {
       // What differs between the shots may have been taken for noise: then its gain says too
       // little.
