@@ -205,6 +205,28 @@ TEST(Diagnosis, DoesNotRankRivalsByHowMuchTheirShotsScatter) {
   EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
 }
 
+// A specimen that keeps part of its strain flows, for all that the records say: its own branch
+// turns dashpot. A further relaxation, then in that branch's place, is not what it lacks.
+TEST(Search, DoesNotTakeARelaxationInTheSpecimensOwnPlaceForARival) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 2;
+  wishes.shots = 4;
+  wishes.gauges = 3;
+  wishes.samples = 1600;
+  wishes.rate_Hz = 1e6;
+  wishes.split = true;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("x-permanent-strain=0.2"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Model start = filed_split_bar(truth);
+  const Studied base = study.fit(start);
+  Search search(study, base, start);
+  for (const Refit& refit : search.refits()) {
+    EXPECT_NE(search.candidates()[refit.candidate].id(), "specimen-second-relaxation");
+  }
+}
+
 TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   const Made made = make(78, {"gauge-position:g3=0.003", "temperature=0.004"});
   Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
