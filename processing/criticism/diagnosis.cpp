@@ -115,7 +115,7 @@ class Diagnostician {
       note_refits(search, refits, held_out, per_shot, diagnosis_.candidates);
     }
     std::optional<std::size_t> best;
-    double leading = 0.0;
+    std::optional<std::size_t> leading;
     std::vector<std::size_t> confirmed;
     for (std::size_t i = 0; i < refits.size(); ++i) {
       const Refit& refit = refits[i];
@@ -124,9 +124,9 @@ class Diagnostician {
         continue;
       }
       const bool may_be_named = claimable(search, refit);
-      leading = may_be_named ? std::max(leading, refit.evidence) : leading;
-      if (refit.evidence < (best ? refits[*best].evidence : leading) - kTie) {
-        break;
+      leading = may_be_named && !leading ? i : leading;
+      if (leading && lead(refits[best.value_or(*leading)], refit) > kTie) {
+        continue;
       }
       const std::string id = search.candidates()[refit.candidate].id();
       // Products of what each shot and each gauge has of its own are foretold by each other.
@@ -146,7 +146,7 @@ class Diagnostician {
     }
     std::vector<std::string> ties;
     for (const std::size_t i : confirmed) {
-      if (i != *best && refits[i].evidence < refits[*best].evidence + kTie) {
+      if (i != *best && lead(refits[i], refits[*best]) < kTie) {
         ties.push_back(search.candidates()[refits[i].candidate].id());
       }
     }
@@ -173,8 +173,8 @@ class Diagnostician {
     const std::size_t per_shot = study_.residuals().per_shot();
     const std::vector<double> before = held_out_squares(base, study_);
     for (const Refit& refit : refits) {
-      const bool near = leading != refits.end() && plausible(search, refit) &&
-                        refit.evidence > leading->evidence - 2.0 * kTie;
+      const bool near =
+          leading != refits.end() && plausible(search, refit) && lead(*leading, refit) < 2.0 * kTie;
       const Studied& own = refit.studied;
       held_out.push_back(certification(
           before, near ? held_out_squares(own, study_) : foretold_squares(own, study_),

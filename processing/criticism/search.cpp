@@ -40,10 +40,14 @@ bool astray(const Studied& studied) {
              });
 }
 
-/// The bar's own relaxation time; 0 where there is none.
-double own_branch_s(const Model& model) {
-  const EffectUse* bar = model.find("three-element-bar");
-  return bar != nullptr ? bar->values[2].value / bar->values[1].value : 0.0;
+/// The relaxation time of a material's own that a further relaxation stands beside; 0 where there
+/// is none.
+double own_branch_s(const Model& model, const Effect& further) {
+  const std::string& id = further.about().id;
+  const EffectUse* own = id == "second-relaxation"            ? model.find("three-element-bar")
+                         : id == "specimen-second-relaxation" ? model.find("three-element-specimen")
+                                                              : nullptr;
+  return own != nullptr ? own->values[2].value / own->values[1].value : 0.0;
 }
 
 /// The material's effects take each other's places at a finite size: what a dashpot does, the
@@ -53,6 +57,10 @@ bool of_material(const Candidate& candidate) {
 }
 
 }  // namespace
+
+double lead(const Refit& ahead, const Refit& behind) {
+  return (ahead.evidence - behind.evidence) / std::max(ahead.doubt, behind.doubt);
+}
 
 Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
     : study_(study),
@@ -140,8 +148,10 @@ void Search::refine(std::vector<Refit>& list) {
 
 /// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
 /// (a dashpot, a spring) that it only imitates. So is one whose strength and time grow together
-/// without end, which shows in a strength less than its own deviation, and one that has taken the
-/// material's own place, whose branch stands in for a dashpot.
+/// without end, which shows in both being less than their own deviations, and one that has taken
+/// the material's own place, whose branch stands in for a dashpot. A strength alone is as uncertain
+/// where the time is near that of the material's own branch, from which it is told by a little
+/// only.
 bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
   const Candidate& candidate = candidates_[refit.candidate];
   const EffectUse* use = studied.model.find(candidate.id());
@@ -149,24 +159,23 @@ bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const
   constexpr double kMuchSlower = 5.0;
   const double period_s = study_.residuals().judged_period_s();
   const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
-  if (candidate.use.effect->about().id == "second-relaxation" &&
-      own_branch_s(studied.model) > kMuchSlower * record_s) {
+  if (own_branch_s(studied.model, *candidate.use.effect) > kMuchSlower * record_s) {
     return true;
   }
-  bool timed = false;
+  bool timeless = false;
   bool unbounded = false;
   for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
     const ModelValue& own = use->values[p];
     if (!parameters[p].auxiliary()) {
       unbounded = unbounded || std::abs(own.value - parameters[p].null_value) < own.sd;
     } else if (parameters[p].unit == "s") {
-      timed = true;
+      timeless = timeless || own.value < own.sd;
       if (own.value > kMuchSlower * record_s || own.value < 0.5 * study_.campaign().period_s) {
         return true;
       }
     }
   }
-  return timed && unbounded;
+  return timeless && unbounded;
 }
 
 double Search::evidence_of(const Direction& direction, const Candidate& candidate) const {
@@ -399,9 +408,16 @@ void Search::rate(std::vector<Refit>& list) const {
   }
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
   for (Refit& refit : list) {
-    refit.gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise / refit.scatter;
+    const double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+    refit.gain = over_noise / refit.scatter;
     refit.log_p = chance_of(refit);
-    refit.evidence = equivalent_square(log_gain_tail(refit.gain, refit.freedom, refit.one_sided));
+    // The shots' scatter tells how well a gain is known, and only roughly: divided by one rival's
+    // own, what fits best would come behind what fits worse. But slow noise gives additions more
+    // than their rivals.
+    const bool addition = is_addition(*candidates_[refit.candidate].use.effect);
+    refit.doubt = addition ? 1.0 : refit.scatter;
+    refit.evidence = equivalent_square(
+        log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));
     if (refit.products) {
       // What differs between the shots may have been taken for noise: then its gain says too
       // little.

@@ -20,13 +20,18 @@ struct Refit {
   double scatter = 1.0;  ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.
   std::optional<ProductTest> products = std::nullopt;
-  double gain = 0.0;      ///< of the objective, over the noise
+  double gain = 0.0;      ///< of the objective, over the noise and the shots' scatter
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
+  double doubt = 1.0;     ///< the scatter, where the evidence is that over the noise alone
   double log_p = 0.0;
   /// With derivatives of the model without the candidate: cheap, and near enough for what is far
   /// behind.
   bool rough = false;
 };
+
+/// By how much one refit stands before another, as a square of a normal deviate. Noise that is
+/// greater in the direction of either than its spectrum says makes the difference weigh less.
+[[nodiscard]] double lead(const Refit& ahead, const Refit& behind);
 
 /// One search for what a fitted model lacks: every candidate tested at first order, those near the
 /// best refitted in full.

@@ -28,14 +28,9 @@ double ShotStrengths::freedom() const {
   return weight.empty() ? 1.0 : static_cast<double>(weight.size()) - 1.0;
 }
 
-namespace {
-
-/// A drift or a hum, as against what is done to the waves' own readings.
 bool is_addition(const Effect& effect) {
   return effect.about().stage == Stage::record && effect.about().per_shot;
 }
-
-}  // namespace
 
 double belief_in(const Effect& effect) {
   return is_addition(effect) ? 3.0 : 20.0;

@@ -22,6 +22,9 @@ struct ShotStrengths {
 [[nodiscard]] ShotStrengths shot_strengths(const Studied& studied, const std::string& id,
                                            std::size_t residuals_per_shot);
 
+/// A drift or a hum, as against what is done to the waves' own readings.
+[[nodiscard]] bool is_addition(const Effect& effect);
+
 /// What is known of the noise beforehand counts as much as this many shots; of slow noise, among
 /// which additions to a record are sought, little is known.
 [[nodiscard]] double belief_in(const Effect& effect);

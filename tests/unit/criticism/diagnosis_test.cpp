@@ -149,6 +149,84 @@ TEST(Diagnosis, TellsADashpotFromARelaxationThatTookTheMaterialsPlace) {
   }
 }
 
+// A relaxation about as quick as the material's own branch can be exchanged for more of that: then
+// its strength is known to less than its own size, and still it is there.
+TEST(Diagnosis, KeepsARelaxationAsQuickAsTheMaterialsOwnAmongWhatMayBeThere) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 7;
+  wishes.shots = 8;
+  wishes.samples = 2048;
+  wishes.rate_Hz = 1e6;
+  wishes.noise_strain = 1e-6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("second-relaxation=3e-12,tau=4e-5"));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
+}
+
+/// The paper's split bar with the bars' moduli as a campaign files them.
+Model filed_split_bar(const testing::Campaign& truth) {
+  Model model = paper_model(BenchKind::shpb, false);
+  const auto bar = std::find_if(model.effects.begin(), model.effects.end(),
+                                [](const auto& use) { return use.id() == "three-element-bar"; });
+  const Material& filed = *truth.filed_bars;
+  const std::vector<Measured> numbers{filed.E1_Pa, filed.E2_Pa, filed.eta2_Pa_s};
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    ModelValue& value = bar->values[p];
+    value.value = value.prior_mean = numbers[p].value;
+    value.prior_sd = numbers[p].sd;
+    value.free = numbers[p].sd > 0.0;
+  }
+  return model;
+}
+
+Diagnosis diagnosed_split(const testing::Campaign& truth) {
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  return diagnose(study, filed_split_bar(truth), {});
+}
+
+// By chance the shots scatter more in the direction of what is there than in that of a rival which
+// fits worse: the true one must not fall behind for it.
+TEST(Diagnosis, DoesNotRankRivalsByHowMuchTheirShotsScatter) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 6;
+  wishes.shots = 6;
+  wishes.gauges = 3;
+  wishes.samples = 1200;
+  wishes.rate_Hz = 1e6;
+  wishes.noise_strain = 9e-6;
+  wishes.colour = testing::NoiseColour::coloured;
+  wishes.tolerances = testing::Tolerances::filed;
+  wishes.split = true;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("second-relaxation=1.2e-12,tau=8e-5"));
+  const Diagnosis diagnosis = diagnosed_split(truth);
+  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
+}
+
+// A specimen that keeps part of its strain flows, for all that the records say: its own branch
+// turns dashpot. A further relaxation, then in that branch's place, is not what it lacks.
+TEST(Search, DoesNotTakeARelaxationInTheSpecimensOwnPlaceForARival) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 2;
+  wishes.shots = 4;
+  wishes.gauges = 3;
+  wishes.samples = 1600;
+  wishes.rate_Hz = 1e6;
+  wishes.split = true;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("x-permanent-strain=0.2"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Model start = filed_split_bar(truth);
+  const Studied base = study.fit(start);
+  Search search(study, base, start);
+  for (const Refit& refit : search.refits()) {
+    EXPECT_NE(search.candidates()[refit.candidate].id(), "specimen-second-relaxation");
+  }
+}
+
 TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   const Made made = make(78, {"gauge-position:g3=0.003", "temperature=0.004"});
   Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
