@@ -326,7 +326,10 @@ TriggerOptions trigger_options(const TriggerConfig& config, double sample_rate_H
 DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench) {
   DigitiserOptions options;
   options.channels = config.digitiser.channels;
-  for (const BenchChannel& channel : bench.channels()) options.units.push_back(channel.unit);
+  for (const BenchChannel& channel : bench.channels()) {
+    options.gauges.push_back(channel.name);
+    options.units.push_back(channel.unit);
+  }
   options.channel_count = options.units.size();
   options.sampling_frequency_Hz = bench.sampling_frequency_Hz;
   options.block_samples = static_cast<std::size_t>(config.digitiser.block_samples);
@@ -336,12 +339,13 @@ DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& benc
 }
 
 std::size_t ring_samples(const DaemonConfig& config, double arrival_rate_Hz,
-                         std::size_t max_block_samples) {
+                         std::size_t max_block_samples, std::size_t longest_capture_samples) {
   constexpr double kDefault_s = 2.0;
   constexpr double kDefaultMost = 1 << 22;
   const auto window =
       static_cast<std::size_t>(config.trigger.pre_samples + config.trigger.post_samples);
-  const std::size_t least = 4 * (window + max_block_samples);
+  const std::size_t least =
+      std::max(4 * (window + max_block_samples), longest_capture_samples + 2 * max_block_samples);
   const double wanted = config.ring_s ? *config.ring_s * arrival_rate_Hz
                                       : std::min(kDefault_s * arrival_rate_Hz, kDefaultMost);
   return std::max(least, static_cast<std::size_t>(wanted));

@@ -99,9 +99,11 @@ struct Apparatus {
 [[nodiscard]] DigitiserOptions digitiser_options(const DaemonConfig& config, const Bench& bench);
 
 /// Samples per channel that the ring holds: `ring_s` where it is given, else two seconds, bounded
-/// so that a fast scope does not take the memory; always several windows and blocks.
+/// so that a fast scope does not take the memory; always several windows and blocks, and the
+/// longest capture of a replay, which comes back whole.
 /// @param arrival_rate_Hz  samples per second of the wall clock
 [[nodiscard]] std::size_t ring_samples(const DaemonConfig& config, double arrival_rate_Hz,
-                                       std::size_t max_block_samples);
+                                       std::size_t max_block_samples,
+                                       std::size_t longest_capture_samples = 0);
 
 }  // namespace kolsky

@@ -40,9 +40,33 @@ std::shared_ptr<const ShotSettings> make_settings(const DaemonConfig& config,
   return settings;
 }
 
+std::size_t longest(const StreamInfo& stream) {
+  std::size_t samples = 0;
+  for (const PlayedCapture& capture : stream.captures) {
+    samples = std::max(samples, capture.samples);
+  }
+  return samples;
+}
+
+/// Of another bench file: that may be what is wanted, or a mistake that nothing else shows.
+void name_other_benches(const StreamInfo& stream, const Apparatus& apparatus,
+                        const DaemonConfig& config) {
+  std::vector<std::string> others;
+  for (const PlayedCapture& capture : stream.captures) {
+    if (capture.bench_toml != apparatus.bench_toml) {
+      others.push_back(capture.id);
+    }
+  }
+  if (!others.empty()) {
+    log::warning(fmt::format(
+        "{} of {} captures were filed with a bench file that reads otherwise, {} first: {} is used",
+        others.size(), stream.captures.size(), others.front(), config.bench.string()));
+  }
+}
+
 SampleRing make_ring(const DaemonConfig& config, const StreamInfo& stream) {
   const std::size_t samples =
-      ring_samples(config, arrival_rate_Hz(stream), stream.max_block_samples);
+      ring_samples(config, arrival_rate_Hz(stream), stream.max_block_samples, longest(stream));
   try {
     return SampleRing(stream.format, stream.channels.size(), samples);
   } catch (const std::bad_alloc&) {
@@ -114,8 +138,10 @@ Station::Station(DaemonConfig config)
                  .publisher = publisher_,
                  .store = store_,
                  .real_time = !stream_.ends,
+                 .captures = stream_.captures,
                  .published = [this](const auto& shot) { critic_.compare(shot); }},
                 settings_) {
+  name_other_benches(stream_, apparatus_, config_);
   critic_.change(read_active_model(config_, apparatus_.bench));
 }
 

@@ -134,6 +134,7 @@ void ShotRecorder::run() {
 }
 
 void ShotRecorder::handle(const AcquisitionEvent& event) {
+  tell_losses_kept_back(event.tick, monotonic_ns());
   switch (event.kind) {
     case AcquisitionEvent::Kind::window:
       record(event.window);
@@ -141,7 +142,7 @@ void ShotRecorder::handle(const AcquisitionEvent& event) {
     case AcquisitionEvent::Kind::gap:
       gaps_.add(event.gap);
       gaps_.forget_before(event.tick - static_cast<Tick>(parts_.ring.capacity_samples()));
-      report_loss(event);
+      tell_loss(event);
       break;
     case AcquisitionEvent::Kind::triggered:
       log::info(fmt::format("triggered at tick {}", event.tick));
@@ -151,14 +152,48 @@ void ShotRecorder::handle(const AcquisitionEvent& event) {
       break;
     case AcquisitionEvent::Kind::end_of_capture:
       log::info("the replay is over");
+      name_captures_without_shot();
       seen_end_.store(true);
       break;
-    case AcquisitionEvent::Kind::window_refused:
     case AcquisitionEvent::Kind::overflow:
+      tell_loss(event);
+      break;
+    case AcquisitionEvent::Kind::window_refused:
     case AcquisitionEvent::Kind::disconnected:
     case AcquisitionEvent::Kind::changed:
       report_loss(event);
       break;
+  }
+}
+
+void ShotRecorder::name_captures_without_shot() const {
+  std::vector<std::string> silent;
+  for (const PlayedCapture& capture : parts_.captures) {
+    if (!played_.contains(capture.id)) {
+      silent.push_back(capture.id);
+    }
+  }
+  if (!silent.empty()) {
+    log::warning(
+        fmt::format("no shot came of {} of {} captures, {} first: the trigger saw no pulse",
+                    silent.size(), parts_.captures.size(), silent.front()));
+  }
+}
+
+void ShotRecorder::tell_loss(const AcquisitionEvent& event) {
+  const auto samples = static_cast<std::uint64_t>(event.gap.samples);
+  if (losses_.tells(monotonic_ns(), samples)) {
+    report_loss(event);
+  }
+}
+
+void ShotRecorder::tell_losses_kept_back(Tick tick, std::int64_t now_ns) {
+  if (const auto more = losses_.kept_back(now_ns)) {
+    fault("losses",
+          fmt::format("{} more losses since, {} samples known to be missing: the stream does not "
+                      "keep up",
+                      more->losses, more->samples),
+          tick, more->samples);
   }
 }
 
@@ -219,13 +254,13 @@ void ShotRecorder::record(const Window& window) {
   }
   journaled_.fetch_add(1);
   watch.lap("durable");
+  parts_.archivist.expect_shot();
   announce(*shot, watch);
   const Reduction reduction = reducing_.finish();
   watch.lap("reduce");
   wire::encode(reduction, shot->id, messages_->result);
   watch.lap("encode");
   put_timings(watch.laps(), messages_->result);
-  parts_.archivist.expect_shot();
   parts_.publisher.publish_result(messages_->result);
   watch.lap("publish");
   {
@@ -260,6 +295,10 @@ std::shared_ptr<Shot> ShotRecorder::cut(const Window& whole) {
   shot->monotonic_ns = window.trigger_monotonic_ns;
   shot->utc_ns = utc_of_ns(window.trigger_monotonic_ns);
   shot->id = ids_.next(shot->utc_ns);
+  if (const PlayedCapture* played = capture_at(parts_.captures, window.trigger.tick)) {
+    file_facts_of(*played, *shot);
+    played_.insert(played->id);
+  }
   return shot;
 }
 

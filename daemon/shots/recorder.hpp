@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "daemon/publish/publisher.hpp"
 #include "daemon/shots/archivist.hpp"
 #include "daemon/shots/gap_log.hpp"
+#include "daemon/shots/loss_rate.hpp"
 #include "daemon/shots/reducing_thread.hpp"
 #include "daemon/shots/shared_journal.hpp"
 #include "daemon/shots/shot_id.hpp"
@@ -51,7 +53,8 @@ class ShotRecorder {
     Archivist& archivist;
     Publisher& publisher;
     const StoreLayout& store;
-    bool real_time = false;  ///< ask for real-time scheduling
+    bool real_time = false;                 ///< ask for real-time scheduling
+    std::vector<PlayedCapture> captures{};  ///< of a replay
     /// Told of every shot once its result is out, by the recorder's thread: must not wait.
     std::function<void(const std::shared_ptr<const Shot>&)> published{};
   };
@@ -95,12 +98,17 @@ class ShotRecorder {
   [[nodiscard]] bool journaled(const Shot& shot, const std::function<void()>& step);
   void file_unjournaled(const std::shared_ptr<Shot>& shot);
   void announce(const Shot& shot, Stopwatch& watch);
+  void name_captures_without_shot() const;
+  void tell_loss(const AcquisitionEvent& event);
+  void tell_losses_kept_back(Tick tick, std::int64_t now_ns);
   void report_loss(const AcquisitionEvent& event);
   void fault(const char* kind, const std::string& text, Tick tick, std::uint64_t samples);
   [[nodiscard]] std::shared_ptr<const ShotSettings> settings() const;
 
   Parts parts_;
   GapLog gaps_;
+  LossRate losses_;
+  std::set<std::string> played_;  ///< captures of which a shot came
   ShotIdSource ids_;
   std::unique_ptr<Messages> messages_;
 

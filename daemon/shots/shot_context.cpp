@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "processing/base/error.hpp"
@@ -83,6 +84,20 @@ SampleRing::CopyStatus cut_window(const SampleRing& ring, const Window& window, 
     }
   }
   return SampleRing::CopyStatus::copied;
+}
+
+const PlayedCapture* capture_at(const std::vector<PlayedCapture>& captures, Tick tick) {
+  const auto after = std::upper_bound(
+      captures.begin(), captures.end(), tick,
+      [](Tick wanted, const PlayedCapture& capture) { return wanted < capture.first_tick; });
+  return after == captures.begin() ? nullptr : &*std::prev(after);
+}
+
+void file_facts_of(const PlayedCapture& capture, Shot& shot) {
+  for (const auto& [key, value] : capture.meta) {
+    shot.meta[key] = value;
+  }
+  shot.meta["replayed_from"] = capture.id;
 }
 
 void mark_interrupted(Shot& shot) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,15 @@ struct ChannelInfo {
   std::int32_t code_max = 32767;
 };
 
+/// A capture that a replay plays, where it stands in the stream, and what is filed with it.
+struct PlayedCapture {
+  std::string id;
+  Tick first_tick = 0;
+  std::size_t samples = 0;
+  std::map<std::string, std::string> meta;
+  std::string bench_toml;
+};
+
 /// What a digitiser is and delivers; fixed from open to close, except where `reconnect` finds it
 /// changed.
 struct StreamInfo {
@@ -42,6 +52,7 @@ struct StreamInfo {
   double speed = 1.0;  ///< seconds of the stream per second of the wall clock: not 1 where a
                        ///< simulated one is accelerated, 0 where it waits for its reader
   bool ends = false;   ///< a replay: it comes to an end by itself
+  std::vector<PlayedCapture> captures;  ///< of a replay, in their order
 };
 
 /// Samples that arrive per second of the wall clock, which is what queues and blocks are sized by;

@@ -13,6 +13,8 @@ struct DigitiserOptions {
   std::vector<std::string> channels;  ///< the digitiser's channels to read, in the bench's gauge
                                       ///< order; empty: the first `channel_count` voltage channels
   std::size_t channel_count = 0;      ///< 0 without names: all
+  std::vector<std::string> gauges;    ///< the bench's: without `channels` a capture's are taken by
+                                      ///< these names where it has them, by their place else
   std::vector<std::string> units;  ///< "V" or "strain" per channel, as the gauges want it; what is
                                    ///< left out: "V" of a device, its own of a capture
   double sampling_frequency_Hz =

@@ -92,7 +92,8 @@ void Journal::write_shot(const Shot& shot) {
 }
 
 void Journal::make_durable() {
-  if (::fdatasync(file_) != 0) {
+  // Linux tells a file's write error once: it may have told it to `fill_ahead`.
+  if (::fdatasync(file_) != 0 || failed_) {
     failed_ = true;
     throw failure(path_, "a record cannot be made durable", errno);
   }

@@ -43,7 +43,7 @@ StreamInfo describe(const std::string& uri, const ReplaySource& source,
                     const DigitiserOptions& options) {
   StreamInfo info;
   info.uri = uri;
-  info.description = "replay of " + std::to_string(source.captures()) + " captures, " +
+  info.description = "replay of " + std::to_string(source.captures().size()) + " captures, " +
                      std::to_string(source.total_samples()) + " samples";
   info.rate = source.rate();
   info.channels = source.channels();
@@ -56,6 +56,7 @@ StreamInfo describe(const std::string& uri, const ReplaySource& source,
   const std::size_t least = default_block(info.rate.Hz());
   info.max_block_samples = options.block_samples != 0 ? options.block_samples : least;
   info.ends = true;
+  info.captures = source.captures();
   return info;
 }
 
@@ -80,7 +81,7 @@ void ReplayDigitiser::start() {
 
 /// @return false after the last one @throws InputError
 bool ReplayDigitiser::open_next_capture() {
-  if (next_capture_ == source_.captures()) {
+  if (next_capture_ == source_.captures().size()) {
     return false;
   }
   Shot next = source_.load(next_capture_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "drivers/files/capture.hpp"
@@ -31,6 +32,16 @@ std::string channel_names(const Shot& shot) {
   return names;
 }
 
+/// Those of these names in their order; none of a name that is not there.
+std::vector<ChannelRecord> named_channels(const Shot& shot, const std::vector<std::string>& names) {
+  std::vector<ChannelRecord> found;
+  for (const std::string& name : names) {
+    std::copy_if(shot.channels.begin(), shot.channels.end(), std::back_inserter(found),
+                 [&](const ChannelRecord& record) { return record.gauge == name; });
+  }
+  return found;
+}
+
 std::vector<ChannelRecord> chosen_channels(const Shot& shot, const DigitiserOptions& options,
                                            const std::string& place) {
   if (options.channels.empty()) {
@@ -43,7 +54,17 @@ std::vector<ChannelRecord> chosen_channels(const Shot& shot, const DigitiserOpti
                            " gauges",
                        "replay it with the bench it was taken with");
     }
-    return {shot.channels.begin(), shot.channels.begin() + static_cast<std::ptrdiff_t>(count)};
+    std::vector<ChannelRecord> named = named_channels(shot, options.gauges);
+    if (named.empty()) {
+      return {shot.channels.begin(), shot.channels.begin() + static_cast<std::ptrdiff_t>(count)};
+    }
+    if (named.size() != count) {
+      throw InputError(place,
+                       "has the channels " + channel_names(shot) +
+                           ", of which only some are gauges of the bench",
+                       "name those to take in digitiser.channels, in the gauges' order");
+    }
+    return named;
   }
   std::vector<ChannelRecord> chosen;
   for (const std::string& name : options.channels) {
@@ -127,6 +148,11 @@ ReplaySource::ReplaySource(const std::filesystem::path& path, const DigitiserOpt
     : paths_(captures_in(path)), options_(options) {
   for (const std::filesystem::path& capture : paths_) {
     const Shot shot = chosen(read_capture(capture), capture);
+    captures_.push_back({.id = shot.id,
+                         .first_tick = static_cast<Tick>(total_samples_),
+                         .samples = shot.samples(),
+                         .meta = shot.meta,
+                         .bench_toml = shot.bench_toml});
     total_samples_ += shot.samples();
     if (channels_.empty()) {
       rate_ = shot.rate;

@@ -19,7 +19,7 @@ class ReplaySource {
   ///   named), or they do not deliver what the options ask for
   ReplaySource(const std::filesystem::path& path, const DigitiserOptions& options);
 
-  [[nodiscard]] std::size_t captures() const noexcept { return paths_.size(); }
+  [[nodiscard]] const std::vector<PlayedCapture>& captures() const noexcept { return captures_; }
   [[nodiscard]] SampleRate rate() const noexcept { return rate_; }
   [[nodiscard]] const std::vector<ChannelInfo>& channels() const noexcept { return channels_; }
   [[nodiscard]] std::size_t total_samples() const noexcept { return total_samples_; }
@@ -35,6 +35,7 @@ class ReplaySource {
   DigitiserOptions options_;
   SampleRate rate_;
   std::vector<ChannelInfo> channels_;
+  std::vector<PlayedCapture> captures_;
   std::size_t total_samples_ = 0;
 };
 

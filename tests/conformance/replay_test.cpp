@@ -212,6 +212,36 @@ TEST_F(Replay, ChannelsAreChosenByGauge) {
   expect_refused(options, {"a.h5", "2 channels", "3 gauges"});
 }
 
+TEST_F(Replay, WithoutNamesChannelsFollowTheBenchsGauges) {
+  store(pattern_shot(0, 10), "a.h5");
+  DigitiserOptions options;
+  options.channel_count = 2;
+  options.gauges = {"g2", "g1"};
+  EXPECT_EQ(play(options)->info().channels.at(0).name, "g2");
+  options.gauges = {"in", "out"};  // names that say nothing of each other: by their place
+  EXPECT_EQ(play(options)->info().channels.at(0).name, "g1");
+  options.gauges = {"g1", "out"};
+  expect_refused(options, {"a.h5", "g1, g2", "digitiser.channels"});
+}
+
+TEST_F(Replay, TellsWhatIsFiledWithEachCaptureAndWhereItStands) {
+  Shot first = pattern_shot(0, 10);
+  first.id = "first";
+  first.meta = {{"specimen_id", "ball7"}};
+  Shot second = pattern_shot(50, 20);
+  second.id = "second";
+  store(first, "a.h5");
+  store(second, "b.h5");
+  const std::vector<PlayedCapture> captures = play()->info().captures;
+  ASSERT_EQ(captures.size(), 2U);
+  EXPECT_EQ(captures[0].id, "first");
+  EXPECT_EQ(captures[0].meta, first.meta);
+  EXPECT_EQ(captures[0].bench_toml, first.bench_toml);
+  EXPECT_EQ(captures[1].id, "second");
+  EXPECT_EQ(captures[1].first_tick, 10);
+  EXPECT_EQ(captures[1].samples, 20U);
+}
+
 TEST_F(Replay, TheOddCaptureOfAFolderIsNamed) {
   store(pattern_shot(0, 100), "a.h5");
   store(pattern_shot(0, 100), "b.h5");

@@ -190,6 +190,46 @@ TEST(Daemon, ReplaysAStoredShotExactly) {
   EXPECT_THROW(listener.control().force_trigger(), InputError);
 }
 
+TEST(Daemon, ReplaysWhatIsFiledWithACapture) {
+  Running live;
+  Shot original = live.stored(live.shoot().shot_id());
+  live.daemon->stop();
+  original.meta = {{"specimen_id", "ball7"}, {"striker_speed_m_per_s", "9.5"}};
+  const std::filesystem::path folder = live.setup.folder().path() / "filed";
+  std::filesystem::create_directory(folder);
+  write_capture(original, folder / "filed.h5");
+
+  Installation again("replay:" + folder.string(), live.lab.bench());
+  again.set("meta", "specimen_id = \"another\"\noperator_note = \"again\"");
+  Daemon replay(again.read());
+  replay.start();
+  ASSERT_TRUE(eventually([&] { return replay.finished(); }));
+  Listener listener(replay.endpoints());
+  const v1::ShotList list = listener.control().list_shots();
+  ASSERT_EQ(list.shots_size(), 1);
+  const Shot replayed = wire::decode(listener.control().get_shot(list.shots(0).id()).shot());
+  EXPECT_EQ(replayed.meta, (std::map<std::string, std::string>{{"specimen_id", "ball7"},
+                                                               {"striker_speed_m_per_s", "9.5"},
+                                                               {"operator_note", "again"},
+                                                               {"replayed_from", original.id}}));
+}
+
+TEST(Daemon, ReplaysALongCaptureWholeAtAnySpeed) {
+  Running live({}, "post_samples = 90000");
+  const Shot original = live.stored(live.shoot().shot_id());
+  live.daemon->stop();
+  Installation again("replay:" + (live.setup.store() / "shots").string(), live.lab.bench());
+  again.set("digitiser", "speed = 0.5").set("ring", "seconds = 0.05");
+  Daemon replay(again.read());
+  replay.start();
+  ASSERT_TRUE(eventually([&] { return replay.finished(); }));
+  Listener listener(replay.endpoints());
+  const v1::ShotList list = listener.control().list_shots();
+  ASSERT_EQ(list.shots_size(), 1);
+  const Shot replayed = wire::decode(listener.control().get_shot(list.shots(0).id()).shot());
+  EXPECT_EQ(replayed.channels, original.channels);
+}
+
 TEST(Daemon, ReplaysAFolderShotByShotAsFastAsItCan) {
   Running live;
   std::vector<Shot> originals;

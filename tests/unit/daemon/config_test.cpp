@@ -162,6 +162,7 @@ TEST_F(ConfigTest, KeepsEchoesInTheWindowOfTheirShot) {
 TEST_F(ConfigTest, BoundsTheRingOfAFastScope) {
   const DaemonConfig config = read(kLeast);
   EXPECT_EQ(ring_samples(config, 1e6, 1024), 2'000'000U);
+  EXPECT_EQ(ring_samples(config, 1e6, 1024, 5'000'000), 5'002'048U);
   EXPECT_LE(ring_samples(config, 1e9, 1024), std::size_t{1} << 22);
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "daemon/shots/gap_log.hpp"
+#include "daemon/shots/loss_rate.hpp"
 #include "daemon/shots/reducing_thread.hpp"
 #include "daemon/shots/shared_journal.hpp"
 #include "daemon/shots/shot_context.hpp"
@@ -290,6 +291,32 @@ TEST_F(TurningOver, GoesOnInTheOldFileWhereNoNewOneCanBeMade) {
   append("two");
   std::filesystem::rename(elsewhere, store_.journals());
   EXPECT_EQ(ids_in("0000000000000012.kj"), (std::vector<std::string>{"one", "two"}));
+}
+
+TEST(LossRate, TellsAFloodInOneLineASecond) {
+  LossRate rate;
+  int told = 0;
+  for (int i = 0; i < 500; ++i) {
+    told += rate.tells(i * kSecond_ns / 1000, 16) ? 1 : 0;
+  }
+  EXPECT_EQ(told, LossRate::kMostPerSecond);
+  EXPECT_FALSE(rate.kept_back(kSecond_ns / 2));
+  const auto more = rate.kept_back(kSecond_ns);
+  ASSERT_TRUE(more);
+  EXPECT_EQ(more->losses, 500U - LossRate::kMostPerSecond);
+  EXPECT_EQ(more->samples, 16U * (500U - LossRate::kMostPerSecond));
+  EXPECT_FALSE(rate.kept_back(2 * kSecond_ns));
+  EXPECT_TRUE(rate.tells(2 * kSecond_ns, 16));
+}
+
+TEST(CaptureAt, IsTheOneThatHoldsTheTick) {
+  const std::vector<PlayedCapture> captures{
+      {.id = "a", .first_tick = 0, .samples = 10, .meta = {}, .bench_toml = {}},
+      {.id = "b", .first_tick = 10, .samples = 5, .meta = {}, .bench_toml = {}}};
+  EXPECT_EQ(capture_at(captures, 0)->id, "a");
+  EXPECT_EQ(capture_at(captures, 9)->id, "a");
+  EXPECT_EQ(capture_at(captures, 10)->id, "b");
+  EXPECT_EQ(capture_at({}, 10), nullptr);
 }
 
 TEST(ReducingThread, GivesEachShotItsReductionWhoeverComesFirst) {
