@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <set>
 #include <string_view>
 
 #include "drivers/files/material_file.hpp"
@@ -75,6 +78,10 @@ DigitiserConfig read_digitiser(const TomlTable& table, const std::filesystem::pa
   }
   digitiser.device = table.optional_text("device").value_or("");
   digitiser.channels = table.optional_texts("channels").value_or(std::vector<std::string>{});
+  if (std::set(digitiser.channels.begin(), digitiser.channels.end()).size() !=
+      digitiser.channels.size()) {
+    throw table.error("channels", "names a channel twice", "give each gauge a channel of its own");
+  }
   if (table.has("block_samples")) {
     digitiser.block_samples = integer_within(table, "block_samples", 16, 16, 1 << 22);
   }
@@ -125,6 +132,14 @@ TriggerConfig read_trigger(const TomlTable& table) {
   return trigger;
 }
 
+/// Of tcp://ADDRESS:PORT; * asks for any that is free.
+bool is_port(std::string_view text) {
+  int port = -1;
+  const char* end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, port);
+  return text == "*" || (error == std::errc{} && stopped == end && port >= 0 && port <= 65535);
+}
+
 std::string read_endpoint(const TomlTable& table, const std::string& key,
                           const std::string& otherwise) {
   std::string endpoint = table.optional_text(key).value_or(otherwise);
@@ -134,6 +149,11 @@ std::string read_endpoint(const TomlTable& table, const std::string& key,
   if (!known) {
     throw table.error(key, fmt::format("'{}' is no ZeroMQ endpoint", endpoint),
                       "give tcp://ADDRESS:PORT or ipc://PATH");
+  }
+  if (endpoint.starts_with(kTransports[0]) &&
+      !is_port(std::string_view(endpoint).substr(endpoint.rfind(':') + 1))) {
+    throw table.error(key, fmt::format("'{}' does not end in a port", endpoint),
+                      "give tcp://ADDRESS:PORT, a port from 0 to 65535 or *");
   }
   return endpoint;
 }
@@ -255,6 +275,9 @@ DaemonConfig read_config(const std::filesystem::path& path) {
     throw store.error("folder", "is empty", "name the folder that takes the shots");
   }
   config.store = beside(path, folder);
+  if (std::filesystem::exists(config.store) && !std::filesystem::is_directory(config.store)) {
+    throw store.error("folder", config.store.string() + " is a file", "name a folder");
+  }
   config.journal_limit_bytes = integer_within(
       store, "journal_limit_bytes", config.journal_limit_bytes, 4096, kLongestJournal_bytes);
   if (const auto endpoints = root.optional_table("endpoints")) {

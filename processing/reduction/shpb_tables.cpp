@@ -74,7 +74,7 @@ ShpbPlanKey ShpbPlanKey::of(const Shot& shot, const ShpbBar& input, const ShpbBa
 
 ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
     : key(k),
-      transform(k.samples + k.delay, k.rate.period_s()),
+      transform(quick_transform_length(k.samples + k.delay), k.rate.period_s()),
       band(transform, k.longest_pulse),
       path(transform.bins()),
       input_strain(k.samples),

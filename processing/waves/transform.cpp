@@ -3,6 +3,7 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -98,6 +99,18 @@ std::size_t good_transform_length(std::size_t samples) {
     n += 2;
   }
   return n;
+}
+
+std::size_t quick_transform_length(std::size_t samples) {
+  const std::size_t least = good_transform_length(samples);
+  std::size_t best = least;
+  const auto twos = [](std::size_t n) { return std::countr_zero(n); };
+  for (std::size_t n = least; 10 * n <= 11 * samples; n += 2) {
+    if (twos(n) > twos(best) && has_small_factors(n)) {
+      best = n;
+    }
+  }
+  return best;
 }
 
 struct DampedTransform::State {

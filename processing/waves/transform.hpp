@@ -12,6 +12,10 @@ namespace kolsky {
 /// The next length, at least so many samples, that is even and has small prime factors.
 [[nodiscard]] std::size_t good_transform_length(std::size_t samples);
 
+/// One up to a tenth above these samples that holds two most often: estimated plans take 4608
+/// samples in four fifths of the time that 4320 take. For transforms whose length is free.
+[[nodiscard]] std::size_t quick_transform_length(std::size_t samples);
+
 /// Laplace transform of sampled records along the line s = eta + i w, by FFT of the record times
 /// exp(-eta t). Against the Fourier transform it has two virtues for bars: whatever a causal
 /// operation pushes past the end of the record comes back at its start damped by exp(-eta T)

@@ -228,7 +228,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"[digitiser]", "channels = \"voltage0\"", "channels"},
         BadValue{"[ring]", "seconds = 0", "seconds"},
         BadValue{"[store]", "journal_limit_bytes = 100", "journal_limit_bytes"},
+        BadValue{"[digitiser]", "channels = [\"voltage0\", \"voltage0\"]", "channels"},
         BadValue{"[endpoints]", "results = \"localhost:5600\"", "results"},
+        BadValue{"[endpoints]", "results = \"tcp://127.0.0.1:99999\"", "results"},
+        BadValue{"[endpoints]", "results = \"tcp://127.0.0.1\"", "results"},
         BadValue{"[endpoints]", "preview = \"tcp://127.0.0.1:5602\"", "control"},
         BadValue{"[meta]", "list = [1]", "list"},
         BadValue{"[meta]", "temperature_K = \"abc\"", "temperature_K"},
@@ -242,6 +245,12 @@ TEST_F(ConfigTest, RefusesAFolderWithoutAName) {
   std::string text = kLeast;
   text.replace(text.find("\"store\""), 7, "\"\"");
   EXPECT_TRUE(holds(error_of(text), {"store.folder", "empty"}));
+}
+
+TEST_F(ConfigTest, RefusesAFolderThatIsAFile) {
+  std::string text = kLeast;
+  text.replace(text.find("\"store\""), 7, "\"/dev/null\"");
+  EXPECT_TRUE(holds(error_of(text), {"store.folder", "/dev/null", "is a file"}));
 }
 
 TEST_F(ConfigTest, RefusesUrisThatNameNoDigitiser) {

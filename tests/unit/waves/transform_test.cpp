@@ -18,6 +18,13 @@ std::vector<double> noise_record(std::size_t samples) {
   return record;
 }
 
+TEST(TransformLength, IsQuickWhereATenthMoreHoldsTwoMoreOften) {
+  EXPECT_EQ(good_transform_length(4290), 4320U);
+  EXPECT_EQ(quick_transform_length(4290), 4608U);
+  EXPECT_EQ(quick_transform_length(4096), 4096U);
+  EXPECT_EQ(quick_transform_length(4098), 4320U) << "4608 is too far";
+}
+
 TEST(DampedTransform, IsTheLaplaceSum) {
   const auto record = noise_record(60);
   DampedTransform transform(record.size(), 1e-6);
