@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "processing/criticism/composition.hpp"
@@ -12,5 +13,9 @@ namespace kolsky {
 /// @return whether they were
 [[nodiscard]] bool put_branches_in_order(const Composition& composition,
                                          std::vector<double>& theta);
+
+/// The relaxation time of the material's own branch that this further one stands beside; 0 where
+/// there is none, or the effect is no further relaxation.
+[[nodiscard]] double own_branch_s(const Model& model, const std::string& further);
 
 }  // namespace kolsky

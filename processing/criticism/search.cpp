@@ -40,16 +40,6 @@ bool astray(const Studied& studied) {
              });
 }
 
-/// The relaxation time of a material's own that a further relaxation stands beside; 0 where there
-/// is none.
-double own_branch_s(const Model& model, const Effect& further) {
-  const std::string& id = further.about().id;
-  const EffectUse* own = id == "second-relaxation"            ? model.find("three-element-bar")
-                         : id == "specimen-second-relaxation" ? model.find("three-element-specimen")
-                                                              : nullptr;
-  return own != nullptr ? own->values[2].value / own->values[1].value : 0.0;
-}
-
 /// The material's effects take each other's places at a finite size: what a dashpot does, the
 /// material's own branch and a further one can do together.
 bool of_material(const Candidate& candidate) {
@@ -159,7 +149,7 @@ bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const
   constexpr double kMuchSlower = 5.0;
   const double period_s = study_.residuals().judged_period_s();
   const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
-  if (own_branch_s(studied.model, *candidate.use.effect) > kMuchSlower * record_s) {
+  if (own_branch_s(studied.model, candidate.use.effect->about().id) > kMuchSlower * record_s) {
     return true;
   }
   bool timeless = false;

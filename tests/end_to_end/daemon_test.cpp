@@ -82,16 +82,20 @@ void expect_sound_store(const Installation& setup, std::size_t captures) {
   EXPECT_EQ(report.journaled_shots, captures);
 }
 
+v1::ShotAndResult only_shot(const Daemon& daemon) {
+  Listener listener(daemon.endpoints());
+  const v1::ShotList list = listener.control().list_shots();
+  EXPECT_EQ(list.shots_size(), 1);
+  return listener.control().get_shot(list.shots_size() == 0 ? "" : list.shots(0).id());
+}
+
 /// Replays the only shot of a store. Codes, gaps and the verdict come back.
 void expect_replay_gives(const Shot& shot, const Running& run) {
   Installation again("replay:" + (run.setup.store() / "shots").string(), run.lab.bench());
   Daemon replay(again.read());
   replay.start();
   ASSERT_TRUE(eventually([&] { return replay.finished(); }));
-  Listener listener(replay.endpoints());
-  const v1::ShotList list = listener.control().list_shots();
-  ASSERT_EQ(list.shots_size(), 1);
-  const v1::ShotAndResult got = listener.control().get_shot(list.shots(0).id());
+  const v1::ShotAndResult got = only_shot(replay);
   const Shot replayed = wire::decode(got.shot());
   EXPECT_EQ(replayed.channels, shot.channels);
   ASSERT_EQ(replayed.gaps.size(), shot.gaps.size());
@@ -204,10 +208,7 @@ TEST(Daemon, ReplaysWhatIsFiledWithACapture) {
   Daemon replay(again.read());
   replay.start();
   ASSERT_TRUE(eventually([&] { return replay.finished(); }));
-  Listener listener(replay.endpoints());
-  const v1::ShotList list = listener.control().list_shots();
-  ASSERT_EQ(list.shots_size(), 1);
-  const Shot replayed = wire::decode(listener.control().get_shot(list.shots(0).id()).shot());
+  const Shot replayed = wire::decode(only_shot(replay).shot());
   EXPECT_EQ(replayed.meta, (std::map<std::string, std::string>{{"specimen_id", "ball7"},
                                                                {"striker_speed_m_per_s", "9.5"},
                                                                {"operator_note", "again"},
@@ -223,10 +224,7 @@ TEST(Daemon, ReplaysALongCaptureWholeAtAnySpeed) {
   Daemon replay(again.read());
   replay.start();
   ASSERT_TRUE(eventually([&] { return replay.finished(); }));
-  Listener listener(replay.endpoints());
-  const v1::ShotList list = listener.control().list_shots();
-  ASSERT_EQ(list.shots_size(), 1);
-  const Shot replayed = wire::decode(listener.control().get_shot(list.shots(0).id()).shot());
+  const Shot replayed = wire::decode(only_shot(replay).shot());
   EXPECT_EQ(replayed.channels, original.channels);
 }
 
