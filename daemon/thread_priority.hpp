@@ -14,6 +14,8 @@ void name_thread(const char* name) noexcept;
 /// @return whether it was permitted
 bool run_in_real_time(RealTime priority) noexcept;
 void run_as_usual() noexcept;
+/// Ahead of what runs as usual, where that is permitted, and behind the kernel's own work.
+void run_ahead_of_usual() noexcept;
 
 /// Has the process keep the memory that it frees for what it asks for next: a page that went back
 /// to the system costs a fault when it is used again, and on virtual machines that takes up to

@@ -45,6 +45,7 @@ bool ReducingThread::reduce_if_it_waits() {
 
 void ReducingThread::run() {
   name_thread("kolsky-reduce");
+  run_ahead_of_usual();
   for (begun_.acquire(); !ends_.load(); begun_.acquire()) {
     if (reduce_if_it_waits()) {
       finished_.release();

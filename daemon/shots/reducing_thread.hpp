@@ -11,9 +11,9 @@
 
 namespace kolsky {
 
-/// Reduces one shot while the caller does something else with it: waits for the disk. An ordinary
-/// thread, since a real-time one would keep the disk's own work waiting; where that has not come to
-/// it by the time it is wanted, the caller does it.
+/// Reduces one shot while the caller does something else with it: waits for the disk. First among
+/// the ordinary threads and no more, since a real-time one would keep the disk's own work waiting;
+/// where it has not come to the shot by the time that is wanted, the caller does it.
 class ReducingThread {
  public:
   ReducingThread();
