@@ -175,6 +175,17 @@ double GaugeNoise::unrounded_sd(std::size_t gauge) const {
   return kolsky::unrounded_sd(records, campaign_.step[gauge]);
 }
 
+bool GaugeNoise::is_coarse(std::size_t gauge) const {
+  double samples = 0.0;
+  for (const CampaignShot& shot : campaign_.shots) {
+    samples += static_cast<double>(shot.quiet_samples);
+  }
+  const double step = campaign_.step[gauge];
+  const double square = quiet_product(campaign_, gauge, gauge, 0) / samples;
+  // Noise of 0.42 steps leaves a thousandth of the saw teeth; rounding adds its own to it.
+  return step > 0.0 && square - rounding_square(step) < 0.18 * step * step;
+}
+
 void GaugeNoise::add_steps(std::size_t gauge, std::span<const std::vector<double>> clean) {
   const double step = campaign_.step[gauge];
   const double noise_sd = unrounded_sd(gauge);

@@ -41,6 +41,8 @@ class GaugeNoise {
 
   /// Takes the quiet parts at their word again.
   void forget();
+  /// Whether steps of this gauge's converter exceed its noise.
+  [[nodiscard]] bool is_coarse(std::size_t gauge) const;
   /// Adds what a coarse converter's steps leave of records that move, where the quiet parts do not
   /// tell. @param clean  a gauge's records by shot, over the judged window at their own rate
   void add_steps(std::size_t gauge, std::span<const std::vector<double>> clean);

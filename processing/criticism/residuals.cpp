@@ -353,9 +353,10 @@ void WhiteResiduals::freeze(const Composition& composition, const std::vector<do
   estimate_noise(evaluate(composition, theta));
 }
 
-void WhiteResiduals::know_steps() {
+bool WhiteResiduals::know_steps() {
+  bool coarse = false;
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-    if (campaign_.step[j] == 0.0) {
+    if (!noise_.is_coarse(j)) {
       continue;
     }
     std::vector<std::vector<double>> clean;
@@ -368,8 +369,12 @@ void WhiteResiduals::know_steps() {
                      clean.back().begin(), std::minus<>());
     }
     noise_.add_steps(j, clean);
+    coarse = true;
   }
-  forget_whitener();
+  if (coarse) {
+    forget_whitener();
+  }
+  return coarse;
 }
 
 void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {

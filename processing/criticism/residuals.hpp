@@ -41,7 +41,8 @@ class WhiteResiduals : public ShotResiduals {
 
   /// Adds to what is known of each gauge's noise what a coarse converter's steps leave of records
   /// like those foretold when `freeze` was called.
-  void know_steps();
+  /// @return whether any gauge's converter is coarse
+  bool know_steps();
 
   /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error

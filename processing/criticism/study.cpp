@@ -57,8 +57,9 @@ Studied Study::as_it_is(const Model& model) {
   ModelFit fit;
   fit.theta = composition.start();
   residuals_.freeze(composition, fit.theta);
-  residuals_.know_steps();
-  residuals_.freeze(composition, fit.theta);
+  if (residuals_.know_steps()) {
+    residuals_.freeze(composition, fit.theta);
+  }
   fit.residual = residuals_.evaluate(composition, fit.theta);
   fit.chi2 = fit.residual.squaredNorm();
   fit.converged = true;

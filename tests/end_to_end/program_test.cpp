@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/daemon.hpp"
 #include "drivers/files/capture.hpp"
 #include "drivers/files/store.hpp"
 #include "tests/end_to_end/daemon_process.hpp"
@@ -184,7 +185,38 @@ TEST(Program, EndsWithTheReplayWhereAskedTo) {
   const Ended ended = run({"--config", again.write(), "--exit-at-end"});
   EXPECT_EQ(ended.code, 0) << ended.output;
   EXPECT_EQ(captures_in(again.store() / "shots").size(), shots);
+  EXPECT_EQ(ended.output.find("reads otherwise"), std::string::npos) << ended.output;
+  EXPECT_EQ(ended.output.find("no shot came"), std::string::npos) << ended.output;
   EXPECT_TRUE(refused(run({"--config", live.write(), "--exit-at-end"}), {"--exit-at-end"}));
+}
+
+TEST(Program, NamesWhatAReplayDoesNotGive) {
+  const Lab lab;
+  Installation live(lab.uri(), lab.bench());
+  {
+    Daemon daemon(live.read());
+    daemon.start();
+    Listener listener(daemon.endpoints());
+    listener.arm();
+    listener.control().fire();
+    ASSERT_TRUE(listener.next("result"));
+  }
+  Shot quiet = read_capture(captures_in(live.store() / "shots").front());
+  quiet.trigger.reset();
+  for (ChannelRecord& channel : quiet.channels) {
+    channel.codes.resize(200);
+  }
+  const std::filesystem::path folder = live.folder() / "quiet";
+  std::filesystem::create_directory(folder);
+  write_capture(quiet, folder / "quiet.h5");
+  const Installation again("replay:" + folder.string(), lab.bench() + "# another\n");
+  const Ended ended = run({"--config", again.write(), "--exit-at-end"});
+  EXPECT_EQ(ended.code, 0) << ended.output;
+  EXPECT_NE(ended.output.find("1 of 1 captures were filed with a bench file that reads otherwise"),
+            std::string::npos)
+      << ended.output;
+  EXPECT_NE(ended.output.find("no shot came of 1 of 1 captures, " + quiet.id), std::string::npos)
+      << ended.output;
 }
 
 /// What the service manager hears.

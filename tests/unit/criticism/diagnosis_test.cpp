@@ -180,6 +180,17 @@ Model filed_split_bar(const testing::Campaign& truth) {
   return model;
 }
 
+testing::CampaignWishes split_wishes(std::uint64_t seed, int shots, std::size_t samples) {
+  testing::CampaignWishes wishes;
+  wishes.seed = seed;
+  wishes.shots = shots;
+  wishes.gauges = 3;
+  wishes.samples = samples;
+  wishes.rate_Hz = 1e6;
+  wishes.split = true;
+  return wishes;
+}
+
 Diagnosis diagnosed_split(const testing::Campaign& truth) {
   const Campaign campaign = read_campaign(testing::shots_of(truth));
   Study study(campaign, 0.0, Workers{});
@@ -189,16 +200,10 @@ Diagnosis diagnosed_split(const testing::Campaign& truth) {
 // By chance the shots scatter more in the direction of what is there than in that of a rival which
 // fits worse: the true one must not fall behind for it.
 TEST(Diagnosis, DoesNotRankRivalsByHowMuchTheirShotsScatter) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 6;
-  wishes.shots = 6;
-  wishes.gauges = 3;
-  wishes.samples = 1200;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes = split_wishes(6, 6, 1200);
   wishes.noise_strain = 9e-6;
   wishes.colour = testing::NoiseColour::coloured;
   wishes.tolerances = testing::Tolerances::filed;
-  wishes.split = true;
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("second-relaxation=1.2e-12,tau=8e-5"));
   const Diagnosis diagnosis = diagnosed_split(truth);
@@ -208,14 +213,7 @@ TEST(Diagnosis, DoesNotRankRivalsByHowMuchTheirShotsScatter) {
 // A specimen that keeps part of its strain flows, for all that the records say: its own branch
 // turns dashpot. A further relaxation, then in that branch's place, is not what it lacks.
 TEST(Search, DoesNotTakeARelaxationInTheSpecimensOwnPlaceForARival) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 2;
-  wishes.shots = 4;
-  wishes.gauges = 3;
-  wishes.samples = 1600;
-  wishes.rate_Hz = 1e6;
-  wishes.split = true;
-  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::Campaign truth = testing::draw_campaign(split_wishes(2, 4, 1600));
   testing::hide(truth, testing::parse_effect("x-permanent-strain=0.2"));
   const Campaign campaign = read_campaign(testing::shots_of(truth));
   Study study(campaign, 0.0, Workers{});
