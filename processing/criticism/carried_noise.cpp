@@ -1,9 +1,9 @@
 #include "processing/criticism/carried_noise.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "processing/base/wide.hpp"
 
@@ -24,9 +24,10 @@ double time_of(double keep) {
   return -1.0 / std::log(keep);
 }
 
+/// At least one sample, of a response that is nothing too.
 std::size_t end_of(const std::vector<double>& response, double peak) {
   std::size_t end = response.size();
-  while (end > 0 && std::abs(response[end - 1]) <= kEnded * peak) {
+  while (end > 1 && std::abs(response[end - 1]) <= kEnded * peak) {
     --end;
   }
   return end;
@@ -59,6 +60,13 @@ struct alignas(sizeof(Four)) FourNumbers {
     im += a.im * b.re - a.re * b.im;
   }
   [[gnu::always_inline]] void add_square(const FourNumbers& a) { re += a.re * a.re + a.im * a.im; }
+  [[gnu::always_inline]] void add_conjugate(const FourNumbers& other) {
+    re += other.re;
+    im -= other.im;
+  }
+  [[nodiscard, gnu::always_inline]] FourNumbers times(const Four& factor) const {
+    return {re * factor, im * factor};
+  }
 };
 
 namespace {
@@ -82,11 +90,15 @@ KOLSKY_WIDE void add_products_with_conjugates(const FourNumbers* a, const FourNu
 }
 
 /// A response's partial sums, by what of a record's sample comes to stand in the window.
-KOLSKY_WIDE void add_up(const double* response, const FourNumbers* turn, std::size_t whole,
-                        std::size_t before_twice, FourNumbers* sums) {
+/// @param end  of the response
+KOLSKY_WIDE void add_up(const double* response, const FourNumbers* turn, std::size_t end,
+                        std::size_t whole, std::size_t before_twice, FourNumbers* sums) {
   FourNumbers sum;
-  for (std::size_t n = 0; n < whole; ++n) {
+  for (std::size_t n = 0; n < end; ++n) {
     sum.add(response[n], turn[n]);
+    sums[whole - 1 - n] = sum;
+  }
+  for (std::size_t n = end; n < whole; ++n) {
     sums[whole - 1 - n] = sum;
   }
   // What arrives before the window begins never stands in it.
@@ -94,6 +106,18 @@ KOLSKY_WIDE void add_up(const double* response, const FourNumbers* turn, std::si
   for (std::size_t n = 0; n < before_twice; ++n) {
     early.add(response[n], turn[n]);
     sums[before_twice - 1 - n].add(-1.0, early);
+  }
+}
+
+/// What noise that forgets leaves from the blocks before each.
+KOLSKY_WIDE void put_earlier(const FourNumbers* blocks, std::size_t size, double keep,
+                             FourNumbers* earlier) {
+  FourNumbers sum;
+  for (std::size_t m = 0; m < size; ++m) {
+    earlier[m] = FourNumbers{};
+    earlier[m].add(keep, sum);
+    sum = earlier[m];
+    sum.add(1.0, blocks[m]);
   }
 }
 
@@ -105,12 +129,57 @@ struct CarriedNoise::FourBins {
   std::vector<FourNumbers> blocks;  ///< its sums over blocks
 };
 
+/// Responses at the sums' strides, and what they carry.
+struct CarriedNoise::Carried {
+  std::vector<std::vector<double>> responses;
+  std::vector<std::size_t> ends;
+  std::vector<bool> as_known;  ///< responses that are those of what this was made from
+  std::size_t block_count = 0;
+  std::vector<FourNumbers> sums;  ///< by four bins; below
+
+  [[nodiscard]] std::size_t filters() const { return responses.size(); }
+  /// Summed over samples: filter i times the conjugate of j, j up to i.
+  [[nodiscard]] std::size_t product(std::size_t four, std::size_t i, std::size_t j) const {
+    return four * per_four() + i * (i + 1) / 2 + j;
+  }
+  /// Summed over the judged window.
+  [[nodiscard]] std::size_t window(std::size_t four, std::size_t i) const {
+    return four * per_four() + pairs() + i;
+  }
+  /// Summed over blocks of samples, the first of them.
+  [[nodiscard]] std::size_t blocks(std::size_t four, std::size_t i) const {
+    return four * per_four() + pairs() + filters() + i * block_count;
+  }
+  [[nodiscard]] std::size_t per_four() const { return pairs() + filters() * (1 + block_count); }
+
+  [[nodiscard]] std::vector<bool> alike(const Carried& other) const {
+    std::vector<bool> alike(filters());
+    for (std::size_t i = 0; i < filters() && filters() == other.filters(); ++i) {
+      alike[i] = responses[i] == other.responses[i];
+    }
+    return alike;
+  }
+
+ private:
+  [[nodiscard]] std::size_t pairs() const { return filters() * (filters() + 1) / 2; }
+};
+
 /// Four bins' partial sums of the filters' transforms, by what of a record's sample v comes to
-/// stand in the window. From `same_from` to `same_to` all of every response does.
-struct CarriedNoise::Sums {
+/// stand in the window. From `same_from` on all of a response does, until it has no time to end.
+struct CarriedNoise::PartialSums {
   std::vector<std::vector<FourNumbers>> of;  ///< by filter and v
+  std::vector<std::size_t> same_to;          ///< by filter
   std::size_t same_from = 0;
-  std::size_t same_to = 0;
+
+  void make_room(const Carried& carried, std::size_t whole, std::size_t before) {
+    of.resize(carried.filters());
+    same_from = std::min(2 * before, whole);
+    same_to.clear();
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      of[i].resize(whole);
+      same_to.push_back(std::max(same_from, whole - std::min(carried.ends[i], whole) + 1));
+    }
+  }
 
   /// Sum over v of filter i times the conjugate of filter j.
   [[nodiscard]] FourNumbers product(std::size_t i, std::size_t j) const {
@@ -121,35 +190,84 @@ struct CarriedNoise::Sums {
         add_products_with_conjugates(of[i].data() + from, of[j].data() + from, to - from, sum);
       }
     };
+    const std::size_t until = std::min(same_to[i], same_to[j]);
     FourNumbers sum;
     FourNumbers after;
     part(0, same_from, sum);
-    part(same_to, of[i].size(), after);
+    part(until, of[i].size(), after);
     sum.add(1.0, after);
-    if (same_to > same_from) {
+    if (until > same_from) {
       FourNumbers one;
       part(same_from, same_from + 1, one);
-      sum.add(static_cast<double>(same_to - same_from), one);
+      sum.add(static_cast<double>(until - same_from), one);
     }
     return sum;
   }
 
   /// Sums over blocks of what filter i carries, turned back to the sample's own time.
-  [[nodiscard]] std::vector<FourNumbers> in_blocks(std::size_t i, std::size_t block,
-                                                   const FourBins& four) const {
-    std::vector<FourNumbers> blocks(four.blocks.size());
-    for (std::size_t m = 0; m < blocks.size(); ++m) {
+  void put_blocks(std::size_t i, std::size_t block, const FourBins& four, FourNumbers* out) const {
+    for (std::size_t m = 0; m < four.blocks.size(); ++m) {
       const std::size_t first = m * block;
       const std::size_t last = std::min(first + block, of[i].size());
-      if (first >= same_from && last <= same_to) {
-        blocks[m].add_product(of[i][first], four.blocks[m]);
+      out[m] = FourNumbers{};
+      if (first >= same_from && last <= same_to[i]) {
+        out[m].add_product(of[i][first], four.blocks[m]);
       } else {
-        add_products(of[i].data() + first, four.turn.data() + first, last - first, blocks[m]);
+        add_products(of[i].data() + first, four.turn.data() + first, last - first, out[m]);
       }
     }
-    return blocks;
   }
 };
+
+/// Four bins' blocks, sums of them and power, filters x filters.
+struct CarriedNoise::Room {
+  std::vector<std::vector<FourNumbers>> blocks;   ///< by filter, less the baseline's share
+  std::vector<std::vector<FourNumbers>> earlier;  ///< by filter, what slow noise keeps of them
+  std::vector<FourNumbers> offset;
+  std::vector<FourNumbers> of_quiet;
+  std::vector<FourNumbers> power;  ///< i with j up to i
+};
+
+struct CarriedNoise::Memory::State {
+  std::vector<Carried> kept;  ///< what served last at the end
+  Carried spare;
+  PartialSums sums;
+  Room room;
+
+  /// Of what is kept, the one with most responses alike; null where none is.
+  [[nodiscard]] const Carried* nearest(Carried& to) {
+    std::ptrdiff_t most = 0;
+    auto best = kept.end();
+    to.as_known.assign(to.filters(), false);
+    for (auto it = kept.begin(); it != kept.end(); ++it) {
+      std::vector<bool> alike = to.alike(*it);
+      const auto count = std::count(alike.begin(), alike.end(), true);
+      if (count > most) {
+        most = count;
+        best = it;
+        to.as_known = std::move(alike);
+      }
+    }
+    if (best == kept.end()) {
+      return nullptr;
+    }
+    std::rotate(best, best + 1, kept.end());
+    return &kept.back();
+  }
+
+  void keep_spare() {
+    constexpr std::size_t kMost = 6;
+    kept.push_back(std::move(spare));
+    spare = Carried{};
+    if (kept.size() > kMost) {
+      spare = std::move(kept.front());
+      kept.erase(kept.begin());
+    }
+  }
+};
+
+CarriedNoise::Memory::Memory() : state_(std::make_unique<State>()) {}
+CarriedNoise::Memory::~Memory() = default;
 
 CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
                            const WindowInRecord& window, std::size_t bins)
@@ -229,102 +347,158 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
 
 CarriedNoise::~CarriedNoise() = default;
 
-std::vector<CarriedBin> CarriedNoise::through(
-    std::span<const std::vector<double>> responses) const {
-  const std::size_t filters = responses.size();
+void CarriedNoise::put_at_strides(std::span<const std::vector<double>> responses,
+                                  Carried& out) const {
   const auto scale = static_cast<double>(stride_);
   // From a coarse lag -before_ to the finer index.
   const std::size_t shift = window_.before - before_ * stride_;
-  std::vector<std::vector<double>> coarse(filters);
-  std::size_t end = 0;
-  for (std::size_t i = 0; i < filters; ++i) {
+  out.responses.resize(responses.size());
+  out.ends.resize(responses.size());
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    out.responses[i].resize(whole_);
     double peak = 0.0;
     for (std::size_t n = 0; n < whole_; ++n) {
-      coarse[i].push_back(scale * responses[i][shift + n * stride_]);
-      peak = std::max(peak, std::abs(coarse[i].back()));
+      const double value = scale * responses[i][shift + n * stride_];
+      out.responses[i][n] = value;
+      peak = std::max(peak, std::abs(value));
     }
-    end = std::max(end, end_of(coarse[i], peak));
+    out.ends[i] = end_of(out.responses[i], peak);
   }
-  Sums sums;
-  sums.of.assign(filters, std::vector<FourNumbers>(whole_));
-  sums.same_from = std::min(2 * before_, whole_);
-  sums.same_to = std::max(sums.same_from, whole_ - std::min(end, whole_) + 1);
-  std::vector<CarriedBin> bins(four_.size() * kTogether);
-  for (std::size_t g = 0; g < four_.size(); ++g) {
-    for (std::size_t i = 0; i < filters; ++i) {
-      add_up(coarse[i].data(), four_[g].turn.data(), whole_, 2 * before_, sums.of[i].data());
+  out.block_count = four_.front().blocks.size();
+  out.sums.resize(four_.size() * out.per_four());
+}
+
+void CarriedNoise::through(std::span<const std::vector<double>> responses, Memory& memory,
+                           std::vector<CarriedBin>& bins) const {
+  Memory::State& state = *memory.state_;
+  Carried& now = state.spare;
+  put_at_strides(responses, now);
+  const Carried* known = state.nearest(now);
+  const bool all_known =
+      std::find(now.as_known.begin(), now.as_known.end(), false) == now.as_known.end();
+  if (!all_known) {
+    state.sums.make_room(now, whole_, before_);
+    for (std::size_t g = 0; g < four_.size(); ++g) {
+      for (std::size_t i = 0; i < now.filters(); ++i) {
+        add_up(now.responses[i].data(), four_[g].turn.data(), now.ends[i], whole_, 2 * before_,
+               state.sums.of[i].data());
+      }
+      carry(state.sums, g, known, now);
     }
-    take(sums, four_[g], std::span(bins).subspan(g * kTogether, kTogether));
+    state.keep_spare();
+    known = &state.kept.back();
   }
   bins.resize(bins_);
-  return bins;
+  const auto rows = static_cast<Eigen::Index>(responses.size());
+  for (std::size_t g = 0; g < four_.size(); ++g) {
+    put_noise_in(*known, g, state.room);
+    for (std::size_t k = g * kTogether; k < std::min(bins_, (g + 1) * kTogether); ++k) {
+      const std::size_t lane = k % kTogether;
+      bins[k].ratio.resize(rows);
+      bins[k].power.resize(rows, rows);
+      auto power = state.room.power.begin();
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        const FourNumbers& sum = known->sums[known->window(g, static_cast<std::size_t>(i))];
+        bins[k].ratio[i] = sum.at(lane) / static_cast<double>(judged_);
+        for (Eigen::Index j = 0; j <= i; ++j) {
+          const Complex own = (power++)->at(lane);
+          bins[k].power(i, j) = own;
+          bins[k].power(j, i) = std::conj(own);
+        }
+      }
+    }
+  }
 }
 
-void CarriedNoise::take(const Sums& sums, const FourBins& four, std::span<CarriedBin> bins) const {
-  const std::size_t filters = sums.of.size();
-  const auto rows = static_cast<Eigen::Index>(filters);
-  std::array<Eigen::MatrixXcd, kTogether> square;
-  std::array<Eigen::MatrixXcd, kTogether> blocks;
-  square.fill(Eigen::MatrixXcd(rows, rows));
-  blocks.fill(Eigen::MatrixXcd(rows, static_cast<Eigen::Index>(four.blocks.size())));
-  for (CarriedBin& bin : bins) {
-    bin.ratio.resize(rows);
-  }
-  for (std::size_t i = 0; i < filters; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    FourNumbers whole;
-    add_all(sums.of[i].data() + before_, judged_, whole);
-    const std::vector<FourNumbers> own = sums.in_blocks(i, block_, four);
-    for (std::size_t lane = 0; lane < kTogether; ++lane) {
-      bins[lane].ratio[row] = whole.at(lane) / static_cast<double>(judged_);
-      for (std::size_t m = 0; m < own.size(); ++m) {
-        blocks[lane](row, static_cast<Eigen::Index>(m)) = own[m].at(lane);
-      }
+/// @param known  what holds the responses that are as known; null: none is
+void CarriedNoise::carry(const PartialSums& sums, std::size_t four, const Carried* known,
+                         Carried& out) const {
+  for (std::size_t i = 0; i < out.filters(); ++i) {
+    const auto blocks = out.sums.begin() + static_cast<std::ptrdiff_t>(out.blocks(four, i));
+    if (out.as_known[i]) {
+      out.sums[out.window(four, i)] = known->sums[known->window(four, i)];
+      std::copy_n(known->sums.begin() + static_cast<std::ptrdiff_t>(known->blocks(four, i)),
+                  out.block_count, blocks);
+    } else {
+      FourNumbers window;
+      add_all(sums.of[i].data() + before_, judged_, window);
+      out.sums[out.window(four, i)] = window;
+      sums.put_blocks(i, block_, four_[four], &*blocks);
     }
     for (std::size_t j = 0; j <= i; ++j) {
-      const FourNumbers product = sums.product(i, j);
-      const auto column = static_cast<Eigen::Index>(j);
-      for (std::size_t lane = 0; lane < kTogether; ++lane) {
-        square[lane](row, column) = product.at(lane);
-        square[lane](column, row) = std::conj(product.at(lane));
-      }
+      out.sums[out.product(four, i, j)] = out.as_known[i] && out.as_known[j]
+                                              ? known->sums[known->product(four, i, j)]
+                                              : sums.product(i, j);
     }
-  }
-  const auto scale = static_cast<double>(stride_);
-  for (std::size_t lane = 0; lane < kTogether; ++lane) {
-    bins[lane].power = scale * scale * power_of(square[lane], blocks[lane], four.white[lane]);
   }
 }
 
-/// @param square  sum over samples of what is carried times its conjugate
-/// @param blocks  its sums over blocks, filters x blocks
-Eigen::MatrixXcd CarriedNoise::power_of(const Eigen::MatrixXcd& square, Eigen::MatrixXcd& blocks,
-                                        double white) const {
-  const auto quiet = static_cast<Eigen::Index>(quiet_blocks_);
+/// Four bins' power of what is carried, from its sums: of white noise less its quiet mean, and of
+/// slow noise likewise.
+void CarriedNoise::put_noise_in(const Carried& carried, std::size_t four, Room& room) const {
+  const std::size_t filters = carried.filters();
   const auto quiet_samples = static_cast<double>(quiet_blocks_ * block_);
-  const Eigen::VectorXcd offset = blocks.rowwise().sum() / quiet_samples;
-  const Eigen::VectorXcd of_quiet = blocks.leftCols(quiet).rowwise().sum();
-  Eigen::MatrixXcd power =
-      white * (square - of_quiet * offset.adjoint() - offset * of_quiet.adjoint() +
-               quiet_samples * offset * offset.adjoint());
-  if (slow_.empty()) {
-    return power;
+  const Four scale = Four{} + static_cast<double>(stride_ * stride_);
+  const Four white = scale * four_[four].white;
+  room.offset.assign(filters, FourNumbers{});
+  room.of_quiet.assign(filters, FourNumbers{});
+  room.power.clear();
+  for (std::size_t i = 0; i < filters; ++i) {
+    const FourNumbers* blocks = carried.sums.data() + carried.blocks(four, i);
+    FourNumbers all;
+    add_all(blocks, carried.block_count, all);
+    room.offset[i].add(1.0 / quiet_samples, all);
+    add_all(blocks, quiet_blocks_, room.of_quiet[i]);
+    for (std::size_t j = 0; j <= i; ++j) {
+      FourNumbers taken_off;
+      taken_off.add_product_with_conjugate(room.of_quiet[i], room.offset[j]);
+      taken_off.add_product_with_conjugate(room.offset[i], room.of_quiet[j]);
+      FourNumbers offsets;
+      offsets.add_product_with_conjugate(room.offset[i], room.offset[j]);
+      FourNumbers sum = carried.sums[carried.product(four, i, j)];
+      sum.add(-1.0, taken_off);
+      sum.add(quiet_samples, offsets);
+      room.power.push_back(sum.times(white));
+    }
   }
-  blocks.leftCols(quiet).colwise() -= static_cast<double>(block_) * offset;
-  const Eigen::MatrixXcd itself = blocks * blocks.adjoint();
-  Eigen::MatrixXcd earlier(blocks.rows(), blocks.cols());
+  if (slow_.empty()) {
+    return;
+  }
+  room.blocks.resize(filters);
+  for (std::size_t i = 0; i < filters; ++i) {
+    const FourNumbers* blocks = carried.sums.data() + carried.blocks(four, i);
+    room.blocks[i].assign(blocks, blocks + carried.block_count);
+    for (std::size_t m = 0; m < quiet_blocks_; ++m) {
+      room.blocks[i][m].add(-static_cast<double>(block_), room.offset[i]);
+    }
+  }
+  add_slow_noise(filters, room);
+}
+
+void CarriedNoise::add_slow_noise(std::size_t filters, Room& room) const {
+  const auto scale = static_cast<double>(stride_ * stride_);
+  room.earlier.resize(filters);
   for (const Part& part : slow_) {
-    for (Eigen::Index i = 0; i < blocks.rows(); ++i) {
-      Complex sum = 0.0;
-      for (Eigen::Index m = 0; m < blocks.cols(); ++m) {
-        earlier(i, m) = part.keep * sum;
-        sum = earlier(i, m) + blocks(i, m);
+    for (std::size_t i = 0; i < filters; ++i) {
+      room.earlier[i].resize(room.blocks[i].size());
+      put_earlier(room.blocks[i].data(), room.blocks[i].size(), part.keep, room.earlier[i].data());
+    }
+    auto power = room.power.begin();
+    for (std::size_t i = 0; i < filters; ++i) {
+      const std::size_t count = room.blocks[i].size();
+      for (std::size_t j = 0; j <= i; ++j, ++power) {
+        FourNumbers itself;
+        FourNumbers ahead;
+        FourNumbers behind;
+        add_products_with_conjugates(room.blocks[i].data(), room.blocks[j].data(), count, itself);
+        add_products_with_conjugates(room.blocks[i].data(), room.earlier[j].data(), count, ahead);
+        add_products_with_conjugates(room.blocks[j].data(), room.earlier[i].data(), count, behind);
+        ahead.add_conjugate(behind);
+        power->add(scale * part.variance * part.within, itself);
+        power->add(scale * part.variance * part.between, ahead);
       }
     }
-    const Eigen::MatrixXcd cross = blocks * earlier.adjoint();
-    power += part.variance * (part.within * itself + part.between * (cross + cross.adjoint()));
   }
-  return power;
 }
 
 }  // namespace kolsky

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct CarriedBin {
 /// is noise of its own and taken off n before it is carried.
 class CarriedNoise {
  public:
+  /// Sums of the responses carried last. Most numbers of a fit move one gauge's response: the
+  /// others' are not summed again. One thread at a time.
+  class Memory;
+
   /// @param least_power  of white noise beside what the spectrum says (steps of a converter)
   CarriedNoise(const NoiseSpectrum& spectrum, double least_power, const WindowInRecord& window,
                std::size_t bins);
@@ -44,8 +49,10 @@ class CarriedNoise {
   CarriedNoise& operator=(const CarriedNoise&) = delete;
 
   /// @param responses  k by filter, from lag -before on, judged + 2 before samples
-  [[nodiscard]] std::vector<CarriedBin> through(
-      std::span<const std::vector<double>> responses) const;
+  /// @param memory     of this noise alone; changes how long it takes and no result
+  /// @param bins       the result; its room serves again
+  void through(std::span<const std::vector<double>> responses, Memory& memory,
+               std::vector<CarriedBin>& bins) const;
 
  private:
   /// Noise that forgets slowly, over blocks of samples: covariance of two blocks' means.
@@ -56,11 +63,14 @@ class CarriedNoise {
     double keep = 0.0;     ///< from one block to the next
   };
   struct FourBins;
-  struct Sums;
+  struct Carried;
+  struct PartialSums;
+  struct Room;
 
-  void take(const Sums& sums, const FourBins& four, std::span<CarriedBin> bins) const;
-  [[nodiscard]] Eigen::MatrixXcd power_of(const Eigen::MatrixXcd& square, Eigen::MatrixXcd& blocks,
-                                          double white) const;
+  void put_at_strides(std::span<const std::vector<double>> responses, Carried& out) const;
+  void carry(const PartialSums& sums, std::size_t four, const Carried* known, Carried& out) const;
+  void put_noise_in(const Carried& carried, std::size_t four, Room& room) const;
+  void add_slow_noise(std::size_t filters, Room& room) const;
 
   WindowInRecord window_;
   std::size_t stride_ = 1;  ///< the sums are formed at every so many samples
@@ -72,6 +82,19 @@ class CarriedNoise {
   std::vector<Part> slow_;
   std::size_t bins_ = 0;
   std::vector<FourBins> four_;
+};
+
+class CarriedNoise::Memory {
+ public:
+  Memory();
+  ~Memory();
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+
+ private:
+  friend class CarriedNoise;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace kolsky

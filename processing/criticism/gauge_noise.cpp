@@ -5,7 +5,6 @@
 #include <functional>
 #include <numeric>
 
-#include "processing/criticism/carried_noise.hpp"
 #include "processing/criticism/converter_steps.hpp"
 #include "processing/criticism/smooth_power.hpp"
 #include "processing/identification/noise_spectrum.hpp"
@@ -159,8 +158,9 @@ double GaugeNoise::quiet_power(std::size_t gauge) const {
   return 2.0 * sum / (n * n);
 }
 
-std::vector<CarriedBin> GaugeNoise::carried(std::span<const std::vector<double>> responses) const {
-  return carried_->through(responses);
+void GaugeNoise::carry(std::span<const std::vector<double>> responses, CarriedNoise::Memory& memory,
+                       std::vector<CarriedBin>& bins) const {
+  carried_->through(responses, memory, bins);
 }
 
 void GaugeNoise::forget() {

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "processing/criticism/campaign.hpp"
+#include "processing/criticism/carried_noise.hpp"
 #include "processing/criticism/judged_band.hpp"
 
 namespace kolsky {
 
-class CarriedNoise;
 class NoiseSpectrum;
-struct CarriedBin;
 
 /// The noise of all gauges at the judged bins: its spectrum and how far gauges share it from the
 /// quiet parts of all shots, times what residuals have shown of it since.
@@ -35,9 +34,9 @@ class GaugeNoise {
   [[nodiscard]] double quiet_power(std::size_t gauge) const;
 
   /// What the other gauges' residuals hold of the reference gauge's noise, as the quiet parts have
-  /// it. @param responses  as CarriedNoise::through
-  [[nodiscard]] std::vector<CarriedBin> carried(
-      std::span<const std::vector<double>> responses) const;
+  /// it. Parameters as CarriedNoise::through.
+  void carry(std::span<const std::vector<double>> responses, CarriedNoise::Memory& memory,
+             std::vector<CarriedBin>& bins) const;
 
   /// Takes the quiet parts at their word again.
   void forget();

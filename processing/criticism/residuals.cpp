@@ -28,6 +28,8 @@ struct WhiteResiduals::Workspace {
   std::vector<Spectrum> records;               ///< of one shot where effects change them
   std::vector<Spectrum> rows;                  ///< one shot's residuals, plain, by other gauge
   std::vector<std::vector<double>> responses;  ///< of other gauges to the reference's noise
+  CarriedNoise::Memory carried_noise;          ///< through these responses
+  std::vector<CarriedBin> bins;                ///< the same
   SpecimenResponse response;
 
   // Much of a fit moves what is added to records alone: how waves travel then stays as it was in
@@ -154,8 +156,12 @@ void WhiteResiduals::prepare_spectra() {
     const Complex square = (s / wc) * (s / wc);
     return std::exp(-square * square);
   };
+  const std::size_t before = band_.edge / band_.decimation;
+  const std::size_t first = band_.lead / band_.decimation;
+  const double start_s = static_cast<double>(first + before) * judged_period_s();
   for (const Complex s : damped_path_) {
     damped_filter_.push_back(pass(s));
+    filter_of_response_.push_back(damped_filter_.back() * std::exp(-s * start_s));
   }
   for (const Complex s : plain_path_) {
     filter_.push_back(pass(s).real());
@@ -242,13 +248,34 @@ WhiteResiduals::Ratios WhiteResiduals::ratios_of(const Scene& scene) const {
   return ratios;
 }
 
+namespace {
+
+/// Ends a response where it falls below what the damped transform tells of it: the spectrum's own
+/// end leaves ripples of this share of the peak, which undamping raises.
+/// @param growth  of undamping, per sample
+void end_where_unresolved(std::vector<double>& response, double growth, std::size_t first) {
+  constexpr double kUnresolved = 3e-10;
+  double peak = 0.0;
+  for (const double value : response) {
+    peak = std::max(peak, std::abs(value));
+  }
+  for (std::size_t n = response.size(); n > 0; --n) {
+    const double ripple =
+        kUnresolved * peak * std::exp(growth * static_cast<double>(first + n - 1));
+    if (std::abs(response[n - 1]) > ripple) {
+      return;
+    }
+    response[n - 1] = 0.0;
+  }
+}
+
+}  // namespace
+
 /// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins; last,
 /// what the mean over a long reference gauge would hold of it, and all of it.
-std::vector<CarriedBin> WhiteResiduals::carried_by(Workspace& work, const Ratios& ratios) const {
-  // The filter reaches to both sides of a response's first sample.
+void WhiteResiduals::carry_noise(Workspace& work, const Ratios& ratios) const {
   const std::size_t before = band_.edge / band_.decimation;
   const std::size_t first = band_.lead / band_.decimation;
-  const double start_s = static_cast<double>(first + before) * judged_period_s();
   std::vector<const Spectrum*> filters;
   for (const std::size_t j : others_) {
     filters.push_back(&ratios.reading[j]);
@@ -262,18 +289,18 @@ std::vector<CarriedBin> WhiteResiduals::carried_by(Workspace& work, const Ratios
   std::fill(work.carried.begin(), work.carried.end(), 0.0);
   for (std::size_t i = 0; i < filters.size(); ++i) {
     for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-      work.carried[k] = (*filters[i])[k] * damped_filter_[k] * std::exp(-damped_path_[k] * start_s);
+      work.carried[k] = (*filters[i])[k] * filter_of_response_[k];
     }
     work.decimated.inverse(work.carried, work.residual);
     const auto begin = work.residual.begin() + static_cast<std::ptrdiff_t>(first);
     work.responses[i].assign(begin, begin + static_cast<std::ptrdiff_t>(band_.judged + 2 * before));
+    end_where_unresolved(work.responses[i], damped_path_.front().real() * judged_period_s(), first);
   }
-  std::vector<CarriedBin> bins = noise_.carried(work.responses);
-  for (std::size_t k = 0; k < bins.size(); ++k) {
-    bins[k].power /= filter_[k] * filter_[k];
-    bins[k].ratio /= filter_[k];
+  noise_.carry(work.responses, work.carried_noise, work.bins);
+  for (std::size_t k = 0; k < work.bins.size(); ++k) {
+    work.bins[k].power /= filter_[k] * filter_[k];
+    work.bins[k].ratio /= filter_[k];
   }
-  return bins;
 }
 
 /// Inverse Cholesky factor of the residuals' covariance at one bin; `cross` becomes P G^H.
@@ -326,25 +353,37 @@ void WhiteResiduals::know_waves(Workspace& work, const Composition& composition,
   work.shot = shot;
 }
 
-/// What whitens residuals under these effects, unless it is known.
-void WhiteResiduals::know_noise(Workspace& work, const std::vector<AppliedEffect>& effects) const {
-  if (work.on_noise == effects) {
-    return;
+/// The ratios by which noise is carried: of a shot as the others are on average.
+WhiteResiduals::Ratios WhiteResiduals::usual_ratios(
+    Workspace& work, const Composition& composition,
+    const std::vector<AppliedEffect>& effects) const {
+  if (!composition.differs_by_shot()) {
+    know_waves(work, composition, effects, 0);
+    return work.ratios;
   }
   Scene scene(campaign_.bench, usual_, damped_path_);
   shape(effects, scene);
-  const std::vector<CarriedBin> carried = carried_by(work, ratios_of(scene));
+  return ratios_of(scene);
+}
+
+/// What whitens residuals under these effects, unless it is known.
+void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
+                                const std::vector<AppliedEffect>& effects) const {
+  if (work.on_noise == effects) {
+    return;
+  }
+  carry_noise(work, usual_ratios(work, composition, effects));
   work.whitener.resize(band_.bins_judged);
   work.cross.resize(band_.bins_judged);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    work.whitener[k] = std::numbers::sqrt2 * whitener(carried[k], k, work.cross[k]);
+    work.whitener[k] = std::numbers::sqrt2 * whitener(work.bins[k], k, work.cross[k]);
   }
   work.on_noise = effects;
 }
 
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
   Workspace& work = *work_.front();
-  know_noise(work, Effects(composition, theta, 0).on_waves);
+  know_noise(work, composition, Effects(composition, theta, 0).on_waves);
   spread_.clear();
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
@@ -483,7 +522,7 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
   Eigen::VectorXcd r(rows);
   Eigen::VectorXcd white(rows);
   Spectrum damped(band_.bins_carried);
-  know_noise(work, Effects(composition, theta, 0).on_waves);
+  know_noise(work, composition, Effects(composition, theta, 0).on_waves);
   for (std::size_t n = first; n < end; ++n) {
     Effects effects(composition, theta, n);
     know_waves(work, composition, std::move(effects.on_waves), n);

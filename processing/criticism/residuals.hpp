@@ -107,8 +107,11 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] Ratios ratios_of(const Scene& scene) const;
   void know_waves(Workspace& work, const Composition& composition,
                   std::vector<AppliedEffect> effects, std::size_t shot) const;
-  void know_noise(Workspace& work, const std::vector<AppliedEffect>& effects) const;
-  [[nodiscard]] std::vector<CarriedBin> carried_by(Workspace& work, const Ratios& ratios) const;
+  [[nodiscard]] Ratios usual_ratios(Workspace& work, const Composition& composition,
+                                    const std::vector<AppliedEffect>& effects) const;
+  void know_noise(Workspace& work, const Composition& composition,
+                  const std::vector<AppliedEffect>& effects) const;
+  void carry_noise(Workspace& work, const Ratios& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
@@ -133,8 +136,10 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<std::size_t> others_;
   std::vector<Complex> damped_path_;
   std::vector<Complex> plain_path_;
-  std::vector<double> filter_;                  ///< at the judged bins
-  std::vector<Complex> damped_filter_;          ///< at the carried bins
+  std::vector<double> filter_;          ///< at the judged bins
+  std::vector<Complex> damped_filter_;  ///< at the carried bins
+  /// The same, so much later that what it smears before a response's first sample is there too.
+  std::vector<Complex> filter_of_response_;
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
   ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
   std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges

@@ -55,13 +55,16 @@ double lead(const Refit& ahead, const Refit& behind) {
 Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
     : study_(study),
       base_(base),
-      start_(start),
       safeguards_(safeguards),
       candidates_(candidates_for(base, study.campaign())),
       directions_(candidates_.size()) {
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     directions_[i] = direction_of(candidates_[i], base_, study_, worker);
   });
+  if (astray(base_)) {
+    begun_ = start;
+    start_moduli(*begun_, study.campaign(), study.residuals());
+  }
   if (safeguards_.search_count) {
     trials_ = independent_trials(base_, candidates_, directions_);
   }
@@ -305,7 +308,7 @@ std::vector<double> Search::begin_large(const Candidate& candidate, const Compos
 std::optional<Eigen::MatrixXd> Search::chord_of(const Candidate& candidate,
                                                 const Direction& direction,
                                                 const Composition& composition) const {
-  if (astray(base_)) {
+  if (begun_) {
     return std::nullopt;
   }
   const auto& numbers = composition.numbers();
@@ -341,11 +344,9 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   ModelFit fit =
       fit_model(composition, study_.residuals(), serial_on(worker),
                 begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
-  if (astray(base_)) {
+  if (begun_) {
     // Begin again from where the model's numbers started.
-    Model fresh = with(start_, candidate, true);
-    start_moduli(fresh, study_.campaign(), study_.residuals(), worker);
-    const Composition again(fresh, study_.campaign());
+    const Composition again(with(*begun_, candidate, true), study_.campaign());
     ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
                                carry(again, again.start(), composition));
     if (other.objective() < fit.objective()) {
@@ -354,7 +355,7 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   }
   const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
   if (candidate.one_sided &&
-      (evidence_of(direction, candidate) < kWorthRefitting || (even && astray(base_)))) {
+      (evidence_of(direction, candidate) < kWorthRefitting || (even && begun_))) {
     // At null its first order is what others take up, or a large one bends away from it: only a
     // finite size shows what it does.
     ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),

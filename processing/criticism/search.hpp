@@ -38,7 +38,7 @@ struct Refit {
 class Search {
  public:
   /// @param base   the model as fitted; outlives this
-  /// @param start  the same before anything was fitted; outlives this
+  /// @param start  the same before anything was fitted
   Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards = {});
 
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
@@ -80,7 +80,7 @@ class Search {
 
   Study& study_;
   const Studied& base_;
-  const Model& start_;
+  std::optional<Model> begun_;  ///< where fits begin again, if the model may have gone astray
   Safeguards safeguards_;
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;

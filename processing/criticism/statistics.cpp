@@ -8,6 +8,13 @@
 
 namespace kolsky {
 
+namespace {
+
+/// The last digits of a chance are worth no longer numbers.
+const boost::math::policies::policy<boost::math::policies::promote_double<false>> kAsDouble;
+
+}  // namespace
+
 double log_chi2_tail(double x, double k) {
   if (x <= 0.0) {
     return 0.0;
@@ -15,7 +22,7 @@ double log_chi2_tail(double x, double k) {
   const double a = k / 2.0;
   const double z = x / 2.0;
   if (z < a + 30.0) {
-    return std::log(std::max(boost::math::gamma_q(a, z), 1e-300));
+    return std::log(std::max(boost::math::gamma_q(a, z, kAsDouble), 1e-300));
   }
   // Lentz's evaluation of the continued fraction of Gamma(a, z) e^z z^-a.
   double b = z + 1.0 - a;
@@ -33,7 +40,7 @@ double log_chi2_tail(double x, double k) {
       break;
     }
   }
-  return -z + a * std::log(z) - boost::math::lgamma(a) + std::log(h);
+  return -z + a * std::log(z) - boost::math::lgamma(a, kAsDouble) + std::log(h);
 }
 
 double log_f_tail(double f, double m, double n) {

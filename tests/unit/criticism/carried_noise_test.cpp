@@ -88,7 +88,9 @@ NoiseSpectrum measured(double keep, double white) {
 void expect_as_drawn(double keep, double white, double allowed) {
   const std::vector<std::vector<double>> filters{echoes(-0.95, 25), echoes(0.8, 16)};
   const CarriedNoise noise(measured(keep, white), 1e-12, {kJudged, kBefore, kQuiet, 1, 0.5}, kBins);
-  const auto bins = noise.through(filters);
+  CarriedNoise::Memory memory;
+  std::vector<CarriedBin> bins;
+  noise.through(filters, memory, bins);
   const auto wanted = drawn(filters, keep, white, 4000);
   for (std::size_t k = 0; k < kBins; ++k) {
     EXPECT_NEAR(bins[k].power(0, 0).real() / wanted[k](0, 0).real(), 1.0, allowed) << k;
@@ -105,6 +107,41 @@ TEST(CarriedNoise, WhiteNoiseRingsUpAsDrawnRecordsDo) {
 
 TEST(CarriedNoise, SlowNoiseAndItsBaselineRingUpAsDrawnRecordsDo) {
   expect_as_drawn(0.95, 0.5, 0.1);
+}
+
+std::vector<CarriedBin> carried(const CarriedNoise& noise,
+                                const std::vector<std::vector<double>>& filters,
+                                CarriedNoise::Memory& memory) {
+  std::vector<CarriedBin> bins;
+  noise.through(filters, memory, bins);
+  return bins;
+}
+
+// What is remembered of other responses changes no bit of a result.
+TEST(CarriedNoise, RemembersOnlyWhatHasNotChanged) {
+  const CarriedNoise noise(measured(0.95, 0.5), 1e-12, {kJudged, kBefore, kQuiet, 1, 0.5}, kBins);
+  const std::vector<double> nothing(kRecord, 0.0);
+  std::vector<std::vector<double>> brief{echoes(0.5, 30)};
+  std::fill(brief[0].begin() + kBefore + 31, brief[0].end(), 0.0);
+  const std::vector<std::vector<std::vector<double>>> calls{
+      {echoes(-0.95, 25), echoes(0.8, 16), brief[0]},
+      {echoes(-0.95, 25), echoes(0.7, 16), brief[0]},
+      {echoes(-0.9, 25), echoes(0.8, 16), nothing},
+      {echoes(-0.95, 25), echoes(0.8, 16), brief[0]},
+      {echoes(0.8, 16)},
+      {nothing, echoes(0.8, 16)}};
+  CarriedNoise::Memory memory;
+  for (int round = 0; round < 3; ++round) {
+    for (const auto& filters : calls) {
+      CarriedNoise::Memory none;
+      const auto wanted = carried(noise, filters, none);
+      const auto bins = carried(noise, filters, memory);
+      for (std::size_t k = 0; k < kBins; ++k) {
+        EXPECT_EQ(bins[k].power, wanted[k].power) << k;
+        EXPECT_EQ(bins[k].ratio, wanted[k].ratio) << k;
+      }
+    }
+  }
 }
 
 }  // namespace
