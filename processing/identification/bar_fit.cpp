@@ -250,7 +250,8 @@ std::vector<double> first_guess(const BarData& data, SolidKind solid) {
   const double time_s = records.rise_s.back() - records.rise_s.front();
   if (time_s <= 0.0) {
     throw InputError("gauges", "see the pulse in another order than they lie along the bar",
-                     "give positions from the impacted end, gauges in the order of the channels");
+                     "give positions from the impacted end, gauges in the order of the channels, "
+                     "and records that begin before the pulse passes the first");
   }
   const double speed = span_m / time_s;
   const double E1 = data.bench().input.density_kg_m3 * speed * speed;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "processing/waves/each_exp.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -55,8 +57,9 @@ BarWaves::BarWaves(WaveTheory theory, const MovedBench& bench, const Compliance&
     Spectrum& q = echo.emplace_back();
     q.reserve(modes.size());
     for (const BarMode& mode : modes) {
-      q.push_back(std::exp(-mode.gamma * way_m));
+      q.push_back(-mode.gamma * way_m);
     }
+    each_exp(q);
   }
 }
 
@@ -65,8 +68,11 @@ BarWaves::Spectrum BarWaves::ratio(const MovedBench& bench, std::size_t j) const
   const bool blurred = length_m[j] != length_m[0];
   Spectrum ratio(modes.size());
   for (std::size_t k = 0; k < ratio.size(); ++k) {
+    ratio[k] = -modes[k].gamma * way_m;
+  }
+  each_exp(ratio);
+  for (std::size_t k = 0; k < ratio.size(); ++k) {
     const Complex gamma = modes[k].gamma;
-    ratio[k] = std::exp(-gamma * way_m);
     if (!echo.empty()) {
       ratio[k] *= (1.0 + reflection * echo[j][k]) / (1.0 + reflection * echo[0][k]);
     }

@@ -41,7 +41,9 @@ std::vector<double> autocovariances(const std::vector<std::span<const double>>& 
 
 constexpr std::size_t kFewestForSpectrum = 32;
 constexpr std::size_t kMostSlowParts = 4;
-constexpr int kRounds = 40;
+constexpr int kMostRounds = 40;
+/// Share of themselves by which weights that are settled still move in a round.
+constexpr double kSettled = 1e-5;
 /// What a part with its two numbers must add to the log likelihood.
 constexpr double kWorthAPart = 3.0;
 /// What the autoregressive model must be ahead: what slow noise does in a record of some length
@@ -157,16 +159,20 @@ class NoiseSpectrum::Fit {
   void refine() {
     Eigen::ArrayXd inverse(parts_.rows());
     Eigen::VectorXd excess(parts_.rows());
-    for (int round = 0; round < kRounds; ++round) {
+    double moved = 1.0;
+    for (int round = 0; round < kMostRounds && moved > kSettled; ++round) {
       inverse = weights_[0] * parts_.col(0).array();
       for (Eigen::Index part = 1; part < parts_.cols(); ++part) {
         inverse += weights_[part] * parts_.col(part).array();
       }
       inverse = inverse.inverse();
       excess = (inverse.square() * data_->power).matrix();
+      moved = 0.0;
       for (Eigen::Index part = 0; part < parts_.cols(); ++part) {
         const auto column = parts_.col(part);
-        weights_[part] *= std::sqrt(column.dot(excess) / column.dot(inverse.matrix()));
+        const double factor = std::sqrt(column.dot(excess) / column.dot(inverse.matrix()));
+        weights_[part] *= factor;
+        moved = std::max(moved, std::abs(factor - 1.0));
       }
     }
   }

@@ -4,17 +4,26 @@
 #include <cmath>
 
 #include "processing/models/bending.hpp"
+#include "processing/waves/each_exp.hpp"
 
 namespace kolsky {
 
 namespace {
 
+/// exp(-gamma x) of a bar's waves.
+std::vector<Complex> over(const BarScene& bar, double x) {
+  std::vector<Complex> wave;
+  wave.reserve(bar.gamma_per_m.size());
+  for (const Complex gamma : bar.gamma_per_m) {
+    wave.push_back(-gamma * x);
+  }
+  each_exp(wave);
+  return wave;
+}
+
 /// sinh(x) / x, entire.
 Complex sinhc(Complex x) {
-  if (std::abs(x) < 1e-3) {
-    return 1.0 + x * x / 6.0;
-  }
-  return std::sinh(x) / x;
+  return std::norm(x) < 1e-6 ? 1.0 + x * x / 6.0 : std::sinh(x) / x;
 }
 
 /// Both faces: k F (1 - nu^2) J / d_s, k = 1.08 (1 - d_s/D)^1.3, per unit force.
@@ -34,15 +43,43 @@ struct Junction {
   Complex strain, strain_q;
 };
 
-Junction junction(const Scene& scene, std::size_t at) {
+/// Waves across the specimen.
+struct Crossing {
+  std::vector<Complex> J_per_Pa;
+  std::vector<Complex> of;  ///< wavenumber times length
+  std::vector<Complex> exp_of;
+
+  explicit Crossing(const Scene& scene) {
+    const SpecimenScene& specimen = *scene.specimen;
+    for (std::size_t k = 0; k < scene.s.size(); ++k) {
+      const Complex s = scene.s[k];
+      Complex J = specimen.solid.compliance(s, k);
+      // Lateral inertia's linear part: stress += m strain'' / 8.
+      J /= 1.0 + J * specimen.lateral_inertia_kg_per_m * s * s / 8.0;
+      J_per_Pa.push_back(J);
+      of.push_back(specimen.length_m * s * std::sqrt(specimen.wave_density_kg_m3 * J));
+    }
+    exp_of = of;
+    each_exp(exp_of);
+  }
+
+  [[nodiscard]] Complex cosh(std::size_t k) const { return 0.5 * (exp_of[k] + 1.0 / exp_of[k]); }
+  /// sinh(x) / x
+  [[nodiscard]] Complex sinhc(std::size_t k) const {
+    const Complex x = of[k];
+    return std::norm(x) < 1e-6 ? 1.0 + x * x / 6.0 : 0.5 * (exp_of[k] - 1.0 / exp_of[k]) / x;
+  }
+};
+
+/// @param round_trip  what comes back through the output bar of a wave that leaves the specimen
+Junction junction(const Scene& scene, const Crossing& crossing, std::size_t at,
+                  Complex round_trip) {
   const BarScene& in = scene.bars[0];
   const BarScene& out = scene.bars[1];
   const SpecimenScene& specimen = *scene.specimen;
   const Complex s = scene.s[at];
   const double l = specimen.length_m;
   const double area = specimen.area_m2();
-  const Complex round_trip =
-      out.reflection(at) * std::exp(-2.0 * out.gamma_per_m[at] * out.length_m);
   // Force and velocity per unit mean strain of a wave.
   const Complex Z1 =
       in.area_m2 * in.density_kg_m3 * s * s / (in.gamma_per_m[at] * in.gamma_per_m[at]);
@@ -50,12 +87,9 @@ Junction junction(const Scene& scene, std::size_t at) {
   const Complex Z2 = out.area_m2 * out.density_kg_m3 * s * s /
                      (out.gamma_per_m[at] * out.gamma_per_m[at]) * (1.0 + round_trip);
   const Complex V2 = s / out.gamma_per_m[at] * (1.0 - round_trip);
-  Complex J = specimen.solid.compliance(s, at);
-  // Lateral inertia's linear part: stress += m strain'' / 8.
-  J /= 1.0 + J * specimen.lateral_inertia_kg_per_m * s * s / 8.0;
-  const Complex crossing = l * s * std::sqrt(specimen.wave_density_kg_m3 * J);
-  const Complex C = std::cosh(crossing);
-  const Complex S = sinhc(crossing);
+  const Complex J = crossing.J_per_Pa[at];
+  const Complex C = crossing.cosh(at);
+  const Complex S = crossing.sinhc(at);
   const Complex dents = specimen.punching * (indentation_m_per_N(in, specimen, at) +
                                              indentation_m_per_N(out, specimen, at));
   const Complex force_a = Z2 * C + s * specimen.wave_density_kg_m3 * l * area * S * V2;
@@ -79,61 +113,76 @@ void set_bar_readings(const Scene& scene, std::size_t reference, Transfers& tran
   for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
     const GaugeScene& gauge = scene.gauges[j];
     const double x = gauge.position_m;
-    for (std::size_t k = 0; k < scene.s.size(); ++k) {
-      const Complex gamma = bar.gamma_per_m[k];
-      Complex wave = std::exp(-gamma * (x - x0));
-      if (bar.reflects()) {
-        wave += bar.reflection(k) * std::exp(-gamma * (2.0 * bar.length_m - x - x0));
+    transfers.reading[j] = over(bar, x - x0);
+    if (bar.reflects()) {
+      const std::vector<Complex> back = over(bar, 2.0 * bar.length_m - x - x0);
+      for (std::size_t k = 0; k < scene.s.size(); ++k) {
+        transfers.reading[j][k] += bar.reflection(k) * back[k];
       }
-      transfers.reading[j][k] = wave * bar.surface_over_mean[k];
     }
+    for (std::size_t k = 0; k < scene.s.size(); ++k) {
+      transfers.reading[j][k] *= bar.surface_over_mean[k];
+    }
+  }
+}
+
+/// A gauge of the input bar reads the source and what the joint returns; one of the output bar what
+/// the joint lets through, and the far end returns of it.
+void set_reading(const Scene& scene, std::size_t reference, const std::vector<Junction>& joints,
+                 const std::vector<Complex>& arriving, std::size_t j, Transfers& transfers) {
+  const GaugeScene& gauge = scene.gauges[j];
+  const BarScene& bar = scene.bars[gauge.bar];
+  const double x = gauge.position_m;
+  const bool on_input = gauge.bar == 0;
+  const std::vector<Complex> going =
+      over(bar, on_input ? x - scene.gauges[reference].position_m : x);
+  std::vector<Complex> back = over(bar, (on_input ? 1.0 : 2.0) * bar.length_m - x);
+  for (std::size_t k = 0; k < scene.s.size(); ++k) {
+    const Junction& joint = joints[k];
+    const Complex there = on_input ? back[k] : going[k] + bar.reflection(k) * back[k];
+    const Complex of_source = on_input ? going[k] + joint.reflected * arriving[k] * there
+                                       : joint.transmitted * arriving[k] * there;
+    const Complex surface = bar.surface_over_mean[k];
+    transfers.reading[j][k] = of_source * surface;
+    if (!transfers.reading_of_q.empty()) {
+      const Complex of_q = (on_input ? joint.reflected_q : joint.transmitted_q) * there;
+      transfers.reading_of_q[j][k] = of_q * surface;
+    }
+  }
+}
+
+void set_specimen(const std::vector<Junction>& joints, const std::vector<Complex>& arriving,
+                  Transfers& transfers) {
+  for (auto* spectrum :
+       {&transfers.stress, &transfers.stress_of_q, &transfers.strain, &transfers.strain_of_q}) {
+    spectrum->resize(joints.size());
+  }
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Junction& joint = joints[k];
+    transfers.stress[k] = joint.stress_per_transmitted * joint.transmitted * arriving[k];
+    transfers.stress_of_q[k] = joint.stress_per_transmitted * joint.transmitted_q;
+    transfers.strain[k] = joint.strain * arriving[k];
+    transfers.strain_of_q[k] = joint.strain_q;
   }
 }
 
 void set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& transfers) {
   const BarScene& in = scene.bars[0];
   const BarScene& out = scene.bars[1];
-  const double x0 = scene.gauges[reference].position_m;
-  const bool nonlinear = scene.specimen->nonlinear();
-  const std::size_t places = scene.s.size();
-  if (nonlinear) {
-    transfers.reading_of_q.assign(scene.gauges.size(), Transfers::Spectrum(places));
-    for (auto* spectrum :
-         {&transfers.stress, &transfers.stress_of_q, &transfers.strain, &transfers.strain_of_q}) {
-      spectrum->resize(places);
-    }
+  const std::vector<Complex> round_trip = over(out, 2.0 * out.length_m);
+  const Crossing crossing(scene);
+  std::vector<Junction> joints;
+  joints.reserve(scene.s.size());
+  for (std::size_t k = 0; k < scene.s.size(); ++k) {
+    joints.push_back(junction(scene, crossing, k, out.reflection(k) * round_trip[k]));
   }
-  for (std::size_t k = 0; k < places; ++k) {
-    const Junction joint = junction(scene, k);
-    const Complex arriving = std::exp(-in.gamma_per_m[k] * (in.length_m - x0));
-    for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
-      const GaugeScene& gauge = scene.gauges[j];
-      const double x = gauge.position_m;
-      Complex of_source;
-      Complex of_q;
-      if (gauge.bar == 0) {
-        const Complex back = std::exp(-in.gamma_per_m[k] * (in.length_m - x));
-        of_source = std::exp(-in.gamma_per_m[k] * (x - x0)) + joint.reflected * arriving * back;
-        of_q = joint.reflected_q * back;
-      } else {
-        const Complex there =
-            std::exp(-out.gamma_per_m[k] * x) +
-            out.reflection(k) * std::exp(-out.gamma_per_m[k] * (2.0 * out.length_m - x));
-        of_source = joint.transmitted * arriving * there;
-        of_q = joint.transmitted_q * there;
-      }
-      const Complex surface = scene.bars[gauge.bar].surface_over_mean[k];
-      transfers.reading[j][k] = of_source * surface;
-      if (nonlinear) {
-        transfers.reading_of_q[j][k] = of_q * surface;
-      }
-    }
-    if (nonlinear) {
-      transfers.stress[k] = joint.stress_per_transmitted * joint.transmitted * arriving;
-      transfers.stress_of_q[k] = joint.stress_per_transmitted * joint.transmitted_q;
-      transfers.strain[k] = joint.strain * arriving;
-      transfers.strain_of_q[k] = joint.strain_q;
-    }
+  const std::vector<Complex> arriving = over(in, in.length_m - scene.gauges[reference].position_m);
+  if (scene.specimen->nonlinear()) {
+    transfers.reading_of_q.assign(scene.gauges.size(), Transfers::Spectrum(scene.s.size()));
+    set_specimen(joints, arriving, transfers);
+  }
+  for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
+    set_reading(scene, reference, joints, arriving, j, transfers);
   }
 }
 
@@ -172,7 +221,7 @@ Complex mean_over_length(const Scene& scene, std::size_t gauge, std::size_t at) 
 Complex invertible(Complex factor) {
   constexpr double kSeesWell = 0.7;
   constexpr double kBlind = 0.15;
-  const double size = std::abs(factor);
+  const double size = std::sqrt(std::norm(factor));
   return size > kSeesWell ? factor : factor * (1.0 + std::pow(kBlind / std::max(size, 1e-6), 8));
 }
 

@@ -2,26 +2,47 @@
 
 #include <algorithm>
 
+#include "processing/waves/each_exp.hpp"
+
 namespace kolsky {
 
 namespace {
 
-/// exp(-gamma x) over the stretches of one bar, at one s.
+/// exp(-gamma x) over the stretches of one bar.
 struct Stretches {
-  Complex to_specimen;  // exp(-gamma l)
-  Complex round_trip;   // exp(-2 gamma x), gauge to far end and back
-  Complex separation;   // 1 / (1 - round_trip)
-  Complex mean;         // mean strain over what the gauge reads
-  Complex force;        // A rho s^2 / gamma^2, of what the gauge reads
-  Complex velocity;     // s / gamma, likewise
+  std::vector<Complex> to_specimen;  // exp(-gamma l)
+  std::vector<Complex> round_trip;   // exp(-2 gamma x), gauge to far end and back
 
-  Stretches(const BarWaves& bar, const BarMode& mode, Complex s) {
-    const Complex gamma = mode.gamma;
-    to_specimen = std::exp(-gamma * bar.gauge_to_specimen_m);
-    round_trip =
-        bar.far_end == FarEnd::free ? std::exp(-2.0 * gamma * bar.gauge_to_far_end_m) : 0.0;
-    separation = 1.0 / (1.0 - round_trip);
-    mean = mode.mean_over_surface;
+  explicit Stretches(const BarWaves& bar)
+      : to_specimen(bar.modes.size()), round_trip(bar.modes.size(), 0.0) {
+    for (std::size_t k = 0; k < bar.modes.size(); ++k) {
+      to_specimen[k] = -bar.modes[k].gamma * bar.gauge_to_specimen_m;
+    }
+    each_exp(to_specimen);
+    if (bar.far_end == FarEnd::free) {
+      for (std::size_t k = 0; k < bar.modes.size(); ++k) {
+        round_trip[k] = -2.0 * bar.modes[k].gamma * bar.gauge_to_far_end_m;
+      }
+      each_exp(round_trip);
+    }
+  }
+};
+
+/// One bar at one s.
+struct Place {
+  Complex to_specimen;
+  Complex round_trip;
+  Complex separation;  // 1 / (1 - round_trip)
+  Complex mean;        // mean strain over what the gauge reads
+  Complex force;       // A rho s^2 / gamma^2, of what the gauge reads
+  Complex velocity;    // s / gamma, likewise
+
+  Place(const BarWaves& bar, const Stretches& stretches, std::size_t k, Complex s)
+      : to_specimen(stretches.to_specimen[k]),
+        round_trip(stretches.round_trip[k]),
+        separation(1.0 / (1.0 - round_trip)),
+        mean(bar.modes[k].mean_over_surface) {
+    const Complex gamma = bar.modes[k].gamma;
     velocity = mean * s / gamma;
     force = bar.area_m2 * bar.density_kg_m3 * velocity * s / gamma;
   }
@@ -52,14 +73,22 @@ CarryingKernels::CarryingKernels(std::span<const Complex> path, const BarWaves& 
                        &right_of_incident_, &right_of_rest_, &left_of_rest_, &right_of_output_}) {
     kernel->resize(bins);
   }
+  const Stretches of_input(input);
+  const Stretches of_output(output);
+  std::vector<Complex> delays(bins);
+  for (std::size_t k = 0; k < bins; ++k) {
+    delays[k] = -path[k] * delay_s;
+    const Complex front = path[k] / input.front_speed_m_per_s;
+    from_impact_[k] = -(input.modes[k].gamma - front) * input.gauge_to_far_end_m;
+  }
+  each_exp(delays);
+  each_exp(from_impact_);
   for (std::size_t k = 0; k < bins; ++k) {
     const Complex s = path[k];
-    const Stretches a(input, input.modes[k], s);
+    const Place a(input, of_input, k, s);
     const Complex right_rest = -a.round_trip * a.separation * a.to_specimen;
     const Complex left_rest = a.separation / a.to_specimen;
-    const Complex front = s / input.front_speed_m_per_s;
-    from_impact_[k] = std::exp(-(input.modes[k].gamma - front) * input.gauge_to_far_end_m) *
-                      input.area_m2 / a.force;
+    from_impact_[k] *= input.area_m2 / a.force;
     to_impact_[k] = 1.0 / from_impact_[k];
     right_of_incident_[k] = a.mean * a.to_specimen;
     right_of_rest_[k] = a.mean * right_rest;
@@ -69,18 +98,17 @@ CarryingKernels::CarryingKernels(std::span<const Complex> path, const BarWaves& 
     rate_of_incident_[k] = a.velocity * a.to_specimen / specimen_length_m;
     rate_of_rest_[k] = a.velocity * (right_rest - left_rest) / specimen_length_m;
 
-    const Stretches b(output, output.modes[k], s);
+    const Place b(output, of_output, k, s);
     const Complex right_out = b.separation / b.to_specimen;
     const Complex left_out = -b.separation * b.round_trip * b.to_specimen;
     right_of_output_[k] = b.mean * right_out;
     force_of_output_[k] = b.force * (right_out + left_out);
     rate_of_output_[k] = -b.velocity * (right_out - left_out) / specimen_length_m;
 
-    const Complex delay = std::exp(-s * delay_s);
     for (auto* history : {&force_of_incident_, &force_of_rest_, &force_of_output_,
                           &rate_of_incident_, &rate_of_rest_, &rate_of_output_, &right_of_incident_,
                           &right_of_rest_, &left_of_rest_, &right_of_output_}) {
-      (*history)[k] *= delay;
+      (*history)[k] *= delays[k];
     }
   }
 }

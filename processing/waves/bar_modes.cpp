@@ -9,6 +9,12 @@ namespace kolsky {
 
 namespace {
 
+/// Square root in the right half plane, where nothing cancels.
+Complex right_root(Complex z) {
+  const double re = std::sqrt(0.5 * (std::sqrt(std::norm(z)) + z.real()));
+  return {re, 0.5 * z.imag() / re};
+}
+
 std::vector<BarMode> elementary_modes(const Bar& bar, const Compliance& compliance,
                                       const std::vector<Complex>& path) {
   std::vector<BarMode> modes;
@@ -16,7 +22,7 @@ std::vector<BarMode> elementary_modes(const Bar& bar, const Compliance& complian
   const double rho = bar.density_kg_m3;
   for (const Complex s : path) {
     // J of a passive solid lies in the right half plane, so the principal root is the decaying one.
-    modes.push_back({s * std::sqrt(rho * compliance.at(s)), 1.0, 0.5});
+    modes.push_back({s * right_root(rho * compliance.at(s)), 1.0, 0.5});
   }
   return modes;
 }

@@ -5,6 +5,7 @@
 
 #include "processing/waves/band_limit.hpp"
 #include "processing/waves/bar_modes.hpp"
+#include "processing/waves/each_exp.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -22,11 +23,16 @@ std::vector<double> incident_tail(std::span<const double> record, std::size_t kn
   transform.forward(history, spectrum);
   // Times stay those of the gauge: only what a front does not do is carried.
   std::vector<Complex> stress_per_strain(spectrum.size());
+  std::vector<Complex> J_per_Pa(spectrum.size());
   for (std::size_t k = 0; k < spectrum.size(); ++k) {
     const Complex s = transform.s(k);
     const Complex J = compliance.at(s);
-    const Complex behind = s * (std::sqrt(bar.density_kg_m3.value * J) - 1.0 / front) * way_m;
-    stress_per_strain[k] = std::exp(behind) / J;
+    stress_per_strain[k] = s * (std::sqrt(bar.density_kg_m3.value * J) - 1.0 / front) * way_m;
+    J_per_Pa[k] = J;
+  }
+  each_exp(stress_per_strain);
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    stress_per_strain[k] /= J_per_Pa[k];
   }
   const auto apply = [&](const auto& of_bin) {
     band.apply_half(kBand_Hz, spectrum);
