@@ -28,13 +28,29 @@ class SpecimenResponse {
   [[nodiscard]] const std::vector<Complex>& q() const { return q_; }
 
  private:
+  /// A history's spectrum is a source's and so much more for each unit of q.
+  struct Linear {
+    std::vector<Complex> of_source;
+    std::vector<Complex> of_q;
+  };
+
+  void prepare(const Scene& scene, const Transfers& transfers, std::size_t reference,
+               const std::vector<Complex>& source, std::span<const Complex> filter);
+  void put_history(const Linear& linear, DampedTransform& transform, std::vector<double>& out);
+  void accelerate(const Scene& scene, DampedTransform& transform);
+  void bend(const SpecimenScene& specimen);
+  void close_gap(const SpecimenScene& specimen, DampedTransform& transform);
   void to_time(const std::vector<Complex>& spectrum, DampedTransform& transform,
                std::vector<double>& out);
   void to_spectrum(const std::vector<double>& record, DampedTransform& transform,
                    std::vector<Complex>& out);
 
+  Linear of_stress_, of_strain_;
+  std::vector<Complex> of_extra_;     ///< q of strain beside the material's
+  std::vector<Complex> of_material_;  ///< q of stress that the material has beside the measured
   std::vector<Complex> q_, next_, wide_, spectrum_;
   std::vector<double> stress_, strain_, rate_, accelerated_, extra_, material_;
+  std::size_t at_rest_ = 0;
 };
 
 }  // namespace kolsky
