@@ -1,8 +1,10 @@
 #include "processing/criticism/campaign.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "processing/base/error.hpp"
@@ -30,13 +32,24 @@ std::size_t reference_of(const Bench& bench) {
   return reference;
 }
 
-/// The values of every so many samples, each once, in order.
-std::vector<double> values_of(const std::vector<double>& record, std::size_t every) {
-  std::vector<double> values;
-  values.reserve(record.size() / every + 1);
+/// How many values every so many samples take, or a few less: values are counted by the places of a
+/// table that they fall into.
+std::size_t values_at_least(const std::vector<double>& record, std::size_t every) {
+  const std::size_t samples = record.size() / every + 1;
+  const auto bits = static_cast<int>(std::bit_width(8 * samples));
+  std::vector<bool> taken(std::size_t{1} << bits);
+  std::size_t count = 0;
   for (std::size_t n = 0; n < record.size(); n += every) {
-    values.push_back(record[n]);
+    const auto place =
+        (std::bit_cast<std::uint64_t>(record[n]) * 0x9e3779b97f4a7c15U) >> (64 - bits);
+    count += taken[place] ? 0 : 1;
+    taken[place] = true;
   }
+  return count;
+}
+
+/// A record's values, each once, in order.
+std::vector<double> values_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
@@ -46,10 +59,10 @@ std::vector<double> values_of(const std::vector<double>& record, std::size_t eve
 double step_of(const std::vector<double>& strain) {
   constexpr std::size_t kSamplesPerValue = 4;
   constexpr std::size_t kEnough = 3;  // of these samples show most records to have fine steps
-  if (values_of(strain, kEnough).size() * kSamplesPerValue > strain.size()) {
+  if (values_at_least(strain, kEnough) * kSamplesPerValue > strain.size()) {
     return 0.0;
   }
-  const std::vector<double> values = values_of(strain, 1);
+  const std::vector<double> values = values_of(strain);
   if (values.size() < 3 || values.size() * kSamplesPerValue > strain.size()) {
     return 0.0;
   }
