@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,8 +63,16 @@ class ImpactStudy {
         executor_(std::move(executor)),
         residuals_(campaign, whole, cutoff_Hz, executor_, meshes, std::move(runs)) {}
 
+  /// Where else the last fit's model might stand, and by how much its objective is more there.
+  struct SecondMinimum {
+    std::vector<double> theta;
+    double friction = 0.0;
+    double behind = 0.0;
+  };
+
   /// From where the model is, auxiliary parameters without a strength yet at the best of their
-  /// starts, noise and speeds' deviation corrected by the shots' scatter.
+  /// starts, friction as filed and from little of it, noise and speeds' deviation
+  /// corrected by the shots' scatter.
   [[nodiscard]] Studied fit(const Model& begun);
   /// With the noise and the fine forces as they are by now.
   [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
@@ -82,14 +91,21 @@ class ImpactStudy {
   /// chi2 of the groups' means and its degrees of freedom: what repeats.
   [[nodiscard]] std::pair<double, double> repeated(const Eigen::VectorXd& white) const;
 
+  [[nodiscard]] const std::optional<SecondMinimum>& second_minimum() const {
+    return second_minimum_;
+  }
   [[nodiscard]] ImpactResiduals& residuals() { return residuals_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
+  [[nodiscard]] ModelFit or_with_little_friction(const Model& model, const Composition& composition,
+                                                 ModelFit fit);
+
   const Campaign& campaign_;
   Workers executor_;
   ImpactResiduals residuals_;
+  std::optional<SecondMinimum> second_minimum_;
 };
 
 /// Sum of squared white residuals of every group of shots with the shared numbers fitted to the

@@ -46,6 +46,30 @@ TEST(ImpactStudy, NoFrictionIsFoundFromEitherSideOfWhatIsFiled) {
   }
 }
 
+/// With materials free, moduli and the law's form take the place of a friction that is not there:
+/// a second minimum near what is filed (0.3), where fits of such records ended.
+TEST(ImpactStudy, NoFrictionIsFoundThoughMaterialsAreFree) {
+  testing::ImpactWishes own = two_speeds(23, 2);
+  own.friction = 0.0;
+  own.across = 11;
+  ThrownBalls balls(testing::impact_shots(own), {512, 2048, 2048});
+  Model model = paper_with({});
+  for (const char* layer : {"three-element-core", "three-element-cover"}) {
+    EffectUse* use = model.find(layer);
+    for (std::size_t p = 0; p < 3; ++p) {
+      ModelValue& value = use->values[p];
+      value.prior_mean = value.value;
+      value.prior_sd = 0.015 * value.value;
+      value.free = true;
+    }
+  }
+  const ModelValue mu = balls.study.fit(model).model.find("contact-friction")->values[0];
+  EXPECT_LT(mu.value, 0.06);
+  EXPECT_LT(mu.value, 2.0 * mu.sd);
+  ASSERT_TRUE(balls.study.second_minimum()) << "what was left is told";
+  EXPECT_GT(balls.study.second_minimum()->friction, 0.2);
+}
+
 /// The white residuals' squares are the quadratic form of the covariance of all shots at once, here
 /// written out.
 TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
