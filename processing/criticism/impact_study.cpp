@@ -321,6 +321,18 @@ ImpactComparison ImpactStudy::compare(const Studied& studied) {
 
     const Eigen::MatrixXd covariance = residuals_.covariance(g);
     for (const std::size_t n : group.shots) {
+      if (records.rebound[n]) {
+        ImpactTile& tile = out.tiles.emplace_back();
+        tile.shot = n;
+        tile.window = kRebound;
+        tile.freedom = 1.0;
+        tile.chi2 = std::pow(foretold.residual[n][gauges], 2) / covariance(gauges, gauges);
+        tile.sigma = std::sqrt(tile.chi2);
+        tile.percent_of_peak =
+            100.0 * std::abs(foretold.residual[n][gauges] / foretold.reading[n][gauges]);
+        tile.log_p = log_chi2_tail(tile.chi2, tile.freedom);
+        excess += std::max(0.0, tile.chi2 - tile.freedom);
+      }
       for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
         const auto first = static_cast<Eigen::Index>(j * samples);
         const Eigen::VectorXd own =

@@ -11,17 +11,21 @@
 
 namespace kolsky {
 
-/// What a model of an impact leaves unexplained in a stretch of a gauge's record of one shot.
+/// The window of a tile that is a shot's rebound speed, of no gauge.
+inline constexpr const char* kRebound = "rebound";
+
+/// What a model of an impact leaves unexplained in a stretch of a gauge's record of one shot, or of
+/// its rebound speed.
 struct ImpactTile {
   std::size_t gauge = 0;
   std::size_t shot = 0;
-  std::string window;   ///< "before", "loading", "unloading", "after"
+  std::string window;   ///< "before", "loading", "unloading", "after", or kRebound
   double low_Hz = 0.0;  ///< of the band
   double high_Hz = 0.0;
   double chi2 = 0.0;  ///< by noise, speed's deviation and the solver's error
   double freedom = 0.0;
   double sigma = 0.0;            ///< rms in units of those: 1 under the true model
-  double percent_of_peak = 0.0;  ///< rms of the deviation
+  double percent_of_peak = 0.0;  ///< rms of the deviation; of a rebound: of its speed
   double share = 0.0;            ///< of the excess over all tiles
   double log_p = 0.0;
   bool significant = false;  ///< false discovery held at 0.5 %

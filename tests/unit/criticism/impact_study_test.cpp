@@ -212,6 +212,46 @@ TEST(ImpactCampaign, PhotoSensorsThatSeeNothingAreRefusedAsTheReductionRefusesTh
   EXPECT_NE(bad_data(shots[0]).find("1 channels where the bench files 2"), std::string::npos);
 }
 
+/// A rebound that does not fit is told as a place where the model fails, beside those of the force.
+TEST(ImpactStudy, AReboundThatIsOffIsAPlaceWhereTheModelFails) {
+  std::vector<Shot> shots = a_few();
+  for (Shot& shot : shots) {
+    const double rebound = std::stod(shot.meta["rebound_speed_m_per_s"]);
+    shot.meta["rebound_speed_m_per_s"] = std::to_string(1.03 * rebound);
+  }
+  ThrownBalls balls(shots, {240, 512, 512});
+  const Studied studied = balls.study.as_it_is(paper_with({}));
+  const ImpactComparison comparison = balls.study.compare(studied);
+  const auto own = std::find_if(comparison.tiles.begin(), comparison.tiles.end(),
+                                [](const auto& tile) { return tile.window == kRebound; });
+  ASSERT_NE(own, comparison.tiles.end());
+  EXPECT_TRUE(own->significant);
+  EXPECT_NEAR(own->percent_of_peak, 3.0, 0.7);
+}
+
+TEST(ImpactCampaign, WhatNoBallDoesIsBadData) {
+  const std::vector<Shot> shots = a_few();
+  EXPECT_EQ(bad_data(shots[0]), "");
+  const auto told = [&](const char* fact, double factor) {
+    Shot own = shots[0];
+    own.meta[fact] = std::to_string(factor * std::stod(own.meta[fact]));
+    return bad_data(own);
+  };
+  EXPECT_NE(told("incident_speed_m_per_s", 3.6).find("the speed's unit"), std::string::npos);
+  EXPECT_NE(told("rebound_speed_m_per_s", 1.3).find("exchanged"), std::string::npos);
+  Shot pulled = shots[0];
+  for (auto& code : pulled.channels[0].codes) {
+    code = -code;
+  }
+  EXPECT_NE(bad_data(pulled).find("tensile"), std::string::npos) << bad_data(pulled);
+  // A gauge factor that is off by a quarter is an effect to be found.
+  Shot strong = shots[0];
+  for (auto& code : strong.channels[0].codes) {
+    code = static_cast<std::int32_t>(1.25 * code);
+  }
+  EXPECT_EQ(bad_data(strong), "");
+}
+
 TEST(ImpactCampaign, WithoutASpeedNothingIsForetold) {
   std::vector<Shot> shots = a_few();
   shots[1].meta.erase("incident_speed_m_per_s");
