@@ -168,7 +168,11 @@ ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composit
   constexpr double kElsewhere = 2.0;  ///< of chi2: more than forces are rough by
   const bool moves = ahead > kElsewhere;
   const std::vector<double>& left = moves ? near.theta : other.theta;
-  second_minimum_ = SecondMinimum{left, number.value_at(left[own]), std::abs(ahead)};
+  constexpr double kSame = 0.5;  ///< of what is filed: the same minimum, come to from elsewhere
+  if (std::abs(number.value_at(other.theta[own]) - number.value_at(near.theta[own])) >
+      kSame * mu.prior_sd) {
+    second_minimum_ = SecondMinimum{left, number.value_at(left[own]), std::abs(ahead)};
+  }
   residuals_.anchor(composition, moves ? other.theta : composition.start());
   return moves ? fit_by_secants(composition, residuals_, executor_, other.theta) : fit;
 }
