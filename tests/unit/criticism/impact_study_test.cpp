@@ -38,7 +38,7 @@ TEST(ImpactStudy, TheRightEffectLeavesTheOtherCodesMesh) {
   own.speeds_m_per_s = {51.0};
   own.core_b = 0.6;
   own.across = testing::fine_meshes() ? 24 : 12;
-  ThrownBalls balls(testing::impact_shots(own), BallMeshes{});
+  ThrownBalls balls(testing::impact_shots(own));
   const auto left = [&](const std::vector<std::string>& effects) {
     const Studied studied = balls.study.settled(balls.study.fit(paper_with(effects)));
     return balls.study.compare(studied).speeds.front();
