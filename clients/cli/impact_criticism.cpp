@@ -16,7 +16,13 @@ constexpr int kPlotColumns = 100;
 constexpr int kPlotRows = 14;
 
 std::string band_of(const ImpactTile& tile) {
-  return fmt::format("{:.2g} to {:.2g} kHz", 1e-3 * tile.low_Hz, 1e-3 * tile.high_Hz);
+  return tile.window == kRebound
+             ? ""
+             : fmt::format("{:.2g} to {:.2g} kHz", 1e-3 * tile.low_Hz, 1e-3 * tile.high_Hz);
+}
+
+std::string gauge_of(const ImpactTile& tile, const Campaign& campaign) {
+  return tile.window == kRebound ? "" : campaign.bench.gauges[tile.gauge].name;
 }
 
 double speed_of(const ImpactTile& tile, const Campaign& campaign) {
@@ -69,7 +75,7 @@ PageSection places_section(const ImpactComparison& comparison, const Campaign& c
   for (const ImpactTile& tile : comparison.tiles) {
     if (tile.significant && table.rows.size() < 2 * kShown) {
       table.rows.push_back(
-          {campaign.bench.gauges[tile.gauge].name, tile.window, band_of(tile),
+          {gauge_of(tile, campaign), tile.window, band_of(tile),
            fmt::format("{:.1f}", speed_of(tile, campaign)), campaign.shots[tile.shot].id,
            fmt::format("{:.2g} %", 100.0 * tile.share), fmt::format("{:.3g}", tile.sigma),
            fmt::format("{:.2g} %", tile.percent_of_peak)});
@@ -112,7 +118,7 @@ JsonValue describe_tiles(const ImpactComparison& comparison, const Campaign& cam
   JsonList list;
   for (const ImpactTile& tile : comparison.tiles) {
     if (tile.significant) {
-      list.push_back(JsonObject{{"gauge", campaign.bench.gauges[tile.gauge].name},
+      list.push_back(JsonObject{{"gauge", gauge_of(tile, campaign)},
                                 {"window", tile.window},
                                 {"band", band_of(tile)},
                                 {"band_Hz", std::vector<double>{tile.low_Hz, tile.high_Hz}},
@@ -169,7 +175,7 @@ std::string places_table(const ImpactComparison& comparison, const Campaign& cam
   for (const ImpactTile& tile : comparison.tiles) {
     if (tile.significant && shown++ < kShown) {
       text += fmt::format("  {:<8} {:<10} {:<20} {:>9.1f} {:<20} {:>6.1f} % {:>8.2f} {:>8.2f} %\n",
-                          campaign.bench.gauges[tile.gauge].name, tile.window, band_of(tile),
+                          gauge_of(tile, campaign), tile.window, band_of(tile),
                           speed_of(tile, campaign), campaign.shots[tile.shot].id,
                           100.0 * tile.share, tile.sigma, tile.percent_of_peak);
     }

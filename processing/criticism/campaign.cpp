@@ -9,6 +9,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/criticism/ball_gate.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/ball_flight.hpp"
 #include "processing/reduction/first_pulse.hpp"
@@ -254,7 +255,7 @@ std::string bad_data(const Shot& shot) {
     return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
            " of at least " + std::to_string(kFewestQuiet);
   }
-  return {};
+  return shot.bench.kind == BenchKind::impact ? no_ball_does(shot) : std::string();
 }
 
 Campaign read_campaign(const std::vector<Shot>& shots) {

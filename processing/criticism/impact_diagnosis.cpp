@@ -352,7 +352,20 @@ class Diagnostician {
           "claimed only from {:.2g} off on. File what it reads, or a narrower deviation",
           pull, own->detectable);
     }
+    if (const auto& second = study_.second_minimum()) {
+      note +=
+          fmt::format("; at {:.2f}, with other moduli, chi2 is more by {:.0f}, where {:.0f} tells",
+                      second->friction, second->behind, kTie * scale_);
+    }
     diagnosis_.notes.push_back(std::move(note));
+    const EffectUse* law = current.model.find("finite-strain-law");
+    const EffectParameter& s = law->effect->about().parameters.front();
+    if (law->values[0].value <= s.lower || law->values[0].value >= s.upper) {
+      diagnosis_.notes.emplace_back(
+          "the finite-strain law stands at its bound: friction and moduli, which trade with it, "
+          "may "
+          "be further off than they say");
+    }
   }
 
   void set_verdict(const std::string& id, const std::string& verdict) {

@@ -24,9 +24,11 @@ BallRun ImpactResiduals::force(const BallScene& ball, std::size_t group, bool hi
   return sum_of(moved, ball.cauchy_share, anchor.law);
 }
 
-void ImpactResiduals::anchor(const Composition& composition, const std::vector<double>& theta) {
+void ImpactResiduals::anchor(const Composition& composition, const std::vector<double>& theta,
+                             AnchorBy by) {
   BallScene ball;
   static_cast<void>(transfers(composition, theta, 0, ball));
+  const bool finest = by == AnchorBy::fine;
   struct Task {
     double speed_m_per_s;
     std::size_t elements;
@@ -35,7 +37,9 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   std::vector<Task> tasks;
   for (const SpeedGroup& group : records_.groups) {
     for (const double speed : {group.low_m_per_s, group.high_m_per_s}) {
-      tasks.push_back({speed, meshes_.fine, false});
+      if (finest) {
+        tasks.push_back({speed, meshes_.fine, false});
+      }
       tasks.push_back({speed, meshes_.middle, false});
       tasks.push_back({speed, meshes_.middle, true});
     }
@@ -50,25 +54,26 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   executor_.run(tasks.size(),
                 [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
   anchored_at_ = theta;
-  anchors_.assign(records_.groups.size(), {});
+  anchors_.resize(records_.groups.size());
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
     const BallRun coarse = *run({group.speed_m_per_s, meshes_.coarse, false});
     for (const bool high : {false, true}) {
       const double speed = high ? group.high_m_per_s : group.low_m_per_s;
-      const BallRun fine = *run({speed, meshes_.fine, false});
       const BallRun middle = *run({speed, meshes_.middle, false});
       Anchor& own = anchors_[g][high ? 1 : 0];
-      own.fine = fine;
+      if (finest) {
+        own.mesh = sum_of(*run({speed, meshes_.fine, false}), -1.0, middle);
+      }
+      own.fine = sum_of(middle, 1.0, own.mesh);
       own.coarse = coarse;
       own.law = sum_of(*run({speed, meshes_.middle, true}), -1.0, middle);
-      own.mesh = sum_of(fine, -1.0, middle);
     }
   }
 }
 
 void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {
-  anchor(composition, theta);
+  anchor(composition, theta, AnchorBy::fine);
   Foretold foretold = foretell(composition, theta, executor_.first);
   if (!foretold.sound) {
     throw InputError("model", "has a ball that the solver refuses", "bring its numbers nearer");

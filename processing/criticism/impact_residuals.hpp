@@ -46,7 +46,11 @@ class ImpactResiduals : public ShotResiduals {
   void prepare(const Composition& composition, const std::vector<double>& theta);
   /// Takes the fine forces from here and leaves the whitener as it is: far from where they were
   /// taken, what the coarse mesh does is not what the fine one does.
-  void anchor(const Composition& composition, const std::vector<double>& theta);
+  /// @param by  the middle mesh, seven times as quick, with what the fine one differed by where it
+  ///            was calculated last
+  enum class AnchorBy { fine, middle };
+  void anchor(const Composition& composition, const std::vector<double>& theta,
+              AnchorBy by = AnchorBy::fine);
   /// Where the fine forces were taken last.
   [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
   /// Corrects noise and speeds' deviation by how shots of one speed scatter about their mean.

@@ -96,6 +96,19 @@ void mark_significant(std::vector<ImpactTile>& tiles) {
   }
 }
 
+/// Something filed is some two of its deviations off.
+bool strained(const Composition& composition, const std::vector<double>& theta) {
+  constexpr double kFar = 1.9;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    if (number.prior_sd > 0.0 &&
+        std::abs(number.value_at(theta[i]) - number.prior_mean) > kFar * number.prior_sd) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFit fit) const {
@@ -104,6 +117,14 @@ Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFi
   const Misfit misfit = misfit_of(fit.residual, used);
   if (fit.covariance.size() > 0) {
     fit.doubt = residuals_.doubt_of(fit.jacobian, fit.covariance);
+    if (second_minimum_ && second_minimum_->theta.size() == fit.theta.size()) {
+      // Two minima: the covariance of a mixture, each by what its squares count.
+      const double here = 1.0 / (1.0 + std::exp(-0.5 * second_minimum_->behind / kSolverDoubt));
+      const Eigen::VectorXd apart =
+          Eigen::Map<const Eigen::VectorXd>(second_minimum_->theta.data(), fit.doubt.rows()) -
+          Eigen::Map<const Eigen::VectorXd>(fit.theta.data(), fit.doubt.rows());
+      fit.doubt += here * (1.0 - here) * apart * apart.transpose();
+    }
   }
   Model after = fitted(model, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};
@@ -111,6 +132,49 @@ Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFi
 
 bool judges_whole(const Model& model) {
   return model.find("end-reflection") != nullptr;
+}
+
+/// A ball with little friction has a second minimum where friction is filed, with moduli and law in
+/// its place, and coarse forces do not lead from there to the other. So where what is filed is
+/// strained the two are compared, each with forces that were taken where it is (docs/impact.md).
+ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composition& composition,
+                                              ModelFit fit) {
+  const EffectUse* friction = model.find("contact-friction");
+  const bool filed =
+      friction != nullptr && friction->values[0].free && friction->values[0].prior_sd > 0.0;
+  if (!filed || !strained(composition, fit.theta)) {
+    return fit;
+  }
+  const auto again_at = [&](const std::vector<double>& theta) {
+    residuals_.anchor(composition, theta, ImpactResiduals::AnchorBy::middle);
+    return fit_by_secants(composition, residuals_, executor_, theta);
+  };
+  constexpr double kFiledDeviations = 3.0;
+  const ModelValue& mu = friction->values[0];
+  std::size_t own = 0;
+  while (composition.uses()[composition.numbers()[own].use].id() != friction->id()) {
+    ++own;
+  }
+  const FreeNumber& number = composition.numbers()[own];
+  std::vector<double> little = composition.start();
+  little[own] = number.inside(number.theta_of(mu.prior_mean - kFiledDeviations * mu.prior_sd));
+  const ModelFit near = again_at(fit.theta);
+  const ModelFit other = again_at(again_at(little).theta);
+  const double ahead = near.objective() - other.objective();
+  if (!std::isfinite(ahead)) {
+    residuals_.anchor(composition, composition.start());
+    return fit;
+  }
+  constexpr double kElsewhere = 2.0;  ///< of chi2: more than forces are rough by
+  const bool moves = ahead > kElsewhere;
+  const std::vector<double>& left = moves ? near.theta : other.theta;
+  constexpr double kSame = 0.5;  ///< of what is filed: the same minimum, come to from elsewhere
+  if (std::abs(number.value_at(other.theta[own]) - number.value_at(near.theta[own])) >
+      kSame * mu.prior_sd) {
+    second_minimum_ = SecondMinimum{left, number.value_at(left[own]), std::abs(ahead)};
+  }
+  residuals_.anchor(composition, moves ? other.theta : composition.start());
+  return moves ? other : fit;
 }
 
 Studied ImpactStudy::fit(const Model& begun) {
@@ -122,8 +186,10 @@ Studied ImpactStudy::fit(const Model& begun) {
         return fit_by_secants(composition, residuals_, executor_).objective();
       });
   Composition composition(model, campaign_);
+  second_minimum_.reset();
   residuals_.prepare(composition, composition.start());
-  ModelFit fit = fit_by_secants(composition, residuals_, executor_);
+  ModelFit fit = or_with_little_friction(model, composition,
+                                         fit_by_secants(composition, residuals_, executor_));
   residuals_.calibrate(composition, fit.theta);
   fit = fit_by_secants(composition, residuals_, executor_, fit.theta);
   return finish(model, std::move(composition), std::move(fit));
@@ -259,6 +325,18 @@ ImpactComparison ImpactStudy::compare(const Studied& studied) {
 
     const Eigen::MatrixXd covariance = residuals_.covariance(g);
     for (const std::size_t n : group.shots) {
+      if (records.rebound[n]) {
+        ImpactTile& tile = out.tiles.emplace_back();
+        tile.shot = n;
+        tile.window = kRebound;
+        tile.freedom = 1.0;
+        tile.chi2 = std::pow(foretold.residual[n][gauges], 2) / covariance(gauges, gauges);
+        tile.sigma = std::sqrt(tile.chi2);
+        tile.percent_of_peak =
+            100.0 * std::abs(foretold.residual[n][gauges] / foretold.reading[n][gauges]);
+        tile.log_p = log_chi2_tail(tile.chi2, tile.freedom);
+        excess += std::max(0.0, tile.chi2 - tile.freedom);
+      }
       for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
         const auto first = static_cast<Eigen::Index>(j * samples);
         const Eigen::VectorXd own =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,17 +11,21 @@
 
 namespace kolsky {
 
-/// What a model of an impact leaves unexplained in a stretch of a gauge's record of one shot.
+/// The window of a tile that is a shot's rebound speed, of no gauge.
+inline constexpr const char* kRebound = "rebound";
+
+/// What a model of an impact leaves unexplained in a stretch of a gauge's record of one shot, or of
+/// its rebound speed.
 struct ImpactTile {
   std::size_t gauge = 0;
   std::size_t shot = 0;
-  std::string window;   ///< "before", "loading", "unloading", "after"
+  std::string window;   ///< "before", "loading", "unloading", "after", or kRebound
   double low_Hz = 0.0;  ///< of the band
   double high_Hz = 0.0;
   double chi2 = 0.0;  ///< by noise, speed's deviation and the solver's error
   double freedom = 0.0;
   double sigma = 0.0;            ///< rms in units of those: 1 under the true model
-  double percent_of_peak = 0.0;  ///< rms of the deviation
+  double percent_of_peak = 0.0;  ///< rms of the deviation; of a rebound: of its speed
   double share = 0.0;            ///< of the excess over all tiles
   double log_p = 0.0;
   bool significant = false;  ///< false discovery held at 0.5 %
@@ -62,8 +67,16 @@ class ImpactStudy {
         executor_(std::move(executor)),
         residuals_(campaign, whole, cutoff_Hz, executor_, meshes, std::move(runs)) {}
 
+  /// Where else the last fit's model might stand, and by how much its objective is more there.
+  struct SecondMinimum {
+    std::vector<double> theta;
+    double friction = 0.0;
+    double behind = 0.0;
+  };
+
   /// From where the model is, auxiliary parameters without a strength yet at the best of their
-  /// starts, noise and speeds' deviation corrected by the shots' scatter.
+  /// starts, friction as filed and from little of it, noise and speeds' deviation
+  /// corrected by the shots' scatter.
   [[nodiscard]] Studied fit(const Model& begun);
   /// With the noise and the fine forces as they are by now.
   [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
@@ -82,14 +95,21 @@ class ImpactStudy {
   /// chi2 of the groups' means and its degrees of freedom: what repeats.
   [[nodiscard]] std::pair<double, double> repeated(const Eigen::VectorXd& white) const;
 
+  [[nodiscard]] const std::optional<SecondMinimum>& second_minimum() const {
+    return second_minimum_;
+  }
   [[nodiscard]] ImpactResiduals& residuals() { return residuals_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
+  [[nodiscard]] ModelFit or_with_little_friction(const Model& model, const Composition& composition,
+                                                 ModelFit fit);
+
   const Campaign& campaign_;
   Workers executor_;
   ImpactResiduals residuals_;
+  std::optional<SecondMinimum> second_minimum_;
 };
 
 /// Sum of squared white residuals of every group of shots with the shared numbers fitted to the

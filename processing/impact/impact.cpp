@@ -15,6 +15,7 @@ namespace kolsky::impact {
 namespace {
 
 constexpr double kSafety = 0.85;          // of the critical step; results are the same to 0.95
+constexpr double kFinest = 1e-4;          // of the critical step: what is asked for must end
 constexpr double kPenalty = 0.4;          // of the ball's highest mode, for the nodes in contact
 constexpr int kRoughly = 15;              // Lanczos steps: within a few per cent, for the penalty
 constexpr int kClosely = 32;              // within a thousandth, for the step
@@ -112,6 +113,10 @@ class Run {
       throw InputError(
           "time_step_s", in_words(first_s_, "s") + " is past stability for this mesh",
           "give at most " + in_words(kSafety * critical_s_, "s") + ", or leave it to the solver");
+    }
+    if (first_s_ < kFinest * critical_s_) {
+      throw InputError("time_step_s", in_words(first_s_, "s") + " would run for days",
+                       "give at least " + in_words(kFinest * critical_s_, "s"));
     }
   }
 

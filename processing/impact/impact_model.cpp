@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::array kTargetNames = {"rigid", "dashpot", "bar"};
 constexpr double kFastest_m_per_s = 500.0;  // shells of the ball would be shocks long before
+constexpr double kMostNonlinear = 1e3;      // the step would shrink with its root, and on
 
 void require(bool good, const std::string& place, const std::string& what,
              const std::string& mend) {
@@ -38,6 +39,8 @@ void check_solid(const Solid& solid, const std::string& place) {
   }
   require(passive, place, "has a modulus, a density or a time that no passive solid has",
           "give positive numbers");
+  require(std::abs(solid.nonlinearity) <= kMostNonlinear, place + ".nonlinearity",
+          in_words(solid.nonlinearity, "") + " is no solid's", "give a number from -1000 to 1000");
 }
 
 void check_layers(const std::vector<Layer>& layers) {
@@ -122,6 +125,10 @@ void check(const ImpactModel& model) {
   for (const Probe& probe : model.probes) {
     require(probe.radial_m >= 0.0 && std::hypot(probe.radial_m, probe.axial_m) < radius_m, "probes",
             "lie outside the ball", "give places inside it, from its centre");
+  }
+  for (const double time_s : model.field_times_s) {
+    require(not_negative(time_s), "field_times_s", in_words(time_s, "s") + " is before the touch",
+            "give seconds from the first touch on");
   }
   for (const double position_m : model.gauge_positions_m) {
     require(model.target.kind == TargetKind::bar && position_m > 0.0 &&

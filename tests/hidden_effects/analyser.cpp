@@ -83,6 +83,12 @@ Answer compare_base(const Analyser& analyser, const CaseFiles& files) {
              fmt::format("compare{} --model {} --json", captures_of(files), quoted(fitted)));
 }
 
+Answer compare_found(const Analyser& analyser, const CaseFiles& files) {
+  return run(analyser, files, "compare-found",
+             fmt::format("compare{} --model {} --json", captures_of(files),
+                         quoted(files.folder / "found.toml")));
+}
+
 Answer refit(const Analyser& analyser, const CaseFiles& files) {
   return run(
       analyser, files, "fit",

@@ -25,6 +25,9 @@ struct Answer {
 /// Fits the paper's model, as diagnose() made it, and compares it.
 [[nodiscard]] Answer compare_base(const Analyser& analyser, const CaseFiles& files);
 
+/// Compares the model that the diagnosis wrote, as it stands.
+[[nodiscard]] Answer compare_found(const Analyser& analyser, const CaseFiles& files);
+
 /// Fits the model that the diagnosis wrote, with what it found in it. @return fit's answer
 [[nodiscard]] Answer refit(const Analyser& analyser, const CaseFiles& files);
 

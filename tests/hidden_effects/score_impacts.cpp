@@ -30,6 +30,7 @@ struct Settings {
   int repeats = 1;
   int nulls = 3;
   int jobs = 1;
+  std::size_t across = 0;  ///< of the generator's mesh; 0: drawn for every case
 };
 
 /// What can be hidden, in the sizes that are tried.
@@ -81,6 +82,7 @@ std::vector<Draw> draws_of(const Settings& settings) {
   const auto add = [&](std::string id, CaseKind kind) -> Draw& {
     Draw& own = list.emplace_back();
     own.wishes = drawn_wishes(1000 * settings.seed + list.size());
+    own.wishes.across = settings.across > 0 ? settings.across : own.wishes.across;
     own.drawn.id = std::move(id);
     own.drawn.kind = kind;
     return own;
@@ -136,7 +138,18 @@ CaseFiles write_impacts(const Draw& own, const std::filesystem::path& root) {
   return files;
 }
 
-std::string line_of(const Verdict& verdict) {
+/// Rms of what the model found leaves at the highest speed, in percent of the peak, and what noise
+/// leaves there.
+std::string left_of(const Answer& comparison) {
+  if (!comparison.json.contains("speeds")) {
+    return {};
+  }
+  const nlohmann::json& fastest = comparison.json["speeds"].back();
+  return fmt::format("{:.2f}/{:.2f}", fastest["rms_percent_of_peak"].get<double>(),
+                     fastest["noise_percent_of_peak"].get<double>());
+}
+
+std::string line_of(const Verdict& verdict, const std::string& left) {
   std::string sets;
   for (const auto& members : verdict.sets) {
     sets += (sets.empty() ? "" : " + ") + fmt::format("{}", fmt::join(members, " ~ "));
@@ -144,9 +157,9 @@ std::string line_of(const Verdict& verdict) {
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.2f}", *value) : std::string();
   };
-  return fmt::format("{:<32}{:<10}{:>4.0f} s {:>6} {:>6}  {}\n", verdict.id, verdict.answered,
-                     verdict.seconds, number(verdict.closure), number(verdict.strength_in_sd),
-                     sets);
+  return fmt::format("{:<32}{:<10}{:>4.0f} s {:>6} {:>6} {:>10}  {}\n", verdict.id,
+                     verdict.answered, verdict.seconds, number(verdict.closure),
+                     number(verdict.strength_in_sd), left, sets);
 }
 
 std::string summary_of(const std::vector<Verdict>& verdicts) {
@@ -183,14 +196,15 @@ int run(const Settings& settings) {
   std::vector<Verdict> verdicts(draws.size());
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
-  std::cout << fmt::format("{:<32}{:<10}{:>6} {:>6} {:>6}  {}\n", "hidden", "said", "", "closed",
-                           "z", "claimed (~ tied)");
+  std::cout << fmt::format("{:<32}{:<10}{:>6} {:>6} {:>6} {:>10}  {}\n", "hidden", "said", "",
+                           "closed", "z", "left/noise", "claimed (~ tied)");
   const auto work = [&] {
     for (std::size_t i = next++; i < draws.size(); i = next++) {
       const CaseFiles files = write_impacts(draws[i], settings.out);
       verdicts[i] = judge(draws[i].drawn, diagnose(settings.analyser, files));
+      const std::string left = left_of(compare_found(settings.analyser, files));
       const std::lock_guard lock(mutex);
-      std::cout << line_of(verdicts[i]) << std::flush;
+      std::cout << line_of(verdicts[i], left) << std::flush;
     }
   };
   std::vector<std::jthread> workers;
@@ -224,6 +238,9 @@ int main(int argc, char** argv) {
   app.add_option("--nulls", settings.nulls, "campaigns with nothing hidden");
   app.add_option("--only", settings.only, "cases with this in their name");
   app.add_option("--jobs", settings.jobs);
+  app.add_option("--across", settings.across,
+                 "cells of the generator's mesh, else 7 to 10: 24 take minutes a case and leave no "
+                 "error of its own that noise does not hide");
   app.add_option("--timeout", settings.analyser.timeout_s, "s per command");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -11,6 +11,7 @@
 #include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -94,8 +95,15 @@ double speed_of(const Settings& settings) {
 // What the simulation names by its members, as the user gave it.
 std::string option_for(const std::string& member) {
   const std::pair<const char*, const char*> options[] = {
-      {"speed_m_per_s", "--speed"}, {"friction", "--friction"}, {"sabot_mass_kg", "--sabot-mass"},
-      {"offset_m", "--offset"},     {"elements", "--elements"}, {"time_step_s", "--time-step"}};
+      {"speed_m_per_s", "--speed"},
+      {"friction", "--friction"},
+      {"sabot_mass_kg", "--sabot-mass"},
+      {"offset_m", "--offset"},
+      {"elements", "--elements"},
+      {"time_step_s", "--time-step"},
+      {"layers[0].solid.nonlinearity", "--core-nonlinearity"},
+      {"layers[1].solid.nonlinearity", "--cover-nonlinearity"},
+      {"field_times_s", "--field"}};
   for (const auto& [name, option_name] : options) {
     if (member == name) {
       return option_name;
@@ -138,6 +146,10 @@ void prepare(ImpactRun& run, const Settings& settings) {
       run.model.gauge_positions_m.push_back(gauge.position_m);
     }
   }
+  if (!settings.fields.empty() && !settings.svg.has_value()) {
+    throw InputError(std::string(kPlace) + "--field", "shows in a picture only",
+                     "give --svg FILE beside it");
+  }
   for (const std::string& time : settings.fields) {
     run.model.field_times_s.push_back(number_in(time, "--field"));
   }
@@ -172,6 +184,11 @@ void simulate(ImpactRun& run) {
         run.model, [&line](const impact::Progress& progress) { line.show(progress); });
   } catch (const InputError& error) {
     throw InputError(kPlace + option_for(error.place()), error.problem(), error.mend());
+  }
+  if (run.history.fields.size() < run.model.field_times_s.size()) {
+    throw InputError(std::string(kPlace) + "--field",
+                     "a time is after the end, when the ball has left",
+                     "give times up to " + in_words(run.history.time_s.back(), "s"));
   }
   run.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
 }

@@ -47,6 +47,22 @@ TEST(PaperBall, EnergyCloses) {
   }
 }
 
+TEST(PaperBall, CutIntoFiveShellsStaysTheSameBall) {
+  ImpactModel model = paper_impact(51.0);
+  const ImpactHistory two = with_elements(model, 2048);
+  const Layer core = model.layers[0];
+  const Layer cover = model.layers[1];
+  model.layers = {core, core, core, cover, cover};
+  model.layers[0].outer_diameter_m = 0.018;
+  model.layers[1].outer_diameter_m = 0.027;
+  model.layers[3].outer_diameter_m = 0.0392;
+  const ImpactHistory five = with_elements(model, 4096);
+  EXPECT_NEAR(five.mass_kg, two.mass_kg, 1e-6);
+  EXPECT_NEAR(five.restitution, two.restitution, 2e-3);
+  EXPECT_NEAR(five.peak_force_N, two.peak_force_N, 0.01 * two.peak_force_N);
+  EXPECT_EQ(five.strained_share.size(), 5U);
+}
+
 TEST(PaperBall, ConvergesInTheMesh) {
   const ImpactModel model = paper_impact(51.0);
   const ImpactHistory coarse = with_elements(model, 512);

@@ -64,6 +64,12 @@ INSTANTIATE_TEST_SUITE_P(
                   m.probes = {{0.0, 0.03}};
                 },
                 "probes"},
+        Refusal{"NonlinearBeyondReason",
+                [](ImpactModel& m) { m.layers[0].solid.nonlinearity = 1e9; },
+                "layers[0].solid.nonlinearity"},
+        Refusal{"FieldBeforeTheTouch", [](ImpactModel& m) { m.field_times_s = {-1.0}; },
+                "field_times_s"},
+        Refusal{"StepThatNeverEnds", [](ImpactModel& m) { m.time_step_s = 1e-15; }, "time_step_s"},
         Refusal{"StepPastStability", [](ImpactModel& m) { m.time_step_s = 5e-6; }, "time_step_s"}),
     [](const auto& refusal) { return refusal.param.name; });
 
