@@ -513,14 +513,32 @@ void WhiteResiduals::find_residuals(Workspace& work, const Composition& composit
   }
 }
 
+Eigen::VectorXd WhiteResiduals::evaluate_in_noise_of(const Composition& known,
+                                                     const std::vector<double>& known_theta,
+                                                     const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t worker) {
+  know_noise(*work_[worker], Effects(known, known_theta, 0).on_waves);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(size()));
+  whiten_shots(composition, theta, 0, campaign_.shots.size(), worker, out.data());
+  return out;
+}
+
 void WhiteResiduals::evaluate_shots(const Composition& composition,
                                     const std::vector<double>& theta, std::size_t first,
                                     std::size_t end, std::size_t worker, double* next) {
+  know_noise(*work_[worker], Effects(composition, theta, 0).on_waves);
+  whiten_shots(composition, theta, first, end, worker, next);
+}
+
+/// With the noise as known.
+void WhiteResiduals::whiten_shots(const Composition& composition, const std::vector<double>& theta,
+                                  std::size_t first, std::size_t end, std::size_t worker,
+                                  double* next) {
   Workspace& work = *work_[worker];
   const auto rows = static_cast<Eigen::Index>(others_.size());
   Eigen::VectorXcd r(rows);
   Eigen::VectorXcd white(rows);
-  know_noise(work, Effects(composition, theta, 0).on_waves);
   for (std::size_t n = first; n < end; ++n) {
     find_residuals(work, composition, theta, n);
     work.rows.resize(others_.size());

@@ -71,6 +71,12 @@ class WhiteResiduals : public ShotResiduals {
                                               const std::vector<double>& theta, std::size_t shot,
                                               std::size_t worker) override;
 
+  /// Whitened as they would be under another composition.
+  [[nodiscard]] Eigen::VectorXd evaluate_in_noise_of(const Composition& known,
+                                                     const std::vector<double>& known_theta,
+                                                     const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t worker);
   /// The residuals themselves. @param theta  as frozen
   [[nodiscard]] PlainResiduals plain(const Composition& composition,
                                      const std::vector<double>& theta);
@@ -129,6 +135,8 @@ class WhiteResiduals : public ShotResiduals {
                       const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
                       std::size_t first, std::size_t end, std::size_t worker, double* out);
+  void whiten_shots(const Composition& composition, const std::vector<double>& theta,
+                    std::size_t first, std::size_t end, std::size_t worker, double* out);
   void prepare_spectra();
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
