@@ -280,8 +280,8 @@ class Diagnostician {
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
-    const bool rest = options_.safeguards.unknown &&
-                      (remains || stand_for_another() || exchange_for_each_other(current));
+    const bool rest =
+        options_.safeguards.unknown && (remains || at_all_gauges_but_one() || more_than_two());
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {
@@ -332,43 +332,22 @@ class Diagnostician {
     return kAllowedRest / (effects * effects);
   }
 
-  /// What all gauges but one need alike is something of that one which the library does not have;
-  /// three effects in one place (the bars' material, the specimen with its faces, a gauge) are a
-  /// series in which anything there can be expanded.
-  [[nodiscard]] bool stand_for_another() const {
+  /// What all gauges but one need alike is something of that one which the library does not have.
+  [[nodiscard]] bool at_all_gauges_but_one() const {
     std::map<std::string, std::size_t> gauges;
-    std::map<std::string, std::size_t> places;
     for (const std::string& id : diagnosis_.effects) {
-      const EffectUse& use = *diagnosis_.model->find(id);
-      const EffectAbout& about = use.effect->about();
-      if (!use.gauge.empty()) {
-        ++gauges[about.id];
-        ++places[use.gauge];
-      } else if (about.stage == Stage::material || about.stage == Stage::specimen) {
-        ++places[name_of(about.stage)];
+      if (const auto colon = id.find(':'); colon != std::string::npos) {
+        ++gauges[id.substr(0, colon)];
       }
     }
-    const auto as_many = [](const std::map<std::string, std::size_t>& counts, std::size_t limit) {
-      return std::ranges::any_of(counts, [&](const auto& own) { return own.second >= limit; });
-    };
     const std::size_t most = study_.campaign().gauges() - 1;
-    constexpr std::size_t kSeries = 3;
-    return (most > 1 && as_many(gauges, most)) || as_many(places, kSeries);
+    return most > 1 && std::any_of(gauges.begin(), gauges.end(),
+                                   [&](const auto& own) { return own.second >= most; });
   }
 
-  /// Of three effects each must be there beyond doubt: what only together they fit is not theirs.
-  [[nodiscard]] bool exchange_for_each_other(const Studied& current) const {
-    constexpr std::size_t kMany = 3;
-    constexpr double kSigma = 3.0;
-    return diagnosis_.effects.size() >= kMany &&
-           std::ranges::any_of(diagnosis_.effects, [&](const std::string& id) {
-             const EffectUse& use = *current.model.find(id);
-             const EffectParameter& parameter = use.effect->about().parameters.front();
-             const ModelValue& strength = use.values.front();
-             return !use.per_shot && strength.free &&
-                    std::abs(strength.value - parameter.null_value) < kSigma * strength.sd;
-           });
-  }
+  /// Anything can be expanded in three effects: that one is missing which the library does not have
+  /// is likelier than that three are at once.
+  [[nodiscard]] bool more_than_two() const { return diagnosis_.effects.size() > 2; }
 
   void set_verdict(const std::string& id, const std::string& verdict) {
     for (CandidateResult& result : diagnosis_.candidates) {

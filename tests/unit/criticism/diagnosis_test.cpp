@@ -233,6 +233,16 @@ TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"gauge-position:g3", "temperature"}));
 }
 
+// Anything can be expanded in three effects: what needs as many is likelier to be missing itself.
+TEST(Diagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
+  const Made made =
+      make(78, {"gauge-position:g3=0.003", "temperature=0.004", "bridge-nonlinearity=4"});
+  const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(diagnosis.effects.empty());
+  ASSERT_FALSE(diagnosis.notes.empty());
+}
+
 // A hum that gauges pick up by different shares is nearly a drift of its own at each of them. That
 // its phases are common makes it claimable; what it explains weighs against the drifts all the
 // same.
