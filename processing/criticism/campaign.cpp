@@ -220,6 +220,10 @@ void require_gauges(const Bench& bench) {
 
 }  // namespace
 
+bool holds_pulse(const Shot& shot, std::size_t gauge) {
+  return first_pulse(readings_of(shot.channels[gauge]), shot.rate.Hz()).has_value();
+}
+
 std::string bad_data(const Shot& shot) {
   std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
@@ -241,16 +245,13 @@ std::string bad_data(const Shot& shot) {
              " samples: it was cut off there";
     }
   }
-  const auto pulse_at = [&](std::size_t gauge) {
-    return first_pulse(readings_of(shot.channels[gauge]), shot.rate.Hz());
-  };
   // Behind a soft specimen there may be none; along one bar it comes to every gauge.
   for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
-    if ((j == reference || shot.bench.kind == BenchKind::bar) && !pulse_at(j)) {
+    if ((j == reference || shot.bench.kind == BenchKind::bar) && !holds_pulse(shot, j)) {
       return "gauge " + shot.bench.gauges[j].name + " holds no pulse that stands out of its noise";
     }
   }
-  const auto pulse = pulse_at(reference);
+  const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
   if (pulse->quiet < kFewestQuiet) {
     return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
            " of at least " + std::to_string(kFewestQuiet);

@@ -30,6 +30,9 @@ struct Campaign {
   [[nodiscard]] std::size_t gauges() const { return bench.gauges.size(); }
 };
 
+/// Whether a gauge's record has a pulse that stands out of its noise.
+[[nodiscard]] bool holds_pulse(const Shot& shot, std::size_t gauge);
+
 /// Why a shot cannot be compared with anything, in one line; empty for one that can. Holes,
 /// clipping, no pulse, no quiet samples before it: bad data is a verdict of its own.
 [[nodiscard]] std::string bad_data(const Shot& shot);

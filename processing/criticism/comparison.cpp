@@ -12,12 +12,8 @@ namespace kolsky {
 namespace {
 
 constexpr double kFalseDiscovery = 0.005;
-/// A gauge is off beyond doubt where noise would have it so once in a million.
-const double kBeyondDoubt = std::log(1e-6);
 constexpr std::size_t kFewestBins = 4;
 constexpr std::size_t kMostBands = 6;
-/// Of a unit row: below this what is left of a gauge's deviation is rounding.
-constexpr double kNothingLeft = 1e-4;
 
 /// Benjamini and Hochberg: the largest ln p that still counts among these.
 double discovery_limit(std::vector<double> log_ps) {
@@ -88,9 +84,10 @@ double Region::sigma() const {
 
 Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
                    const std::vector<double>& theta)
-    : residuals_(residuals), transform_(residuals.band().judged, residuals.judged_period_s(), 1.0) {
+    : residuals_(residuals),
+      transform_(residuals.band().judged, residuals.judged_period_s(), 1.0),
+      deviations_(residuals, composition, theta) {
   choose_bands();
-  plain_ = plain_readings();
   const Campaign& campaign = residuals.campaign();
   for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
     windows_.push_back(arrival_windows(residuals, composition, theta, n));
@@ -129,10 +126,7 @@ void Comparer::choose_bands() {
     ComparedBand band{width * static_cast<double>(edges[b]),
                       width * static_cast<double>(edges[b + 1]),
                       {edges[b], edges[b + 1]}};
-    // What windows smear beyond the judged band belongs to its nearest part; it does not reach far.
     band.bins.first = b == 0 ? 0 : band.bins.first;
-    band.bins.end =
-        b + 2 == edges.size() ? std::min(transform_.bins(), last + last / 2) : band.bins.end;
     bands_.push_back(band);
   }
 }
@@ -149,7 +143,7 @@ const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window,
   }
   return noise_
       .emplace(std::pair{window.weight, quiet},
-               tile_noise(transform_, window.weight, quiet, residuals_.band().bins_judged, ranges))
+               tile_noise(transform_, window.weight, quiet, deviations_.bins_held(), ranges))
       .first->second;
 }
 
@@ -164,122 +158,12 @@ void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t 
   }
 }
 
-std::vector<Comparer::Reading> Comparer::plain_readings() const {
-  const std::size_t bins = residuals_.band().bins_judged;
-  const auto others = static_cast<Eigen::Index>(residuals_.others().size());
-  std::vector<Reading> list;
-  for (std::size_t j = 0; j < residuals_.campaign().gauges(); ++j) {
-    Reading reading{j, Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(bins), others),
-                    std::vector<double>(bins, 0.0)};
-    for (std::size_t k = 0; k < bins; ++k) {
-      const auto row = residuals_.spread(k).row(static_cast<Eigen::Index>(j));
-      const double length = row.norm();
-      if (length > 0.0) {
-        reading.rows.row(static_cast<Eigen::Index>(k)) = row / length;
-        reading.scale[k] = length;
-      }
-    }
-    list.push_back(std::move(reading));
-  }
-  return list;
-}
-
-/// Takes from `other` what follows from `known`, in one band.
-void Comparer::given(const Reading& known, Reading& other, const ComparedBand& band) const {
-  const std::size_t bins = residuals_.band().bins_judged;
-  for (std::size_t f = std::max<std::size_t>(1, band.bins.first);
-       f < std::min(band.bins.end, bins + 1); ++f) {
-    const auto k = static_cast<Eigen::Index>(f - 1);
-    const Complex common = known.rows.row(k).dot(other.rows.row(k));
-    Eigen::RowVectorXcd rest = other.rows.row(k) - common * known.rows.row(k);
-    const double left = rest.norm();
-    if (left < kNothingLeft) {
-      other.rows.row(k).setZero();
-      other.scale[f - 1] = 0.0;
-    } else {
-      other.rows.row(k) = rest / left;
-      other.scale[f - 1] *= left;
-    }
-  }
-}
-
-/// ln probability of a reading's energy in a band over all shots.
-double Comparer::band_log_p(const Reading& reading, const ComparedBand& band,
-                            std::span<const double> white) const {
-  const std::size_t bins = residuals_.band().bins_judged;
-  const std::size_t others = residuals_.others().size();
-  double energy = 0.0;
-  double freedom = 0.0;
-  for (std::size_t start = 0; start < white.size(); start += residuals_.per_shot()) {
-    for (std::size_t f = std::max<std::size_t>(1, band.bins.first);
-         f < std::min(band.bins.end, bins + 1); ++f) {
-      if (reading.scale[f - 1] == 0.0) {
-        continue;
-      }
-      Complex z = 0.0;
-      for (std::size_t i = 0; i < others; ++i) {
-        const std::size_t at = start + residuals_.index(f - 1, i);
-        z += reading.rows(static_cast<Eigen::Index>(f - 1), static_cast<Eigen::Index>(i)) *
-             Complex(white[at], white[at + 1]);
-      }
-      energy += std::norm(z);
-      freedom += 2.0;
-    }
-  }
-  return freedom > 0.0 ? log_chi2_tail(energy, freedom) : 0.0;
-}
-
-/// The gauges' readings for these residuals: in every band those beyond doubt first, the rest given
-/// them.
-std::vector<Comparer::Reading> Comparer::readings(std::span<const double> white) const {
-  std::vector<Reading> list = plain_;
-  if (residuals_.others().size() < 2) {
-    return list;
-  }
-  for (const ComparedBand& band : bands_) {
-    std::vector<Reading*> left;
-    for (Reading& reading : list) {
-      left.push_back(&reading);
-    }
-    while (left.size() > 1) {
-      std::vector<double> log_ps;
-      for (const Reading* reading : left) {
-        log_ps.push_back(band_log_p(*reading, band, white));
-      }
-      const auto worst = std::min_element(log_ps.begin(), log_ps.end());
-      if (*worst > kBeyondDoubt) {
-        break;
-      }
-      const auto place = left.begin() + (worst - log_ps.begin());
-      const Reading* known = *place;
-      left.erase(place);
-      for (Reading* other : left) {
-        given(*known, *other, band);
-      }
-    }
-  }
-  return list;
-}
-
-std::vector<Comparer::Windowed> Comparer::windowed(const Reading& reading,
-                                                   std::span<const double> white,
-                                                   std::size_t shot) {
-  const std::size_t bins = residuals_.band().bins_judged;
-  const std::size_t others = residuals_.others().size();
-  Spectrum z(transform_.bins(), 0.0);
-  for (std::size_t k = 0; k < bins; ++k) {
-    for (std::size_t i = 0; i < others; ++i) {
-      const std::size_t at = residuals_.index(k, i);
-      z[k + 1] += reading.rows(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) *
-                  Complex(white[at], white[at + 1]);
-    }
-  }
-  std::vector<double> record(transform_.length());
-  transform_.inverse(z, record);
-  level(record, shot, reading.gauge);
+std::vector<Comparer::Windowed> Comparer::windowed(std::vector<double> record, std::size_t shot,
+                                                   std::size_t gauge) {
+  level(record, shot, gauge);
   std::vector<Windowed> list;
   std::vector<double> part(record.size());
-  for (const ArrivalWindow& window : windows_[shot][reading.gauge]) {
+  for (const ArrivalWindow& window : windows_[shot][gauge]) {
     for (std::size_t n = 0; n < record.size(); ++n) {
       part[n] = record[n] * window.weight[n];
     }
@@ -290,7 +174,7 @@ std::vector<Comparer::Windowed> Comparer::windowed(const Reading& reading,
   return list;
 }
 
-void Comparer::add_tiles(const Reading& reading, const std::vector<Windowed>& windows,
+void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Windowed>& windows,
                          std::size_t shot, std::vector<Tile>& tiles) {
   const std::size_t bins = residuals_.band().bins_judged;
   const double peak = peaks_[shot][reading.gauge];
@@ -305,17 +189,12 @@ void Comparer::add_tiles(const Reading& reading, const std::vector<Windowed>& wi
       tile.band = b;
       tile.shot = shot;
       double squares = 0.0;
-      double known = 0.0;
       for (std::size_t f = bands_[b].bins.first; f < bands_[b].bins.end; ++f) {
         const bool half = f == 0 || f + 1 == transform_.bins();
         const double power = (half ? 0.5 : 1.0) * std::norm(own.spectrum[f]);
         const double scale = reading.scale[std::clamp<std::size_t>(f, 1, bins) - 1];
         tile.energy += power;
         squares += power * scale * scale;
-        known += scale > 0.0 ? 1.0 : 0.0;
-      }
-      if (known == 0.0) {
-        continue;  // the other gauges' deviations leave nothing to know of this one
       }
       tile.noise = noise[b];
       tile.sigma = std::sqrt(tile.energy / tile.noise.mean);
@@ -328,10 +207,10 @@ void Comparer::add_tiles(const Reading& reading, const std::vector<Windowed>& wi
   }
 }
 
-std::vector<Tile> Comparer::compare_shot(std::span<const double> white, std::size_t shot) {
+std::vector<Tile> Comparer::compare_shot(std::size_t shot) {
   std::vector<Tile> tiles;
-  for (const Reading& reading : readings(white)) {
-    add_tiles(reading, windowed(reading, white, shot), shot, tiles);
+  for (const GaugeDeviation& own : deviations_.of_shots(shot, shot + 1)) {
+    add_tiles(own, windowed(own.records.front(), shot, own.gauge), shot, tiles);
   }
   mark_significant(tiles);
   double excess = 0.0;
@@ -346,9 +225,7 @@ std::vector<Tile> Comparer::compare_shot(std::span<const double> white, std::siz
 
 Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit) {
   const std::size_t shots = residuals_.campaign().shots.size();
-  const std::size_t per_shot = residuals_.per_shot();
   const std::size_t bins = residuals_.band().bins_judged;
-  const std::span<const double> all(white.data(), static_cast<std::size_t>(white.size()));
   Comparison comparison;
   comparison.misfit = misfit;
   comparison.bands = bands_;
@@ -357,9 +234,9 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     sources.push_back(residuals_.source_spectrum(n, white));
   }
   std::map<Key, std::vector<Following>> following;
-  for (const Reading& reading : readings(all)) {
+  for (const GaugeDeviation& reading : deviations_.of_shots(0, shots)) {
     for (std::size_t n = 0; n < shots; ++n) {
-      const auto windows = windowed(reading, all.subspan(n * per_shot, per_shot), n);
+      const auto windows = windowed(reading.records[n], n, reading.gauge);
       add_tiles(reading, windows, n, comparison.tiles);
       for (const Windowed& own : windows) {
         for (std::size_t b = 0; b < bands_.size(); ++b) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processing/criticism/arrival_windows.hpp"
+#include "processing/criticism/gauge_deviations.hpp"
 #include "processing/criticism/study.hpp"
 #include "processing/criticism/tile_noise.hpp"
 
@@ -67,12 +68,8 @@ struct Comparison {
 
 /// Shares whitened residuals out among places: gauge x arrival window x frequency band x shot.
 ///
-/// A residual is between gauges, so a fault of one is seen at all. At each frequency the deviation
-/// of every gauge from the wave common to all is divided by its own standard deviation: of all
-/// gauges the one at fault then stands out furthest (Baarda's test for outliers). Where a gauge
-/// stands out beyond doubt, what remains at the others is taken given that it is off (conditional
-/// on its deviation), so that one gauge's fault is not counted at its neighbours; and so on to the
-/// next. With two gauges nothing tells which is off: each has half of the misfit.
+/// A residual is between gauges, so a fault of one is seen at all: see GaugeDeviations. With two
+/// gauges nothing tells which is off: each has half of the misfit.
 class Comparer {
  public:
   /// @param residuals  as frozen at theta; outlives this
@@ -84,8 +81,7 @@ class Comparer {
   [[nodiscard]] Comparison compare(const Eigen::VectorXd& white, const Misfit& misfit);
 
   /// Of one shot by itself, as it comes in.
-  /// @param white  of this shot
-  [[nodiscard]] std::vector<Tile> compare_shot(std::span<const double> white, std::size_t shot);
+  [[nodiscard]] std::vector<Tile> compare_shot(std::size_t shot);
 
   [[nodiscard]] ComparedRecord record(std::span<const double> white, std::size_t shot,
                                       std::size_t gauge);
@@ -97,34 +93,23 @@ class Comparer {
 
  private:
   using Spectrum = std::vector<Complex>;
-  /// The rows by which a gauge's own deviation is read off whitened residuals, one per bin, of unit
-  /// length; none where the gauges before it leave nothing to know.
-  struct Reading {
-    std::size_t gauge = 0;
-    Eigen::MatrixXcd rows;      ///< bins x others
-    std::vector<double> scale;  ///< strain per unit, by bin: 0 where nothing is left
-  };
   struct Windowed {
     const ArrivalWindow* window;
     Spectrum spectrum;
   };
 
   void choose_bands();
-  [[nodiscard]] std::vector<Reading> plain_readings() const;
-  void given(const Reading& known, Reading& other, const ComparedBand& band) const;
-  [[nodiscard]] double band_log_p(const Reading& reading, const ComparedBand& band,
-                                  std::span<const double> white) const;
-  [[nodiscard]] std::vector<Reading> readings(std::span<const double> white) const;
-  [[nodiscard]] std::vector<Windowed> windowed(const Reading& reading,
-                                               std::span<const double> white, std::size_t shot);
-  void add_tiles(const Reading& reading, const std::vector<Windowed>& windows, std::size_t shot,
-                 std::vector<Tile>& tiles);
+  [[nodiscard]] std::vector<Windowed> windowed(std::vector<double> record, std::size_t shot,
+                                               std::size_t gauge);
+  void add_tiles(const GaugeDeviation& reading, const std::vector<Windowed>& windows,
+                 std::size_t shot, std::vector<Tile>& tiles);
   [[nodiscard]] const std::vector<TileNoise>& noise_of(const ArrivalWindow& window,
                                                        const std::vector<double>& quiet);
   void level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const;
 
   WhiteResiduals& residuals_;
   DampedTransform transform_;
+  GaugeDeviations deviations_;
   std::vector<ComparedBand> bands_;
   std::vector<std::vector<std::vector<ArrivalWindow>>> windows_;  ///< by shot and gauge
   std::vector<std::vector<double>> peaks_;                        ///< by shot and gauge
@@ -132,7 +117,6 @@ class Comparer {
   std::vector<std::vector<std::vector<double>>> quiet_;
   /// By the weights of a window and of the mean.
   std::map<std::pair<std::vector<double>, std::vector<double>>, std::vector<TileNoise>> noise_;
-  std::vector<Reading> plain_;
 };
 
 /// Compares a model where it stands. @param studied  of this study, the last one evaluated

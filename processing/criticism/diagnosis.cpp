@@ -145,14 +145,16 @@ class Diagnostician {
       return std::nullopt;
     }
     std::vector<std::string> ties;
+    Refit& refit = refits[*best];
+    const std::string id = search.candidates()[refit.candidate].id();
     for (const std::size_t i : confirmed) {
-      if (i != *best && lead(refits[i], refits[*best]) < kTie) {
-        ties.push_back(search.candidates()[refits[i].candidate].id());
+      const std::string other = search.candidates()[refits[i].candidate].id();
+      // One and the same may stand there twice, with its strengths alike or each shot's own.
+      if (other != id && lead(refits[i], refits[*best]) < kTie) {
+        ties.push_back(other);
       }
     }
-    Refit& refit = refits[*best];
-    return Choice{search.candidates()[refit.candidate].id(), refit.candidate,
-                  std::move(refit.studied), std::move(ties)};
+    return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
   }
 
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
@@ -278,7 +280,8 @@ class Diagnostician {
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
-    const bool rest = options_.safeguards.unknown && (remains || at_all_gauges_but_one());
+    const bool rest =
+        options_.safeguards.unknown && (remains || at_all_gauges_but_one() || more_than_two());
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {
@@ -341,6 +344,10 @@ class Diagnostician {
     return most > 1 && std::any_of(gauges.begin(), gauges.end(),
                                    [&](const auto& own) { return own.second >= most; });
   }
+
+  /// Anything can be expanded in three effects: that one is missing which the library does not have
+  /// is likelier than that three are at once.
+  [[nodiscard]] bool more_than_two() const { return diagnosis_.effects.size() > 2; }
 
   void set_verdict(const std::string& id, const std::string& verdict) {
     for (CandidateResult& result : diagnosis_.candidates) {

@@ -26,7 +26,8 @@ struct WhiteResiduals::Workspace {
   Spectrum fine_spectrum;
   std::vector<double> fine_record;
   std::vector<Spectrum> records;               ///< of one shot where effects change them
-  std::vector<Spectrum> rows;                  ///< one shot's residuals, plain, by other gauge
+  std::vector<Spectrum> residuals;             ///< one shot's, damped, by other gauge
+  std::vector<Spectrum> rows;                  ///< the same, plain
   std::vector<std::vector<double>> responses;  ///< of other gauges to the reference's noise
   CarriedNoise::Memory carried_noise;          ///< through these responses
   std::vector<CarriedBin> bins;                ///< the same
@@ -513,47 +514,75 @@ Eigen::VectorXd WhiteResiduals::evaluate_shot(const Composition& composition,
   return out;
 }
 
+/// One shot's residuals by other gauge, along the damped path and filtered.
+void WhiteResiduals::find_residuals(Workspace& work, const Composition& composition,
+                                    const std::vector<double>& theta, std::size_t shot) const {
+  const std::size_t reference = campaign_.reference;
+  Effects effects(composition, theta, shot);
+  know_waves(work, composition, std::move(effects.on_waves), shot);
+  const Scene& scene = *work.scene;
+  const Ratios& ratios = work.ratios;
+  const std::vector<Spectrum>* records = &spectra_[shot];
+  if (!effects.on_records.empty()) {
+    shape_records(work, effects.on_records, shot);
+    records = &work.records;
+  }
+  const Spectrum& source = (*records)[reference];
+  const bool nonlinear = scene.specimen && scene.specimen->nonlinear();
+  if (nonlinear) {
+    // Of the reference record, what the specimen's further strain q has sent there goes first.
+    work.response.solve(scene, ratios, reference, source, damped_filter_, work.decimated);
+  }
+  work.residuals.resize(others_.size());
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    const std::size_t j = others_[i];
+    Spectrum& damped = work.residuals[i];
+    damped.resize(band_.bins_carried);
+    for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+      damped[k] = ratios.mean_at(k) * (*records)[j][k] - ratios.reading[j][k] * source[k];
+    }
+    if (nonlinear) {
+      const Spectrum& q = work.response.q();
+      for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+        damped[k] -= (ratios.mean_at(k) * ratios.reading_of_q[j][k] -
+                      ratios.reading[j][k] * ratios.reading_of_q[reference][k]) *
+                     damped_filter_[k] * q[k];
+      }
+    }
+  }
+}
+
+Eigen::VectorXd WhiteResiduals::evaluate_in_noise_of(const Composition& known,
+                                                     const std::vector<double>& known_theta,
+                                                     const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t worker) {
+  know_noise(*work_[worker], known, Effects(known, known_theta, 0).on_waves);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(size()));
+  whiten_shots(composition, theta, 0, campaign_.shots.size(), worker, out.data());
+  return out;
+}
+
 void WhiteResiduals::evaluate_shots(const Composition& composition,
                                     const std::vector<double>& theta, std::size_t first,
                                     std::size_t end, std::size_t worker, double* next) {
+  know_noise(*work_[worker], composition, Effects(composition, theta, 0).on_waves);
+  whiten_shots(composition, theta, first, end, worker, next);
+}
+
+/// With the noise as known.
+void WhiteResiduals::whiten_shots(const Composition& composition, const std::vector<double>& theta,
+                                  std::size_t first, std::size_t end, std::size_t worker,
+                                  double* next) {
   Workspace& work = *work_[worker];
-  const std::size_t reference = campaign_.reference;
   const auto rows = static_cast<Eigen::Index>(others_.size());
   Eigen::VectorXcd r(rows);
   Eigen::VectorXcd white(rows);
-  Spectrum damped(band_.bins_carried);
-  know_noise(work, composition, Effects(composition, theta, 0).on_waves);
   for (std::size_t n = first; n < end; ++n) {
-    Effects effects(composition, theta, n);
-    know_waves(work, composition, std::move(effects.on_waves), n);
-    const Scene& scene = *work.scene;
-    const Ratios& ratios = work.ratios;
-    const std::vector<Spectrum>* records = &spectra_[n];
-    if (!effects.on_records.empty()) {
-      shape_records(work, effects.on_records, n);
-      records = &work.records;
-    }
-    const Spectrum& source = (*records)[reference];
-    const bool nonlinear = scene.specimen && scene.specimen->nonlinear();
-    if (nonlinear) {
-      // Of the reference record, what the specimen's further strain q has sent there goes first.
-      work.response.solve(scene, ratios, reference, source, damped_filter_, work.decimated);
-    }
+    find_residuals(work, composition, theta, n);
     work.rows.resize(others_.size());
     for (std::size_t i = 0; i < others_.size(); ++i) {
-      const std::size_t j = others_[i];
-      for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-        damped[k] = ratios.mean_at(k) * (*records)[j][k] - ratios.reading[j][k] * source[k];
-      }
-      if (nonlinear) {
-        const Spectrum& q = work.response.q();
-        for (std::size_t k = 0; k < band_.bins_carried; ++k) {
-          damped[k] -= (ratios.mean_at(k) * ratios.reading_of_q[j][k] -
-                        ratios.reading[j][k] * ratios.reading_of_q[reference][k]) *
-                       damped_filter_[k] * q[k];
-        }
-      }
-      plain_spectrum(work, damped, work.rows[i]);
+      plain_spectrum(work, work.residuals[i], work.rows[i]);
     }
     for (std::size_t k = 0; k < band_.bins_judged; ++k) {
       for (Eigen::Index i = 0; i < rows; ++i) {
@@ -566,6 +595,29 @@ void WhiteResiduals::evaluate_shots(const Composition& composition,
       }
     }
   }
+}
+
+PlainResiduals WhiteResiduals::plain(const Composition& composition,
+                                     const std::vector<double>& theta) {
+  Workspace& work = *work_.front();
+  know_noise(work, composition, Effects(composition, theta, 0).on_waves);
+  PlainResiduals plain;
+  plain.before = band_.edge / band_.decimation;
+  plain.responses = work.responses;
+  const auto first = static_cast<std::ptrdiff_t>((band_.lead + band_.edge) / band_.decimation);
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    find_residuals(work, composition, theta, n);
+    plain.records.emplace_back();
+    for (const Spectrum& damped : work.residuals) {
+      std::copy(damped.begin(), damped.end(), work.carried.begin());
+      std::fill(work.carried.begin() + static_cast<std::ptrdiff_t>(damped.size()),
+                work.carried.end(), 0.0);
+      work.decimated.inverse(work.carried, work.residual);
+      const auto begin = work.residual.begin() + first;
+      plain.records.back().emplace_back(begin, begin + static_cast<std::ptrdiff_t>(band_.judged));
+    }
+  }
+  return plain;
 }
 
 std::vector<WhiteResiduals::Spectrum> WhiteResiduals::deviation_spectra(

@@ -14,6 +14,16 @@
 
 namespace kolsky {
 
+/// Residuals before they are whitened, over the judged window at its own rate, filtered beyond the
+/// judged band.
+struct PlainResiduals {
+  std::vector<std::vector<std::vector<double>>> records;  ///< by shot and other gauge
+  /// What they hold of the reference gauge's record, by other gauge, from lag -before on, filtered
+  /// alike; then, where that gauge is long, of the others' own, and the filter alone.
+  std::vector<std::vector<double>> responses;
+  std::size_t before = 0;
+};
+
 /// Whitened residuals of a campaign under compositions of effects.
 ///
 /// Each shot's source is free at all times and eliminated exactly: with H_j a gauge's reading of a
@@ -60,6 +70,16 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t shot,
                                               std::size_t worker) override;
+
+  /// Whitened as they would be under another composition.
+  [[nodiscard]] Eigen::VectorXd evaluate_in_noise_of(const Composition& known,
+                                                     const std::vector<double>& known_theta,
+                                                     const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t worker);
+  /// The residuals themselves. @param theta  as frozen
+  [[nodiscard]] PlainResiduals plain(const Composition& composition,
+                                     const std::vector<double>& theta);
 
   [[nodiscard]] std::size_t size() const { return per_shot() * campaign_.shots.size(); }
   [[nodiscard]] std::size_t per_shot() const override;
@@ -114,8 +134,12 @@ class WhiteResiduals : public ShotResiduals {
   void carry_noise(Workspace& work, const Ratios& ratios) const;
   [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
                                           Eigen::MatrixXcd& cross) const;
+  void find_residuals(Workspace& work, const Composition& composition,
+                      const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
                       std::size_t first, std::size_t end, std::size_t worker, double* out);
+  void whiten_shots(const Composition& composition, const std::vector<double>& theta,
+                    std::size_t first, std::size_t end, std::size_t worker, double* out);
   void prepare_spectra();
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;

@@ -97,9 +97,19 @@ std::vector<Refit> Search::refits() {
 
 bool Search::admissible(const Refit& refit) const {
   return std::isfinite(refit.studied.fit.objective()) && !beyond_the_record(refit.studied, refit) &&
+         fits_the_signal(refit) &&
          (!safeguards_.own_strengths ||
           own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
                                   study_.campaign(), Claim::fresh));
+}
+
+/// What fits better for counting more as noise fits nothing: where a gauge sees hardly a signal,
+/// its factor runs away, and the noise carried to it is all that is compared.
+bool Search::fits_the_signal(const Refit& refit) const {
+  constexpr double kShare = 0.5;
+  const ModelFit& fit = refit.studied.fit;
+  return base_.fit.objective() - fit.penalty - refit.chi2_in_base_noise >=
+         kShare * (base_.fit.objective() - fit.objective());
 }
 
 void Search::rate_in_order(std::vector<Refit>& list) const {
@@ -384,6 +394,11 @@ Refit Search::described(std::size_t index, const Model& model, Composition compo
   out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
   out.one_sided = candidate.one_sided && freedom < 1.5;
   out.scatter = scatter_over_noise(out.studied, candidate.id(), study_.residuals().per_shot());
+  out.chi2_in_base_noise =
+      study_.residuals()
+          .evaluate_in_noise_of(base_.composition, base_.fit.theta, out.studied.composition,
+                                out.studied.fit.theta, worker)
+          .squaredNorm();
   out.products = product_test_of(out.studied, candidate.id(), study_.campaign());
   return out;
 }

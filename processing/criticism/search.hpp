@@ -17,7 +17,8 @@ struct Refit {
   Studied studied;
   double freedom = 1.0;
   bool one_sided = false;
-  double scatter = 1.0;  ///< how much more than noise the shots differ in its direction
+  double chi2_in_base_noise = 0.0;  ///< its residuals whitened as those without the candidate
+  double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.
   std::optional<ProductTest> products = std::nullopt;
   double gain = 0.0;      ///< of the objective, over the noise and the shots' scatter
@@ -74,6 +75,7 @@ class Search {
                                 ModelFit fit, std::size_t worker);
   void refine(std::vector<Refit>& list);
   [[nodiscard]] bool admissible(const Refit& refit) const;
+  [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;

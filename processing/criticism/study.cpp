@@ -53,10 +53,15 @@ Studied Study::refit(const Studied& studied) {
 }
 
 Studied Study::as_it_is(const Model& model) {
+  // Quiet stretches tell all of white noise and little of slow noise.
+  constexpr double kWhite = 0.98;
   Composition composition(model, campaign_);
   ModelFit fit;
   fit.theta = composition.start();
   residuals_.freeze(composition, fit.theta);
+  if (campaign_.shots.size() > 1 && residuals_.noise().flatness() < kWhite) {
+    residuals_.calibrate(composition, fit.theta);
+  }
   if (residuals_.know_steps()) {
     residuals_.freeze(composition, fit.theta);
   }

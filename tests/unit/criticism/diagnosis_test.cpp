@@ -8,6 +8,7 @@
 #include <random>
 #include <span>
 
+#include "processing/criticism/examination.hpp"
 #include "processing/criticism/search.hpp"
 #include "processing/criticism/statistics.hpp"
 #include "tests/generators/campaign.hpp"
@@ -232,6 +233,16 @@ TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"gauge-position:g3", "temperature"}));
 }
 
+// Anything can be expanded in three effects: what needs as many is likelier to be missing itself.
+TEST(Diagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
+  const Made made =
+      make(78, {"gauge-position:g3=0.003", "temperature=0.004", "bridge-nonlinearity=4"});
+  const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(diagnosis.effects.empty());
+  ASSERT_FALSE(diagnosis.notes.empty());
+}
+
 // A hum that gauges pick up by different shares is nearly a drift of its own at each of them. That
 // its phases are common makes it claimable; what it explains weighs against the drifts all the
 // same.
@@ -359,6 +370,56 @@ TEST(BadData, SeesAGaugeThatThePulseNeverReached) {
   }
   EXPECT_NE(bad_data(shot).find(last.gauge + " holds no pulse"), std::string::npos)
       << bad_data(shot);
+}
+
+/// A gauge's channel as if its records ended before the pulse came: what was before it, in
+/// disorder.
+void silence(ChannelRecord& channel, std::size_t quiet, std::mt19937_64& random) {
+  std::uniform_int_distribution<std::size_t> any(0, quiet - 1);
+  for (std::size_t n = quiet; n < channel.codes.size(); ++n) {
+    channel.codes[n] = channel.codes[any(random)];
+  }
+}
+
+// A gauge's factor of six carries six times the noise into what is compared with its record. That
+// must not pass for a better fit.
+TEST(Residuals, AreNotSmallerForCountingMoreAsNoise) {
+  const Made made = make(15, {}, true);
+  const Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  const Model plain = study.fit(paper_model(BenchKind::shpb, false)).model;
+  Model loud = plain;
+  const auto& gauges = campaign.bench.gauges;
+  const auto output = std::ranges::find(gauges, std::string("output"), &Gauge::bar);
+  loud.effects.push_back(null_use(*find_effect("gauge-factor"), output->name));
+  loud.effects.back().values.front().value = 5.0;
+  const Studied base = study.as_it_is(plain);
+  const Studied changed = study.as_it_is(loud);
+  const auto in_noise_of = [&](const Studied& known) {
+    return study.residuals()
+        .evaluate_in_noise_of(known.composition, known.fit.theta, changed.composition,
+                              changed.fit.theta, 0)
+        .squaredNorm();
+  };
+  EXPECT_NEAR(in_noise_of(changed), changed.fit.chi2, 1e-9 * changed.fit.chi2);
+  EXPECT_GT(in_noise_of(base), 2.0 * changed.fit.chi2);
+}
+
+TEST(Examination, SaysSoWhereNoSecondGaugeSeesAnything) {
+  Made made = make(15, {}, true);
+  EXPECT_FALSE(verdict_without_fit(made.shots));
+  const std::size_t reference = read_campaign(made.shots).reference;
+  std::mt19937_64 random(15);
+  for (Shot& shot : made.shots) {
+    for (std::size_t j = 0; j < shot.channels.size(); ++j) {
+      if (j != reference) {
+        silence(shot.channels[j], 128, random);
+      }
+    }
+  }
+  const auto verdict = verdict_without_fit(made.shots);
+  ASSERT_TRUE(verdict);
+  EXPECT_EQ(verdict->verdict, DiagnosisVerdict::untestable) << verdict->notes.front();
 }
 
 TEST(BadData, IsNotARoundTopInCoarseSteps) {
