@@ -139,8 +139,9 @@ double BridgeConversion::strain(double reading) const {
 void BridgeConversion::convert(std::span<const double> readings, double unstrained,
                                std::span<double> strains) const {
   if (a2_ == 0.0 && b2_ == 0.0) {  // as in strain(), without its choice at every sample
+    const double per_reading = sign_ / full_scale_;
     for (std::size_t i = 0; i < strains.size(); ++i) {
-      const double v = sign_ * (readings[i] - unstrained) / full_scale_;
+      const double v = per_reading * (readings[i] - unstrained);
       strains[i] = -v / (a_ - b_ * v);
     }
     return;

@@ -204,24 +204,23 @@ double BarData::baseline_sd(std::size_t shot, std::size_t gauge) const {
 void BarData::prepare_spectra() {
   BandLimit band(transform_, 16);
   Spectrum filter(transform_.bins(), 1.0);
-  band.apply_half(filter_limit_Hz_, filter);
-  Spectrum whole(transform_.bins());
+  band.apply(filter_limit_Hz_, filter);
   std::vector<double> padded(transform_.length());
   const auto filtered = [&](std::span<const double> record) {
     std::fill(padded.begin(), padded.end(), 0.0);
     std::copy(record.begin(), record.end(), padded.begin() + static_cast<std::ptrdiff_t>(lead_));
-    transform_.forward(padded, whole);
     Spectrum spectrum(path_.size());
+    transform_.forward(padded, spectrum);
     for (std::size_t k = 0; k < spectrum.size(); ++k) {
-      spectrum[k] = whole[k] * filter[k] * filter[k];
+      spectrum[k] *= filter[k];
     }
     return spectrum;
   };
   BandLimit plain_band(*plain_, 16);
   Spectrum ones(plain_->bins(), 1.0);
-  plain_band.apply_half(filter_limit_Hz_, ones);
+  plain_band.apply(filter_limit_Hz_, ones);
   for (std::size_t k = 0; k < judged_path_.size(); ++k) {
-    undo_filter_.push_back(1.0 / std::norm(ones[k + 1]));
+    undo_filter_.push_back(1.0 / ones[k + 1].real());
   }
   for (const BarRecords& records : records_) {
     auto& of_shot = spectra_.emplace_back();

@@ -26,8 +26,7 @@ void BallPass::find_forces() {
   std::vector<double> late(shot_.samples() + t_.key.delay);
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     t_.transform.forward(strains_[i], t_.spectrum);
-    t_.band.apply_half(reduction_.band_limit_Hz, t_.spectrum);
-    t_.band.apply_half(reduction_.band_limit_Hz, t_.spectrum);
+    t_.band.apply(reduction_.band_limit_Hz, t_.spectrum);
     for (std::size_t k = 0; k < bins_; ++k) {
       t_.spectrum[k] *= kernels_.force_of_strain[i][k];
     }

@@ -48,17 +48,16 @@ struct Place {
   }
 };
 
-void multiply(const std::vector<Complex>& kernel, const std::vector<Complex>& in, std::size_t bins,
-              std::vector<Complex>& out) {
-  for (std::size_t k = 0; k < bins; ++k) {
+void multiply(const std::vector<Complex>& kernel, std::span<const Complex> in,
+              std::span<Complex> out) {
+  for (std::size_t k = 0; k < out.size(); ++k) {
     out[k] = kernel[k] * in[k];
   }
-  std::fill(out.begin() + static_cast<std::ptrdiff_t>(bins), out.end(), 0.0);
 }
 
-void multiply_add(const std::vector<Complex>& kernel, const std::vector<Complex>& in,
-                  std::size_t bins, std::vector<Complex>& out) {
-  for (std::size_t k = 0; k < bins; ++k) {
+void multiply_add(const std::vector<Complex>& kernel, std::span<const Complex> in,
+                  std::span<Complex> out) {
+  for (std::size_t k = 0; k < out.size(); ++k) {
     out[k] += kernel[k] * in[k];
   }
 }
@@ -113,45 +112,45 @@ CarryingKernels::CarryingKernels(std::span<const Complex> path, const BarWaves& 
   }
 }
 
-void CarryingKernels::push_from_incident(std::vector<Complex>& wave, std::size_t bins) const {
-  multiply(to_impact_, wave, bins, wave);
+void CarryingKernels::push_from_incident(std::span<Complex> wave) const {
+  multiply(to_impact_, wave, wave);
 }
 
-void CarryingKernels::incident_from_push(std::vector<Complex>& wave, std::size_t bins) const {
-  multiply(from_impact_, wave, bins, wave);
+void CarryingKernels::incident_from_push(std::span<Complex> wave) const {
+  multiply(from_impact_, wave, wave);
 }
 
-void CarryingKernels::force_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(force_of_incident_, in.incident, in.bins, out);
-  multiply_add(force_of_rest_, in.rest, in.bins, out);
+void CarryingKernels::force_front(const Inputs& in, std::span<Complex> out) const {
+  multiply(force_of_incident_, in.incident, out);
+  multiply_add(force_of_rest_, in.rest, out);
 }
 
-void CarryingKernels::force_back(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(force_of_output_, in.output, in.bins, out);
+void CarryingKernels::force_back(const Inputs& in, std::span<Complex> out) const {
+  multiply(force_of_output_, in.output, out);
 }
 
-void CarryingKernels::strain_rate(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(rate_of_incident_, in.incident, in.bins, out);
-  multiply_add(rate_of_rest_, in.rest, in.bins, out);
-  multiply_add(rate_of_output_, in.output, in.bins, out);
+void CarryingKernels::strain_rate(const Inputs& in, std::span<Complex> out) const {
+  multiply(rate_of_incident_, in.incident, out);
+  multiply_add(rate_of_rest_, in.rest, out);
+  multiply_add(rate_of_output_, in.output, out);
 }
 
-void CarryingKernels::rate_of_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(rate_of_incident_, in.incident, in.bins, out);
-  multiply_add(rate_of_rest_, in.rest, in.bins, out);
+void CarryingKernels::rate_of_front(const Inputs& in, std::span<Complex> out) const {
+  multiply(rate_of_incident_, in.incident, out);
+  multiply_add(rate_of_rest_, in.rest, out);
 }
 
-void CarryingKernels::right_going_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(right_of_incident_, in.incident, in.bins, out);
-  multiply_add(right_of_rest_, in.rest, in.bins, out);
+void CarryingKernels::right_going_front(const Inputs& in, std::span<Complex> out) const {
+  multiply(right_of_incident_, in.incident, out);
+  multiply_add(right_of_rest_, in.rest, out);
 }
 
-void CarryingKernels::left_going_front(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(left_of_rest_, in.rest, in.bins, out);
+void CarryingKernels::left_going_front(const Inputs& in, std::span<Complex> out) const {
+  multiply(left_of_rest_, in.rest, out);
 }
 
-void CarryingKernels::right_going_back(const Inputs& in, std::vector<Complex>& out) const {
-  multiply(right_of_output_, in.output, in.bins, out);
+void CarryingKernels::right_going_back(const Inputs& in, std::span<Complex> out) const {
+  multiply(right_of_output_, in.output, out);
 }
 
 }  // namespace kolsky

@@ -51,28 +51,27 @@ class CarryingKernels {
   [[nodiscard]] std::size_t bins() const { return to_impact_.size(); }
 
   /// Spectra of the histories, from those of the incident pulse I, the rest D of the input gauge,
-  /// and the output gauge E2. One Complex per bin each; the kernels work on the first `bins` and
-  /// leave the rest, where the band limit has left nothing, at zero. @pre bins <= bins()
+  /// and the output gauge E2: of the first bins, behind which the band limit leaves nothing. All
+  /// of one size. @pre at most bins()
   struct Inputs {
-    const std::vector<Complex>& incident;
-    const std::vector<Complex>& rest;
-    const std::vector<Complex>& output;
-    std::size_t bins;
+    std::span<const Complex> incident;
+    std::span<const Complex> rest;
+    std::span<const Complex> output;
   };
   /// The incident wave at the input gauge as the stress [Pa] of the striker's push, late by a
   /// front's travel from the impacted end to the gauge; and back. It is the stress that ends with
   /// the push: the strain of a viscoelastic end goes on recovering.
-  void push_from_incident(std::vector<Complex>& wave, std::size_t bins) const;
-  void incident_from_push(std::vector<Complex>& wave, std::size_t bins) const;
+  void push_from_incident(std::span<Complex> wave) const;
+  void incident_from_push(std::span<Complex> wave) const;
 
-  void force_front(const Inputs& in, std::vector<Complex>& out) const;
-  void force_back(const Inputs& in, std::vector<Complex>& out) const;
-  void strain_rate(const Inputs& in, std::vector<Complex>& out) const;
+  void force_front(const Inputs& in, std::span<Complex> out) const;
+  void force_back(const Inputs& in, std::span<Complex> out) const;
+  void strain_rate(const Inputs& in, std::span<Complex> out) const;
   /// Particle velocity of the input bar's end over the specimen's length.
-  void rate_of_front(const Inputs& in, std::vector<Complex>& out) const;
-  void right_going_front(const Inputs& in, std::vector<Complex>& out) const;
-  void left_going_front(const Inputs& in, std::vector<Complex>& out) const;
-  void right_going_back(const Inputs& in, std::vector<Complex>& out) const;
+  void rate_of_front(const Inputs& in, std::span<Complex> out) const;
+  void right_going_front(const Inputs& in, std::span<Complex> out) const;
+  void left_going_front(const Inputs& in, std::span<Complex> out) const;
+  void right_going_back(const Inputs& in, std::span<Complex> out) const;
 
  private:
   std::vector<Complex> to_impact_;

@@ -55,8 +55,7 @@ ContactNumbers contact_numbers(std::span<const double> force_N, double interval_
   BandLimit band(transform, padded.size());
   std::vector<Complex> spectrum(transform.bins());
   transform.forward(padded, spectrum);
-  band.apply_half(low_pass_Hz, spectrum);
-  band.apply_half(low_pass_Hz, spectrum);
+  band.apply(low_pass_Hz, spectrum);
   transform.inverse(spectrum, padded);
 
   ContactNumbers numbers;

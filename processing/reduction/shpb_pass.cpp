@@ -113,22 +113,21 @@ class Pass {
   }
 
   void transform_records() {
-    std::copy_n(t_.input_strain.begin(), split_, t_.incident_strain.begin());
-    std::fill(t_.incident_strain.begin() + static_cast<std::ptrdiff_t>(split_),
-              t_.incident_strain.end(), 0.0);
-    t_.transform.forward(t_.incident_strain, t_.incident);
-    const auto pulse = std::span<const double>(t_.incident_strain).subspan(quiet_, split_ - quiet_);
-    choose_band(pulse);
-    t_.transform.forward(t_.input_strain, t_.rest);
-    t_.transform.forward(t_.output_strain, t_.output_spectrum);
+    choose_band(incident_strain().subspan(quiet_));
+    t_.transform.forward(t_.input_strain, in_band(t_.rest));
+    t_.transform.forward(t_.output_strain, in_band(t_.output_spectrum));
     for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {
-      t_.band.apply_half(reduction_.band_limit_Hz, in_band(*spectrum));
-      t_.band.apply_half(reduction_.band_limit_Hz, in_band(*spectrum));
+      t_.band.apply(reduction_.band_limit_Hz, in_band(*spectrum));
     }
     complete_incident();
     for (std::size_t k = 0; k < bins_; ++k) {
       t_.rest[k] -= t_.incident[k];
     }
+  }
+
+  /// The incident pulse at its gauge, as long as the specimen's answer does not hide it.
+  [[nodiscard]] std::span<const double> incident_strain() const {
+    return std::span<const double>(t_.input_strain).first(split_);
   }
 
   void choose_band(std::span<const double> pulse) {
@@ -146,7 +145,7 @@ class Pass {
     band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);
   }
 
-  /// All of a spectrum that the kernels go on to read.
+  /// All of a spectrum that the band limit leaves.
   [[nodiscard]] std::span<Complex> in_band(std::vector<Complex>& spectrum) const {
     return std::span(spectrum).first(bins_);
   }
@@ -156,35 +155,36 @@ class Pass {
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there.
   void complete_incident() {
-    t_.band.apply_half(reduction_.band_limit_Hz, in_band(t_.incident));
-    bars_.kernels.push_from_incident(t_.incident, bins_);
-    t_.transform.inverse(t_.incident, t_.history);
+    const std::span<Complex> incident = in_band(t_.incident);
+    t_.transform.forward(incident_strain(), incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, incident);
+    bars_.kernels.push_from_incident(incident);
     const double known =
         static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     const auto end = static_cast<std::size_t>(std::max(0.0, known));
-    judge_push(end);
-    std::fill(t_.history.begin() + static_cast<std::ptrdiff_t>(end), t_.history.end(), 0.0);
-    t_.transform.forward(t_.history, t_.incident);
-    bars_.kernels.incident_from_push(t_.incident, bins_);
-    t_.band.apply_half(reduction_.band_limit_Hz, in_band(t_.incident));
+    const std::span<double> push = std::span(t_.history).first(end);
+    t_.transform.inverse(incident, push);
+    judge_push(push);
+    t_.transform.forward(push, incident);
+    bars_.kernels.incident_from_push(incident);
+    t_.band.apply_half(reduction_.band_limit_Hz, incident);
   }
 
   /// How much of the push is left at the end of what is known of it, averaged over a few samples so
   /// that it is the push that is judged and not the noise.
-  void judge_push(std::size_t end) {
-    const auto few = std::min(end, static_cast<std::size_t>(10e-6 * rate_Hz_) + 1);
+  void judge_push(std::span<const double> push) {
+    const auto few = std::min(push.size(), static_cast<std::size_t>(10e-6 * rate_Hz_) + 1);
     double left = 0.0;
-    for (std::size_t n = end - few; n < end; ++n) {
-      left += t_.history[n] / static_cast<double>(few);
+    for (const double stress_Pa : push.last(few)) {
+      left += stress_Pa / static_cast<double>(few);
     }
-    const double peak = largest(std::span<const double>(t_.history).first(end));
+    const double peak = largest(push);
     push_left_share_ = peak > 0.0 ? std::abs(left) / peak : 1.0;
   }
 
   /// t = 0: the foot of the incident pulse after it has been carried to interface A.
   void locate_arrival() {
-    bars_.kernels.right_going_front(inputs(), t_.work);
-    t_.transform.inverse(t_.work, t_.history);
+    carry(&CarryingKernels::right_going_front, t_.history);
     const double travel = bars_.input.front_time_s(in_.gauge_to_specimen_m) * rate_Hz_;
     const double late = travel + static_cast<double>(t_.key.delay);
     const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
@@ -272,18 +272,24 @@ class Pass {
                                                       : std::numeric_limits<double>::infinity();
   }
 
-  CarryingKernels::Inputs inputs() const {
-    return {t_.incident, t_.rest, t_.output_spectrum, bins_};
+  CarryingKernels::Inputs inputs() {
+    return {in_band(t_.incident), in_band(t_.rest), in_band(t_.output_spectrum)};
   }
 
   using Kernel = void (CarryingKernels::*)(const CarryingKernels::Inputs&,
-                                           std::vector<Complex>&) const;
+                                           std::span<Complex>) const;
 
-  /// The history behind a kernel, cut to the window.
+  /// The history behind a kernel, from sample `first` of the late ones on.
+  void carry(Kernel kernel, std::span<double> history, std::size_t first = 0) {
+    (bars_.kernels.*kernel)(inputs(), in_band(t_.work));
+    t_.transform.inverse(in_band(t_.work), history, first);
+  }
+
+  /// The same, cut to the window.
   std::vector<double> history(Kernel kernel) {
-    (bars_.kernels.*kernel)(inputs(), t_.work);
-    t_.transform.inverse(t_.work, t_.history);
-    return window();
+    std::vector<double> cut(count_);
+    carry(kernel, cut, first_ + t_.key.delay);
+    return cut;
   }
 
   /// What t_.history holds, within the window.
@@ -300,7 +306,8 @@ class Pass {
     reduction_.reflected = history(&CarryingKernels::left_going_front);
     reduction_.transmitted = history(&CarryingKernels::right_going_back);
     front_rate_per_s_ = history(&CarryingKernels::rate_of_front);
-    reduction_.strain_rate_per_s = history(&CarryingKernels::strain_rate);
+    carry(&CarryingKernels::strain_rate, t_.history);
+    reduction_.strain_rate_per_s = window();
     strain_before_ = strain_before_window(
         std::span<const double>(t_.history).subspan(t_.key.delay, shot_.samples()));
   }
@@ -349,8 +356,7 @@ class Pass {
 
   void judge_quality() {
     QualityInputs q;
-    const auto incident = std::span<const double>(t_.incident_strain).first(split_);
-    q.input_peak = largest(incident);
+    q.input_peak = largest(incident_strain());
     q.input_noise_rms = input_noise_;
     const auto travel =
         static_cast<std::size_t>((bars_.input.front_time_s(in_.gauge_to_specimen_m) +

@@ -79,7 +79,6 @@ ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
       path(transform.bins()),
       input_strain(k.samples),
       output_strain(k.samples),
-      incident_strain(k.samples),
       history(k.samples + k.delay),
       scratch(k.samples + k.delay),
       incident(transform.bins()),

@@ -49,7 +49,7 @@ struct ShpbPlans {
   DampedTransform transform;
   BandLimit band;
   std::vector<Complex> path;
-  std::vector<double> input_strain, output_strain, incident_strain, history, scratch;
+  std::vector<double> input_strain, output_strain, history, scratch;
   std::vector<Complex> incident, rest, output_spectrum, work;
 
   explicit ShpbPlans(const ShpbPlanKey& k);

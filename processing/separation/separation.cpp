@@ -310,8 +310,7 @@ void WaveSeparation::solve(const std::vector<SeparationGauge>& gauges) {
     }
   }
   for (auto* wave : {&right_, &left_}) {
-    work_->band.apply_half(band_limit_Hz_, *wave);
-    work_->band.apply_half(band_limit_Hz_, *wave);
+    work_->band.apply(band_limit_Hz_, *wave);
   }
 }
 
@@ -345,10 +344,10 @@ std::size_t WaveSeparation::known(double position_m) const {
 SeparatedWaves WaveSeparation::at(double position_m, StrainOf strain) const {
   DampedTransform& transform = work_->transform;
   const Way way = way_to(position_m);
-  std::vector<Complex> right(transform.bins());
-  std::vector<Complex> left(transform.bins());
-  std::vector<Complex> stress(transform.bins());
-  std::vector<Complex> velocity(transform.bins());
+  std::vector<Complex> right(path_.size());
+  std::vector<Complex> left(path_.size());
+  std::vector<Complex> stress(path_.size());
+  std::vector<Complex> velocity(path_.size());
   for (std::size_t k = 0; k < path_.size(); ++k) {
     const Complex to_right = right_[k] * way.from_start[k];
     const Complex to_left = left_[k] * way.from_end[k];
@@ -359,11 +358,10 @@ SeparatedWaves WaveSeparation::at(double position_m, StrainOf strain) const {
     stress[k] = stiffness_[k] * (to_right + to_left);
     velocity[k] = path_[k] / modes_[k].gamma * mean * (to_right - to_left);
   }
-  std::vector<double> record(transform.length());
   const auto history = [&](const std::vector<Complex>& spectrum) {
-    transform.inverse(spectrum, record);
-    const auto begin = record.begin() + static_cast<std::ptrdiff_t>(lead_);
-    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(samples_));
+    std::vector<double> record(samples_);
+    transform.inverse(spectrum, record, lead_);
+    return record;
   };
   return {history(right), history(left), history(stress), history(velocity)};
 }
@@ -382,8 +380,7 @@ std::vector<double> WaveSeparation::stress_noise_Pa(double position_m, std::size
     way.from_end[k] *= stress;
   }
   for (auto* direction : {&way.from_start, &way.from_end}) {
-    work_->band.apply_half(band_limit_Hz_, *direction);
-    work_->band.apply_half(band_limit_Hz_, *direction);
+    work_->band.apply(band_limit_Hz_, *direction);
   }
   for (const Share& share : shares_) {
     const double white = share.noise_rms * share.noise_rms;

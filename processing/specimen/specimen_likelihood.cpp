@@ -181,8 +181,7 @@ void SpecimenLikelihood::prepare_spectra() {
   }
   BandLimit band(*transform_, 16);
   filter_damped_.assign(transform_->bins(), 1.0);
-  band.apply_half(filter_limit_Hz_, filter_damped_);
-  band.apply_half(filter_limit_Hz_, filter_damped_);
+  band.apply(filter_limit_Hz_, filter_damped_);
   work_.resize(transform_->length());
   work_spectrum_.resize(transform_->bins());
   plain_spectrum_.resize(plain_->bins());
@@ -191,9 +190,8 @@ void SpecimenLikelihood::prepare_spectra() {
     for (const auto& strain : records.strain) {
       std::fill(work_.begin(), work_.end(), 0.0);
       std::copy_n(strain.begin(), samples, work_.begin() + static_cast<std::ptrdiff_t>(lead_));
-      Spectrum spectrum(transform_->bins());
+      Spectrum spectrum(carried);
       transform_->forward(work_, spectrum);
-      spectrum.resize(carried);
       for (std::size_t k = 0; k < carried; ++k) {
         spectrum[k] *= filter_damped_[k];
       }
@@ -203,8 +201,7 @@ void SpecimenLikelihood::prepare_spectra() {
   }
   Spectrum ones(plain_->bins(), 1.0);
   BandLimit plain_band(*plain_, 16);
-  plain_band.apply_half(filter_limit_Hz_, ones);
-  plain_band.apply_half(filter_limit_Hz_, ones);
+  plain_band.apply(filter_limit_Hz_, ones);
   bins_ = std::min(bins_, plain_->bins() - 1);
   for (std::size_t k = 0; k < bins_; ++k) {
     filter_.push_back(ones[k + 1].real());

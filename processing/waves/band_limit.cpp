@@ -20,6 +20,12 @@ double corner_per_s(double limit_Hz) {
   return 2.0 * std::numbers::pi * limit_Hz / std::pow(std::numbers::ln2, 0.25);
 }
 
+void multiply(const std::vector<Complex>& gains, std::span<Complex> spectrum) {
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    spectrum[k] *= gains[k];
+  }
+}
+
 }  // namespace
 
 BandLimit::BandLimit(const DampedTransform& transform, std::size_t pulse_samples)
@@ -91,7 +97,7 @@ double BandLimit::loss(std::span<const double> pulse, double noise_rms, double l
   return all > 0.0 ? std::clamp(taken / all, 0.0, 1.0) : 0.0;
 }
 
-const std::vector<Complex>& BandLimit::filter(double limit_Hz) {
+const BandLimit::Filter& BandLimit::filter(double limit_Hz) {
   const auto known = filters_.find(limit_Hz);
   if (known != filters_.end()) {
     return known->second;
@@ -100,19 +106,21 @@ const std::vector<Complex>& BandLimit::filter(double limit_Hz) {
     filters_.clear();
   }
   const double wc = corner_per_s(limit_Hz);
-  std::vector<Complex> filter(s_.size());
+  Filter filter{std::vector<Complex>(s_.size()), std::vector<Complex>(s_.size())};
   for (std::size_t k = 0; k < s_.size(); ++k) {
     const Complex square = s_[k] * s_[k] / (wc * wc);
-    filter[k] = std::exp(-square * square / 2.0);
+    filter.half[k] = std::exp(-square * square / 2.0);
+    filter.whole[k] = filter.half[k] * filter.half[k];
   }
   return filters_.emplace(limit_Hz, std::move(filter)).first->second;
 }
 
+void BandLimit::apply(double limit_Hz, std::span<Complex> spectrum) {
+  multiply(filter(limit_Hz).whole, spectrum);
+}
+
 void BandLimit::apply_half(double limit_Hz, std::span<Complex> spectrum) {
-  const std::vector<Complex>& gain = filter(limit_Hz);
-  for (std::size_t k = 0; k < spectrum.size(); ++k) {
-    spectrum[k] *= gain[k];
-  }
+  multiply(filter(limit_Hz).half, spectrum);
 }
 
 double BandLimit::noise_share(double limit_Hz) const {

@@ -39,8 +39,11 @@ class BandLimit {
   /// Share of a pulse's energy, less that of its noise, that the filter with this limit takes off.
   [[nodiscard]] double loss(std::span<const double> pulse, double noise_rms, double limit_Hz);
 
-  /// Multiplies a spectrum by the square root of the filter with this limit: a wave that is cut in
-  /// time between two steps is filtered before and after, others twice.
+  /// Multiplies a spectrum, or its first bins, by the filter with this limit.
+  void apply(double limit_Hz, std::span<Complex> spectrum);
+
+  /// By the filter's square root: a wave that is cut in time between two steps is filtered before
+  /// and after.
   void apply_half(double limit_Hz, std::span<Complex> spectrum);
 
   /// Share of white noise's rms that the filter lets through.
@@ -54,14 +57,19 @@ class BandLimit {
 
  private:
   [[nodiscard]] double floor_below(std::size_t top);
-  const std::vector<Complex>& filter(double limit_Hz);
+  /// A filter and its square root, one gain a bin.
+  struct Filter {
+    std::vector<Complex> whole;
+    std::vector<Complex> half;
+  };
+  const Filter& filter(double limit_Hz);
 
   std::vector<Complex> s_;
   double sampling_frequency_Hz_;
   DampedTransform pulse_transform_;
   std::vector<Complex> pulse_spectrum_;
   std::vector<double> floor_;
-  std::map<double, std::vector<Complex>> filters_;
+  std::map<double, Filter> filters_;
 };
 
 }  // namespace kolsky

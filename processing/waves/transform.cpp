@@ -176,14 +176,17 @@ void DampedTransform::forward(std::span<const double> record, std::span<Complex>
   state_->plans->to_frequency(time, state_->frequency.get());
   // FFTW's complex numbers are laid out as those of the standard library.
   const auto* frequency = reinterpret_cast<const Complex*>(state_->frequency.get());
-  std::copy_n(frequency, bins(), spectrum.begin());
+  std::copy_n(frequency, spectrum.size(), spectrum.begin());
 }
 
-void DampedTransform::inverse(std::span<const Complex> spectrum, std::span<double> record) {
-  std::copy_n(spectrum.begin(), bins(), reinterpret_cast<Complex*>(state_->frequency.get()));
+void DampedTransform::inverse(std::span<const Complex> spectrum, std::span<double> record,
+                              std::size_t first) {
+  auto* frequency = reinterpret_cast<Complex*>(state_->frequency.get());
+  std::copy(spectrum.begin(), spectrum.end(), frequency);
+  std::fill(frequency + spectrum.size(), frequency + bins(), 0.0);
   state_->plans->to_time(state_->frequency.get(), state_->time.get());
-  const double* time = state_->time.get();
-  const double* undamping = state_->undamping.data();
+  const double* time = state_->time.get() + first;
+  const double* undamping = state_->undamping.data() + first;
   for (std::size_t n = 0; n < record.size(); ++n) {
     record[n] = time[n] * undamping[n];
   }

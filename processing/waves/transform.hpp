@@ -39,12 +39,14 @@ class DampedTransform {
   [[nodiscard]] double bin_width_Hz() const;
   [[nodiscard]] Complex s(std::size_t bin) const;  ///< eta + 2 pi i bin / T
 
-  /// spectrum[k] = sum_n record[n] exp(-s_k t_n), without the factor dt. A shorter record counts as
-  /// zero beyond its end. @pre spectrum.size() == bins()
+  /// spectrum[k] = sum_n record[n] exp(-s_k t_n), without the factor dt; fills as many bins as are
+  /// asked for. A shorter record counts as zero beyond its end. @pre spectrum.size() <= bins()
   void forward(std::span<const double> record, std::span<Complex> spectrum);
 
-  /// The inverse; fills as much of the record as is asked for. @pre record.size() <= length()
-  void inverse(std::span<const Complex> spectrum, std::span<double> record);
+  /// The inverse; fills as much of the record as is asked for, from sample `first` on. A shorter
+  /// spectrum counts as zero beyond its end.
+  /// @pre spectrum.size() <= bins(), first + record.size() <= length()
+  void inverse(std::span<const Complex> spectrum, std::span<double> record, std::size_t first = 0);
 
  private:
   struct State;

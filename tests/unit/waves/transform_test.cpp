@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
 namespace {
@@ -53,6 +56,37 @@ TEST(DampedTransform, ComesBackToTheRecord) {
       EXPECT_NEAR(back[n], record[n], 1e-7);
     }
   }
+}
+
+TEST(DampedTransform, APartIsThatPartOfTheWhole) {
+  const auto record = noise_record(60);
+  DampedTransform transform(record.size(), 1e-6);
+  std::vector<Complex> whole(transform.bins());
+  transform.forward(record, whole);
+  std::vector<Complex> first(7);
+  transform.forward(record, first);
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), whole.begin()));
+  std::fill(whole.begin() + 7, whole.end(), 0.0);
+  std::vector<double> low(record.size());
+  transform.inverse(whole, low);
+  std::vector<double> cut(20);
+  transform.inverse(first, cut, 13);
+  EXPECT_TRUE(std::equal(cut.begin(), cut.end(), low.begin() + 13));
+}
+
+TEST(BandLimit, PassesHalfAtTheLimitInOneStepOrTwo) {
+  DampedTransform transform(2000, 1e-6, 1.0);
+  BandLimit band(transform, 16);
+  std::vector<Complex> whole(60, 1.0);
+  std::vector<Complex> twice(60, 1.0);
+  band.apply(20e3, whole);
+  band.apply_half(20e3, twice);
+  EXPECT_NEAR(std::norm(twice[40]), 0.5, 1e-12) << "40 bins of 500 Hz";
+  band.apply_half(20e3, twice);
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    EXPECT_NEAR(std::abs(whole[k] - twice[k]), 0.0, 1e-15) << k;
+  }
+  EXPECT_NEAR(whole[40].real(), 0.5, 1e-12);
 }
 
 TEST(DampedTransform, ADelayPushesTheEndOutInsteadOfRoundTheCorner) {
