@@ -14,7 +14,7 @@ class GeometricDispersion final : public Effect {
             .definition = "gamma, surface-to-mean += s (exact first mode - elementary)",
             .reference = "Pochhammer, Chree; physics.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
-            .parameters = {{"s", "-", 0.0, -1.0, 3.0, 0.1, {}}},
+            .parameters = {{"s", "-", 0.0, 0.0, 3.0, 0.1, {}}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

@@ -13,7 +13,7 @@ class RadialInertia final : public Effect {
             .definition = "stress += s (2 nu)^2 rho a^2 (strain''/8 + strain'^2/16)",
             .reference = "effects.md",
             .kinds = {BenchKind::shpb},
-            .parameters = {{"s", "-", 0.0, -1.0, 100.0, 0.2, {}}},
+            .parameters = {{"s", "-", 0.0, 0.0, 100.0, 0.2, {}}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

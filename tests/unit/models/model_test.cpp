@@ -165,6 +165,21 @@ TEST(EffectLibrary, HoldsTheReferencesEffectsOnce) {
   }
 }
 
+TEST(EffectLibrary, CorrectionsWithoutAFreeParameterAreNotSoughtBelowNothing) {
+  std::size_t corrections = 0;
+  for (const Effect* effect : effect_library()) {
+    const EffectAbout& about = effect->about();
+    if (about.base || about.parameters.front().name != "s") {
+      continue;
+    }
+    ++corrections;
+    EXPECT_EQ(about.parameters.front().null_value, 0.0) << about.id;
+    EXPECT_EQ(about.parameters.front().lower, 0.0) << about.id;
+    EXPECT_GT(about.parameters.front().upper, 1.0) << about.id;
+  }
+  EXPECT_EQ(corrections, 4U);
+}
+
 TEST(UseNamed, RefusesWhatTheLibraryDoesNotHaveOrWhatNamesNoGauge) {
   EXPECT_THROW((void)use_named("geometrical-dispersion"), InputError);
   EXPECT_THROW((void)use_named("gauge-position"), InputError);
