@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "processing/models/physics.hpp"
+#include "processing/models/pulse_probe.hpp"
 #include "processing/models/transfers.hpp"
-#include "processing/waves/transform.hpp"
 
 namespace kolsky {
 
@@ -380,83 +380,74 @@ class Examination {
     return std::nullopt;
   }
 
+  /// What the effect says at one stage along a probe's path, with it and without.
+  struct Response {
+    const Spectrum& with;
+    const Spectrum& without;
+    double size;          ///< largest along the axis of real frequencies
+    bool waves = false;   ///< a wavenumber: only what it changes of the bar's own is a response
+    double lead_s = 0.0;  ///< by which it may answer early
+  };
+
   [[nodiscard]] std::optional<AdmissionProblem> causal(double period_s) const {
-    constexpr std::size_t kSamples = 1024;
-    constexpr std::size_t kPulse = 24;
-    constexpr double kEarly = 2e-3;
-    DampedTransform transform(kSamples, period_s);
-    const std::size_t start = transform.length() / 2;
-    std::vector<double> pulse(transform.length(), 0.0);
-    for (std::size_t n = 0; n < kPulse; ++n) {
-      const double share = static_cast<double>(n) / kPulse;
-      pulse[start + n] = std::pow(std::sin(std::numbers::pi * share), 4);
-    }
-    Spectrum of_pulse(transform.bins());
-    transform.forward(pulse, of_pulse);
-    Spectrum path;
-    for (std::size_t k = 0; k < transform.bins(); ++k) {
-      path.push_back(transform.s(k));
-    }
-    const Said without = said(nullptr, path);
+    PulseProbe probe(period_s);
+    const Said without = said(nullptr, probe.path());
     for (const Values& values : tried_) {
-      const Said with = said(&values, path);
+      const Said with = said(&values, probe.path());
       const Said undamped = said(&values, axis_);
-      struct Answer {
-        const Spectrum* own;
-        const Spectrum* before;
-        const Spectrum* undamped;
-      };
-      const std::array<Answer, 5> answers{
-          {{&with.J, &without.J, &undamped.J},
-           {&with.specimen_J, &without.specimen_J, &undamped.specimen_J},
-           {&with.gamma, &without.gamma, nullptr},
-           {&with.reflection, &without.reflection, &undamped.reflection},
-           {&with.factor, &without.factor, &undamped.factor}}};
-      for (const auto& [own, before, on_axis] : answers) {
-        const bool sensor = own == &with.factor;
-        const bool waves = own == &with.gamma;
-        Spectrum answer(own->size());
-        double change = 0.0;
-        for (std::size_t k = 0; k < own->size(); ++k) {
-          change = std::max(change, std::abs((*own)[k] - (*before)[k]));
-          answer[k] = of_pulse[k] * (waves ? (*own)[k] / (*before)[k] : (*own)[k]);
-          if (!std::isfinite(std::abs(answer[k]))) {
-            return AdmissionProblem{"finite",
-                                    fmt::format("is not finite at {}, s = {:.3g} + {:.3g}i 1/s",
-                                                at(values), path[k].real(), path[k].imag()),
-                                    "narrow the bounds of its parameters"};
-          }
-        }
-        if (own->empty() || change == 0.0) {
-          continue;
-        }
-        std::vector<double> response(transform.length());
-        transform.inverse(answer, response);
-        const auto lead =
-            sensor ? static_cast<std::size_t>(std::ceil(kSensorLead_s / period_s)) + 1 : 1;
-        double early = 0.0;
-        double largest = 0.0;
-        for (std::size_t n = 0; n < response.size(); ++n) {
-          largest = std::max(largest, std::abs(response[n]));
-          early = n + lead < start ? std::max(early, std::abs(response[n])) : early;
-        }
-        // What comes later than the window wraps round, by so much damped.
-        constexpr double kWrapped = 1e-6;
-        double size = on_axis == nullptr ? 1.0 : 0.0;
-        for (std::size_t k = 0; on_axis != nullptr && k < on_axis->size(); ++k) {
-          size = std::max(size, std::abs((*on_axis)[k]));
-        }
-        if (early > kEarly * largest && early > kWrapped * size) {
-          return AdmissionProblem{"causality",
-                                  fmt::format("answers before it is asked at {}: {:.2g} of the "
-                                              "answer to a pulse comes before the pulse",
-                                              at(values), early / largest),
-                                  "look for poles or advances (exp(+s tau), 1/(1 - s tau)), or "
-                                  "narrow the bounds"};
+      const std::array<Response, 5> responses{
+          {{with.J, without.J, largest(undamped.J)},
+           {with.specimen_J, without.specimen_J, largest(undamped.specimen_J)},
+           {with.gamma, without.gamma, 1.0, true},
+           {with.reflection, without.reflection, largest(undamped.reflection)},
+           {with.factor, without.factor, largest(undamped.factor), false, kSensorLead_s}}};
+      for (const Response& response : responses) {
+        if (auto problem = early(probe, response, values)) {
+          return problem;
         }
       }
     }
     return std::nullopt;
+  }
+
+  [[nodiscard]] static double largest(const Spectrum& spectrum) {
+    double most = 0.0;
+    for (const Complex value : spectrum) {
+      most = std::max(most, std::abs(value));
+    }
+    return most;
+  }
+
+  [[nodiscard]] std::optional<AdmissionProblem> early(PulseProbe& probe, const Response& response,
+                                                      const Values& values) const {
+    constexpr double kEarly = 2e-3;
+    constexpr double kWrapped = 1e-6;  ///< of the response's size
+    Spectrum answer(response.with.size());
+    for (std::size_t k = 0; k < answer.size(); ++k) {
+      answer[k] = probe.pulse()[k] *
+                  (response.waves ? response.with[k] / response.without[k] : response.with[k]);
+      if (!std::isfinite(std::abs(answer[k]))) {
+        const Complex s = probe.path()[k];
+        return AdmissionProblem{"finite",
+                                fmt::format("is not finite at {}, s = {:.3g} + {:.3g}i 1/s",
+                                            at(values), s.real(), s.imag()),
+                                "narrow the bounds of its parameters"};
+      }
+    }
+    if (response.with == response.without) {
+      return std::nullopt;
+    }
+    const PulseProbe::Answer found = probe.answer(answer, response.lead_s);
+    if (found.before_pulse <= kEarly * found.anywhere ||
+        found.before_pulse <= kWrapped * response.size) {
+      return std::nullopt;
+    }
+    return AdmissionProblem{"causality",
+                            fmt::format("answers before it is asked at {}: {:.2g} of the answer to "
+                                        "a pulse comes before the pulse",
+                                        at(values), found.before_pulse / found.anywhere),
+                            "look for poles or advances (exp(+s tau), 1/(1 - s tau)), or narrow "
+                            "the bounds"};
   }
 
   const Effect& effect_;
