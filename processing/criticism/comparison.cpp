@@ -292,7 +292,8 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     const double over = std::max(0.0, tile.energy - tile.noise.mean);
     tile.share = comparison.excess > 0.0 ? over / comparison.excess : 0.0;
     // A place that fails over all shots does so in every shot that shows it at all.
-    tile.significant = tile.significant || (region.significant && tile.log_p < std::log(0.05));
+    tile.significant =
+        tile.significant || (region.significant && tile.log_p < std::log(kFalseDiscovery));
     tile.repeats = tile.significant && region.repeats;
     region.share += tile.share;
   }

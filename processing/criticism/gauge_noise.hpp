@@ -13,6 +13,12 @@ namespace kolsky {
 
 class NoiseSpectrum;
 
+/// How much of what residuals show counts as noise.
+enum class NoiseShown {
+  all,              ///< scatter from shot to shot too, whatever it comes from
+  what_quiet_hides  ///< as much as the quiet parts are too short to show
+};
+
 /// The noise of all gauges at the judged bins: its spectrum and how far gauges share it from the
 /// quiet parts of all shots, times what residuals have shown of it since.
 class GaugeNoise {
@@ -46,7 +52,7 @@ class GaugeNoise {
   /// tell. @param clean  a gauge's records by shot, over the judged window at their own rate
   void add_steps(std::size_t gauge, std::span<const std::vector<double>> clean);
   /// @param power_over_quiet  of a gauge at each bin, as residuals show it; made smooth
-  void learn(std::size_t gauge, const std::vector<double>& power_over_quiet);
+  void learn(std::size_t gauge, const std::vector<double>& power_over_quiet, NoiseShown shown);
 
   /// How near the least white gauge's noise is to white: the geometric over the arithmetic mean of
   /// its power over the judged bins. Where it is 1, all frequencies tell of the noise at each.
@@ -54,6 +60,7 @@ class GaugeNoise {
 
  private:
   [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
+  [[nodiscard]] double most_hidden(std::size_t bin) const;
   void measure(const std::vector<NoiseSpectrum>& spectra, const Eigen::MatrixXd& correlation);
 
   const Campaign& campaign_;

@@ -435,21 +435,26 @@ void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
   }
 }
 
-void WhiteResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {
+void WhiteResiduals::believe_quiet() {
+  noise_.forget();
+  forget_whitener();
+}
+
+void WhiteResiduals::calibrate(const Composition& composition, const std::vector<double>& theta,
+                               NoiseShown shown) {
   // Expectation and maximisation: what the residuals say of each gauge's noise, given the noise of
   // all as known so far. The slowest part halves its error at each step.
   constexpr int kSteps = 6;
   // From below, for too much of it goes slowly.
-  noise_.forget();
-  forget_whitener();
+  believe_quiet();
   for (int step = 0; step < kSteps; ++step) {
     freeze(composition, theta);
-    share_out_noise(evaluate(composition, theta));
+    share_out_noise(evaluate(composition, theta), shown);
   }
   freeze(composition, theta);
 }
 
-void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white) {
+void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white, NoiseShown shown) {
   const std::size_t shots = campaign_.shots.size();
   const std::size_t bins = band_.bins_judged;
   std::vector<Spectrum> sources;
@@ -464,7 +469,7 @@ void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white) {
     for (std::size_t k = 0; k < bins; ++k) {
       power[k] = noise_.scale(j, k) * power_over_known(j, k, noise, sources);
     }
-    noise_.learn(j, power);
+    noise_.learn(j, power, shown);
   }
   forget_whitener();
 }

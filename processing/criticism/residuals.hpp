@@ -54,13 +54,17 @@ class WhiteResiduals : public ShotResiduals {
   /// @return whether any gauge's converter is coarse
   bool know_steps();
 
+  /// Takes the quiet parts at their word about noise again; `freeze` is to follow.
+  void believe_quiet();
+
   /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
   /// of the model. How it is shared out matters as much as how much it is: with a wrong share for
   /// the reference, noise in the source would pull at the parameters. Its power over that measured
   /// before the pulses is taken as s0 + s1/f + s2/f^2 for each gauge. One shot cannot tell its
   /// noise from what a model lacks: its residuals are taken for noise up to four times that power.
-  void calibrate(const Composition& composition, const std::vector<double>& theta);
+  void calibrate(const Composition& composition, const std::vector<double>& theta,
+                 NoiseShown shown = NoiseShown::all);
 
   /// All shots' residuals, shot by shot, of unit variance under the true model.
   [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
@@ -147,7 +151,7 @@ class WhiteResiduals : public ShotResiduals {
                      std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
   void estimate_noise(const Eigen::VectorXd& white);
-  void share_out_noise(const Eigen::VectorXd& white);
+  void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
   void forget_whitener();
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
                                         const std::vector<std::vector<Spectrum>>& noise,

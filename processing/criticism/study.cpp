@@ -53,24 +53,32 @@ Studied Study::refit(const Studied& studied) {
 }
 
 Studied Study::as_it_is(const Model& model) {
-  // Quiet stretches tell all of white noise and little of slow noise.
-  constexpr double kWhite = 0.98;
   Composition composition(model, campaign_);
   ModelFit fit;
   fit.theta = composition.start();
+  fit.converged = true;
+  return beside_quiet({model, std::move(composition), std::move(fit), {}});
+}
+
+Studied Study::beside_quiet(Studied studied) {
+  // Quiet stretches tell all of white noise and little of slow noise.
+  constexpr double kWhite = 0.98;
+  const Composition& composition = studied.composition;
+  ModelFit& fit = studied.fit;
+  residuals_.believe_quiet();
   residuals_.freeze(composition, fit.theta);
   if (campaign_.shots.size() > 1 && residuals_.noise().flatness() < kWhite) {
-    residuals_.calibrate(composition, fit.theta);
+    residuals_.calibrate(composition, fit.theta, NoiseShown::what_quiet_hides);
   }
   if (residuals_.know_steps()) {
     residuals_.freeze(composition, fit.theta);
   }
   fit.residual = residuals_.evaluate(composition, fit.theta);
   fit.chi2 = fit.residual.squaredNorm();
-  fit.converged = true;
-  const Misfit misfit =
-      misfit_of(residuals_, fit.residual, static_cast<double>(fit.residual.size()));
-  return {model, std::move(composition), std::move(fit), misfit};
+  const double freedom = fit.covariance.size() > 0 ? fit.degrees_of_freedom(composition)
+                                                   : static_cast<double>(fit.residual.size());
+  studied.misfit = misfit_of(residuals_, fit.residual, freedom);
+  return studied;
 }
 
 }  // namespace kolsky

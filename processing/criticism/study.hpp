@@ -33,8 +33,13 @@ class Study {
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
-  /// The model as it is, nothing moved.
+  /// The model as it is, nothing moved, its misfit as `beside_quiet` has it.
   [[nodiscard]] Studied as_it_is(const Model& model);
+  /// What was fitted, its misfit beside the noise that the quiet parts show, slow noise corrected
+  /// as far as they are too short for it. A fit counts as noise what does not repeat from shot to
+  /// shot, a pulse that the record cuts among it: by that measure a model that lacks an end's
+  /// reflection fitted as well as one that has it.
+  [[nodiscard]] Studied beside_quiet(Studied studied);
 
   [[nodiscard]] WhiteResiduals& residuals() { return residuals_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }

@@ -33,7 +33,8 @@ Studied fit(const Model& model, const Campaign& campaign, double band_limit_Hz,
     ImpactStudy study(campaign, judges_whole(model), band_limit_Hz, executor);
     return study.settled(study.fit(model));
   }
-  return Study(campaign, band_limit_Hz, executor).fit(model);
+  Study study(campaign, band_limit_Hz, executor);
+  return study.beside_quiet(study.fit(model));
 }
 
 int run(const Settings& settings, Context& context) {
