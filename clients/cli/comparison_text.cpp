@@ -49,6 +49,14 @@ std::string band_text(const ComparedBand& band) {
 
 std::string in_words(const Misfit& misfit) {
   const double floor = misfit.noise_floor_share;
+  if (misfit.scatter_share > floor / 2.0) {
+    return fmt::format(
+        "Of the signal's energy {:.2g} % is noise; the model does not explain {:.2g} % that "
+        "differs "
+        "from shot to shot and {:.2g} % that repeats.",
+        100.0 * (floor - misfit.scatter_share), 100.0 * misfit.scatter_share,
+        100.0 * misfit.repeatable_share);
+  }
   const std::string sizes = fmt::format(
       "Of the signal's energy {:.2g} % is noise and {:.2g} % repeats from shot to shot without the "
       "model explaining it",

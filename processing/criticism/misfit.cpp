@@ -46,6 +46,7 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double
   const double repeated_freedom = 2.0 * static_cast<double>(bins * others);
   const double rest_freedom = std::max(1.0, degrees_of_freedom - repeated_freedom);
   misfit.noise_scale = (chi2 - repeated) / rest_freedom;
+  misfit.scatter_share = std::max(0.0, misfit.noise_scale - 1.0) * misfit.noise_floor_share;
   misfit.noise_floor_share *= misfit.noise_scale;
   misfit.repeatable_share =
       std::max(0.0, repeated - repeated_freedom * misfit.noise_scale) / energy;

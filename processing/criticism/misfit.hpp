@@ -11,7 +11,8 @@ struct Misfit {
   double chi2_reduced = 0.0;
   double degrees_of_freedom = 0.0;
   double repeatable_share = 0.0;   ///< of the signal's energy: misfit that comes back shot by shot
-  double noise_floor_share = 0.0;  ///< of the signal's energy: noise
+  double noise_floor_share = 0.0;  ///< of the signal's energy: what does not come back
+  double scatter_share = 0.0;      ///< of that, what is more than the noise measured
   /// Power of what does not repeat over the noise measured before the pulses; 1 where the noise is
   /// all there is. With one shot, of all residuals.
   double noise_scale = 1.0;

@@ -213,7 +213,9 @@ TEST(Comparison, TakesNoFailureForNoiseThatTheQuietWouldShow) {
     testing::CampaignWishes wishes = wishes_of(15);
     wishes.colour = colour;
     const Compared compared(make(wishes, {"end-reflection=0.05"}).shots);
-    EXPECT_GT(compared.studied->misfit.chi2_reduced, 50.0);
+    const Misfit& misfit = compared.studied->misfit;
+    EXPECT_GT(misfit.chi2_reduced, 50.0);
+    EXPECT_GT(misfit.scatter_share, 0.5 * misfit.noise_floor_share);
     std::size_t late = 0;
     for (const Tile& tile : compared.comparison.tiles) {
       late += tile.significant && tile.window == "after the pulse" ? 1U : 0U;
