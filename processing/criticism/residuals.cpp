@@ -401,12 +401,10 @@ bool WhiteResiduals::know_steps() {
     }
     std::vector<std::vector<double>> clean;
     for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-      const std::vector<double>& record = campaign_.shots[n].strain[j];
+      const std::vector<double> record = signal(n, j);
       const auto judged = static_cast<std::ptrdiff_t>(band_.judged * band_.decimation);
       const auto first = static_cast<std::ptrdiff_t>(band_.edge);
       clean.emplace_back(record.begin() + first, record.begin() + first + judged);
-      std::transform(clean.back().begin(), clean.back().end(), own_noise_[n][j].begin() + first,
-                     clean.back().begin(), std::minus<>());
     }
     noise_.add_steps(j, clean);
     coarse = true;
@@ -415,6 +413,13 @@ bool WhiteResiduals::know_steps() {
     forget_whitener();
   }
   return coarse;
+}
+
+std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) const {
+  std::vector<double> record = campaign_.shots[shot].strain[gauge];
+  std::transform(record.begin(), record.end(), own_noise_[shot][gauge].begin(), record.begin(),
+                 std::minus<>());
+  return record;
 }
 
 void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {

@@ -57,6 +57,9 @@ class WhiteResiduals : public ShotResiduals {
   /// Takes the quiet parts at their word about noise again; `freeze` is to follow.
   void believe_quiet();
 
+  /// A gauge's record less what is known of its noise since `freeze`.
+  [[nodiscard]] std::vector<double> signal(std::size_t shot, std::size_t gauge) const;
+
   /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
   /// of the model. How it is shared out matters as much as how much it is: with a wrong share for

@@ -6,6 +6,7 @@
 #include "processing/criticism/candidates.hpp"
 #include "processing/criticism/distortion.hpp"
 #include "processing/criticism/statistics.hpp"
+#include "processing/criticism/wander.hpp"
 
 namespace kolsky {
 
@@ -21,9 +22,12 @@ struct Extended {
 };
 
 Eigen::MatrixXd unit_columns(Study& study, const Studied& studied) {
+  const Wander wander(study.residuals());
   std::vector<EffectUse> uses{null_use(bent_scale_effect())};
   for (const std::size_t j : study.residuals().others()) {
-    uses.push_back(null_use(distortion_effect(), study.campaign().bench.gauges[j].name));
+    const std::string& gauge = study.campaign().bench.gauges[j].name;
+    uses.push_back(null_use(distortion_effect(), gauge));
+    uses.push_back(null_use(wander, gauge));
   }
   std::vector<Eigen::MatrixXd> list(uses.size());
   study.executor().run(uses.size(), [&](std::size_t i, std::size_t worker) {
@@ -76,14 +80,15 @@ Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns) {
          values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
-/// Power of what differs between the shots in these directions, over its expectation under noise of
+/// Power of what differs between the shots in each direction, over its expectation under noise of
 /// unit variance.
-double between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
-                     std::size_t per_shot, std::size_t count) {
+Eigen::VectorXd between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
+                              std::size_t per_shot, std::size_t count) {
   const auto size = static_cast<Eigen::Index>(per_shot);
   const auto shots = static_cast<Eigen::Index>(count);
-  double q = 0.0;
+  Eigen::VectorXd powers(directions.cols());
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    double q = 0.0;
     double all = 0.0;
     double whole = 0.0;
     for (Eigen::Index n = 0; n < shots; ++n) {
@@ -95,8 +100,18 @@ double between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& r
       q += weight > 0.0 ? pull * pull / weight : 0.0;
     }
     q -= whole > 0.0 ? all * all / whole : 0.0;
+    powers[i] = q / static_cast<double>(shots - 1);
   }
-  return q / static_cast<double>(directions.cols() * (shots - 1));
+  return powers;
+}
+
+/// As how many directions of equal noise these count: a sum of squares of unequal variances v
+/// spreads as one of (sum v)^2 / sum v^2 (Box 1954).
+/// @param powers   estimates of v, each of so many degrees of freedom, which spreads them too
+double equal_directions(const Eigen::VectorXd& powers, double freedom) {
+  const double squares = powers.squaredNorm() / (1.0 + 2.0 / freedom);
+  const auto all = static_cast<double>(powers.size());
+  return squares > 0.0 ? std::min(all, powers.sum() * powers.sum() / squares) : all;
 }
 
 }  // namespace
@@ -115,9 +130,11 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     // Nothing shows that it would come back: noise is known by one short stretch alone.
     return {log_f_tail(found / freedom, freedom, kOneStretch), std::max(0.0, found - freedom)};
   }
-  const double noise = between_shots(directions, extended.residual, per_shot, shots);
-  const double between = freedom * static_cast<double>(shots - 1);
-  return {log_f_tail(found / freedom / noise, freedom, between),
+  const Eigen::VectorXd powers = between_shots(directions, extended.residual, per_shot, shots);
+  const double noise = powers.mean();
+  const auto further = static_cast<double>(shots - 1);
+  const double equal = equal_directions(powers, further);
+  return {log_f_tail(found / freedom / noise, equal, equal * further),
           std::max(0.0, found / noise - freedom)};
 }
 

@@ -10,10 +10,10 @@ struct Unexplained {
   double excess = 0.0;  ///< chi2 beyond what noise leaves
 };
 
-/// Distortions by frequency, amplitude and shot (distortion.hpp), clear of the model's own numbers.
-/// With two shots or more the noise in their directions is taken from what differs between the
-/// shots there, which slow noise raises above its spectrum; of one shot it is known by the quiet
-/// before its pulse alone, which is hardly at all.
+/// Distortions by frequency, amplitude and shot (distortion.hpp) and by time (wander.hpp), clear of
+/// the model's own numbers. With two shots or more the noise in their directions is taken from what
+/// differs between the shots there, which slow noise raises above its spectrum; of one shot it is
+/// known by the quiet before its pulse alone, which is hardly at all.
 [[nodiscard]] Unexplained unexplained(Study& study, const Studied& studied);
 
 }  // namespace kolsky

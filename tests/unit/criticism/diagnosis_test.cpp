@@ -275,6 +275,14 @@ TEST(Diagnosis, CallsUnknownWhatTheLibraryDoesNotHold) {
   EXPECT_TRUE(diagnosis.effects.empty());
 }
 
+/// A clock that wanders within a record is no filter: as an amplifier's bandwidth it was named.
+TEST(Diagnosis, CallsUnknownAClockThatWanders) {
+  const Made made = make(85, {"x-time-base=3e-8"});
+  const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(diagnosis.effects.empty());
+}
+
 /// What an amplifier that rings makes of a record: y'' + (w/q) y' + w^2 y = w^2 x, in small steps.
 void ring(std::vector<double>& record, double frequency_Hz, double period_s) {
   constexpr int kSteps = 50;

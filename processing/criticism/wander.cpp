@@ -1,0 +1,46 @@
+#include "processing/criticism/wander.hpp"
+
+#include <algorithm>
+
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+
+Wander::Wander(const WhiteResiduals& residuals)
+    : Effect({
+          .id = "wander",
+          .stage = Stage::record,
+          .definition = "reading x (1 + a u + b u^2) + d reading/dt (c u + d u^2), u = t / record",
+          .reference = "",
+          .kinds = {BenchKind::bar, BenchKind::shpb},
+          .parameters = {{"gain", "-", 0.0, -1.0, 1.0, 1e-3, {}},
+                         {"gain_square", "-", 0.0, -1.0, 1.0, 1e-3, {}},
+                         {"clock", "s", 0.0, -1e-4, 1e-4, 1e-7, {}},
+                         {"clock_square", "s", 0.0, -1e-4, 1e-4, 1e-7, {}}},
+          .per_gauge = true,
+          .base = true,
+      }),
+      period_s_(residuals.campaign().period_s) {
+  for (std::size_t n = 0; n < residuals.campaign().shots.size(); ++n) {
+    std::vector<std::vector<double>> of_shot;
+    for (std::size_t j = 0; j < residuals.campaign().gauges(); ++j) {
+      of_shot.push_back(residuals.signal(n, j));
+    }
+    signal_.push_back(std::move(of_shot));
+  }
+}
+
+void Wander::apply(Scene& scene, std::span<const double> values, std::size_t gauge) const {
+  const std::vector<double>& signal = signal_[scene.facts->shot][gauge];
+  const std::vector<double>& time_s = scene.facts->time_s;
+  std::vector<double>& addition = scene.record.additions[gauge];
+  addition.resize(signal.size());
+  for (std::size_t n = 1; n + 1 < signal.size(); ++n) {
+    const double u = std::max(0.0, time_s[n]) / time_s.back();
+    const double rate_per_s = (signal[n + 1] - signal[n - 1]) / (2.0 * period_s_);
+    addition[n] +=
+        u * ((values[0] + values[1] * u) * signal[n] + (values[2] + values[3] * u) * rate_per_s);
+  }
+}
+
+}  // namespace kolsky
