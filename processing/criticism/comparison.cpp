@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -57,6 +58,11 @@ std::vector<double> mean_before(const std::vector<ArrivalWindow>& windows) {
   return weights;
 }
 
+bool alike(const std::vector<ArrivalWindow>& a, const std::vector<ArrivalWindow>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& one, const auto& other) { return one.weight == other.weight; });
+}
+
 using Key = std::tuple<std::size_t, std::string, std::size_t>;
 
 /// How much of a place's spectra follows the sources, shot by shot.
@@ -101,11 +107,16 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
     }
     peaks_.push_back(std::move(peaks));
     quiet_.emplace_back();
+    noise_.emplace_back();
     for (const auto& of_gauge : windows_.back()) {
       quiet_.back().push_back(mean_before(of_gauge));
-      for (const ArrivalWindow& window : of_gauge) {
-        static_cast<void>(noise_of(window, quiet_.back().back()));
-      }
+      // Gauges of one station have the same windows.
+      const auto same = std::find_if(windows_.back().begin(), windows_.back().end(),
+                                     [&](const auto& other) { return alike(other, of_gauge); });
+      const auto before = static_cast<std::size_t>(same - windows_.back().begin());
+      noise_.back().push_back(before < noise_.back().size()
+                                  ? noise_.back()[before]
+                                  : noise_in(of_gauge, quiet_.back().back()));
     }
   }
 }
@@ -131,20 +142,19 @@ void Comparer::choose_bands() {
   }
 }
 
-const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window,
-                                                 const std::vector<double>& quiet) {
-  const auto found = noise_.find({window.weight, quiet});
-  if (found != noise_.end()) {
-    return found->second;
-  }
+std::vector<std::vector<TileNoise>> Comparer::noise_in(const std::vector<ArrivalWindow>& windows,
+                                                       const std::vector<double>& quiet) {
   std::vector<BinRange> ranges;
   for (const ComparedBand& band : bands_) {
     ranges.push_back(band.bins);
   }
-  return noise_
-      .emplace(std::pair{window.weight, quiet},
-               tile_noise(transform_, window.weight, quiet, deviations_.bins_held(), ranges))
-      .first->second;
+  const std::size_t held = deviations_.bins_held();
+  const QuietMean mean = quiet.empty() ? QuietMean() : QuietMean(transform_, quiet, held);
+  std::vector<std::vector<TileNoise>> list;
+  for (const ArrivalWindow& window : windows) {
+    list.push_back(tile_noise(transform_, window.weight, mean, held, ranges));
+  }
+  return list;
 }
 
 /// Deviations hold no bin 0: here they are zero on average before the pulse.
@@ -163,11 +173,12 @@ std::vector<Comparer::Windowed> Comparer::windowed(std::vector<double> record, s
   level(record, shot, gauge);
   std::vector<Windowed> list;
   std::vector<double> part(record.size());
-  for (const ArrivalWindow& window : windows_[shot][gauge]) {
+  for (std::size_t w = 0; w < windows_[shot][gauge].size(); ++w) {
+    const ArrivalWindow& window = windows_[shot][gauge][w];
     for (std::size_t n = 0; n < record.size(); ++n) {
       part[n] = record[n] * window.weight[n];
     }
-    Windowed own{&window, Spectrum(transform_.bins())};
+    Windowed own{&window, &noise_[shot][gauge][w], Spectrum(transform_.bins())};
     transform_.forward(part, own.spectrum);
     list.push_back(std::move(own));
   }
@@ -181,7 +192,6 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
   for (const Windowed& own : windows) {
     const auto& weight = own.window->weight;
     const double length = std::inner_product(weight.begin(), weight.end(), weight.begin(), 0.0);
-    const std::vector<TileNoise>& noise = noise_of(*own.window, quiet_[shot][reading.gauge]);
     for (std::size_t b = 0; b < bands_.size(); ++b) {
       Tile tile;
       tile.gauge = reading.gauge;
@@ -196,7 +206,7 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
         tile.energy += power;
         squares += power * scale * scale;
       }
-      tile.noise = noise[b];
+      tile.noise = (*own.noise)[b];
       tile.sigma = std::sqrt(tile.energy / tile.noise.mean);
       // Parseval: a mean square is 2/N times the one-sided sum over the window's length.
       const double mean_square = 2.0 * squares / static_cast<double>(weight.size()) / length;
