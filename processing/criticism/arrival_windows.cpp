@@ -63,7 +63,10 @@ Layout layout_of(const Scene& scene, std::size_t gauge, std::size_t reference, d
 
 /// 0 before the boundary, 1 after; a quarter of a cosine between, so that squares add up to one.
 double risen(double time_s, const Boundary& boundary) {
-  const double place = std::clamp((time_s - boundary.time_s) / boundary.fade_s, -1.0, 1.0);
+  const double place = (time_s - boundary.time_s) / boundary.fade_s;
+  if (place <= -1.0 || place >= 1.0) {
+    return place < 0.0 ? 0.0 : 1.0;
+  }
   return std::sin(std::numbers::pi / 4.0 * (place + 1.0));
 }
 

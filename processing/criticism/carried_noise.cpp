@@ -1,11 +1,13 @@
 #include "processing/criticism/carried_noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "processing/base/wide.hpp"
+#include "processing/waves/each_exp.hpp"
 
 namespace kolsky {
 
@@ -309,38 +311,46 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
   }
   bins_ = bins;
   four_.resize((bins + kTogether - 1) / kTogether);
-  for (FourBins& four : four_) {
-    four.turn.resize(whole_);
-    four.blocks.resize((whole_ + block_ - 1) / block_);
-  }
-  std::vector<Complex> circle(window.judged);
-  for (std::size_t n = 0; n < window.judged; ++n) {
-    circle[n] = std::polar(
-        1.0, -2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(window.judged));
-  }
   for (std::size_t k = 0; k < bins; ++k) {
-    FourBins& four = four_[k / kTogether];
-    const std::size_t lane = k % kTogether;
     const double per_judged = static_cast<double>(k + 1) / static_cast<double>(window.judged);
     const double cycles = per_judged / static_cast<double>(window.decimation);
     double power = spectrum.power(cycles);
     for (const NoiseSpectrum::SlowPart& part : slow) {
       power -= part.power(cycles);
     }
-    four.white[lane] = std::max(power, least_power) / coarse;
-    // Whole steps of the judged window's own circle.
-    const std::size_t step = (k + 1) * stride_ % window.judged;
-    std::size_t place = (window.judged - step * before_ % window.judged) % window.judged;
-    for (std::size_t n = 0; n < whole_; ++n) {
-      four.turn[n].re[lane] = circle[place].real();
-      four.turn[n].im[lane] = circle[place].imag();
-      place += step;
-      place -= place >= window.judged ? window.judged : 0;
-    }
+    four_[k / kTogether].white[k % kTogether] = std::max(power, least_power) / coarse;
   }
-  for (FourBins& four : four_) {
+  put_turns();
+}
+
+void CarriedNoise::put_turns() {
+  // Whole steps of the judged window's own circle.
+  std::vector<Complex> circle(window_.judged);
+  for (std::size_t n = 0; n < circle.size(); ++n) {
+    const double share = static_cast<double>(n) / static_cast<double>(circle.size());
+    circle[n] = {0.0, -2.0 * std::numbers::pi * share};
+  }
+  each_exp(circle);
+  for (std::size_t g = 0; g < four_.size(); ++g) {
+    std::array<std::size_t, kTogether> step{};
+    std::array<std::size_t, kTogether> place{};
+    for (std::size_t lane = 0; lane < kTogether; ++lane) {
+      step[lane] = (g * kTogether + lane + 1) * stride_ % circle.size();
+      place[lane] = (circle.size() - step[lane] * before_ % circle.size()) % circle.size();
+    }
+    FourBins& four = four_[g];
+    four.turn.reserve(whole_);
+    four.blocks.resize((whole_ + block_ - 1) / block_);
     for (std::size_t n = 0; n < whole_; ++n) {
-      four.blocks[n / block_].add(1.0, four.turn[n]);
+      FourNumbers turn;
+      for (std::size_t lane = 0; lane < kTogether; ++lane) {
+        turn.re[lane] = circle[place[lane]].real();
+        turn.im[lane] = circle[place[lane]].imag();
+        place[lane] += step[lane];
+        place[lane] -= place[lane] >= circle.size() ? circle.size() : 0;
+      }
+      four.turn.push_back(turn);
+      four.blocks[n / block_].add(1.0, turn);
     }
   }
 }

@@ -239,8 +239,9 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
   Comparison comparison;
   comparison.misfit = misfit;
   comparison.bands = bands_;
+  // One shot shows nothing that follows its source or not.
   std::vector<Spectrum> sources;
-  for (std::size_t n = 0; n < shots; ++n) {
+  for (std::size_t n = 0; shots > 1 && n < shots; ++n) {
     sources.push_back(residuals_.source_spectrum(n, white));
   }
   std::map<Key, std::vector<Following>> following;
@@ -248,6 +249,9 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     for (std::size_t n = 0; n < shots; ++n) {
       const auto windows = windowed(reading.records[n], n, reading.gauge);
       add_tiles(reading, windows, n, comparison.tiles);
+      if (sources.empty()) {
+        continue;
+      }
       for (const Windowed& own : windows) {
         for (std::size_t b = 0; b < bands_.size(); ++b) {
           auto& bin = following[{reading.gauge, own.window->name, b}];

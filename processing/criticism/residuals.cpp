@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "processing/criticism/carried_noise.hpp"
@@ -650,10 +651,9 @@ std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const doub
   return list;
 }
 
-std::vector<double> WhiteResiduals::judged_record(std::size_t shot, std::size_t gauge) {
-  Workspace& work = *work_.front();
+std::vector<double> WhiteResiduals::judged_part(Workspace& work, const Spectrum& damped) const {
   Spectrum plain;
-  plain_spectrum(work, spectra_[shot][gauge], plain);
+  plain_spectrum(work, damped, plain);
   std::fill(work.judged.begin(), work.judged.end(), 0.0);
   const Complex mean = [&] {
     double sum = 0.0;
@@ -672,13 +672,13 @@ std::vector<double> WhiteResiduals::judged_record(std::size_t shot, std::size_t 
 
 void WhiteResiduals::measure_signal() {
   double sum = 0.0;
-  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-      double energy = 0.0;
-      for (const double value : judged_record(n, j)) {
-        energy += value * value;
-      }
-      sum += energy / noise_.quiet_power(j);
+  for (const std::vector<Spectrum>& of_shot : spectra_) {
+    judged_records_.emplace_back();
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      const auto& record =
+          judged_records_.back().emplace_back(judged_part(*work_.front(), of_shot[j]));
+      sum += std::inner_product(record.begin(), record.end(), record.begin(), 0.0) /
+             noise_.quiet_power(j);
     }
   }
   // Noise of unit power has as many whitened residuals as its band has bins, twice.

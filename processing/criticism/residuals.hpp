@@ -102,7 +102,10 @@ class WhiteResiduals : public ShotResiduals {
   /// deviations there: gauges x others.
   [[nodiscard]] const Eigen::MatrixXcd& spread(std::size_t bin) const { return spread_[bin]; }
   /// The judged window of one gauge's record, filtered and decimated alike.
-  [[nodiscard]] std::vector<double> judged_record(std::size_t shot, std::size_t gauge);
+  [[nodiscard]] const std::vector<double>& judged_record(std::size_t shot,
+                                                         std::size_t gauge) const {
+    return judged_records_[shot][gauge];
+  }
   /// Energy of all records over that of their noise, in the units of whitened residuals.
   [[nodiscard]] double signal_energy() const { return signal_energy_; }
   [[nodiscard]] double judged_period_s() const;
@@ -141,6 +144,7 @@ class WhiteResiduals : public ShotResiduals {
   void whiten_shots(const Composition& composition, const std::vector<double>& theta,
                     std::size_t first, std::size_t end, std::size_t worker, double* out);
   void prepare_spectra();
+  [[nodiscard]] std::vector<double> judged_part(Workspace& work, const Spectrum& damped) const;
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
   void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
@@ -169,6 +173,7 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
   /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
   std::vector<std::vector<std::vector<double>>> own_noise_;
+  std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;
 };

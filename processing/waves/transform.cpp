@@ -136,9 +136,8 @@ struct DampedTransform::State {
       throw std::bad_alloc();
     }
     for (std::size_t n = 0; eta_per_s > 0.0 && n < length; ++n) {
-      const double exponent = eta_per_s * period_s * static_cast<double>(n);
-      damping[n] = std::exp(-exponent);
-      undamping[n] = std::exp(exponent) / static_cast<double>(length);
+      damping[n] = std::exp(-eta_per_s * period_s * static_cast<double>(n));
+      undamping[n] = 1.0 / (damping[n] * static_cast<double>(length));
     }
   }
 };
