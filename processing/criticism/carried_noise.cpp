@@ -81,6 +81,15 @@ KOLSKY_WIDE void add_squares(const FourNumbers* a, std::size_t size, FourNumbers
   for (std::size_t v = 0; v < size; ++v) sum.add_square(a[v]);
 }
 
+KOLSKY_WIDE void put_products(const FourNumbers& a, const FourNumbers* b, std::size_t size,
+                              FourNumbers* out) {
+  for (std::size_t v = 0; v < size; ++v) {
+    FourNumbers product;
+    product.add_product(a, b[v]);
+    out[v] = product;
+  }
+}
+
 KOLSKY_WIDE void add_products(const FourNumbers* a, const FourNumbers* b, std::size_t size,
                               FourNumbers& sum) {
   for (std::size_t v = 0; v < size; ++v) sum.add_product(a[v], b[v]);
@@ -331,26 +340,31 @@ void CarriedNoise::put_turns() {
     circle[n] = {0.0, -2.0 * std::numbers::pi * share};
   }
   each_exp(circle);
-  for (std::size_t g = 0; g < four_.size(); ++g) {
-    std::array<std::size_t, kTogether> step{};
-    std::array<std::size_t, kTogether> place{};
+  const auto turned = [&](std::size_t g, std::size_t strides) {
+    FourNumbers turn;
     for (std::size_t lane = 0; lane < kTogether; ++lane) {
-      step[lane] = (g * kTogether + lane + 1) * stride_ % circle.size();
-      place[lane] = (circle.size() - step[lane] * before_ % circle.size()) % circle.size();
+      const Complex own = circle[(g * kTogether + lane + 1) * stride_ * strides % circle.size()];
+      turn.re[lane] = own.real();
+      turn.im[lane] = own.imag();
     }
+    return turn;
+  };
+  constexpr std::size_t kAtOnce = 32;
+  std::array<FourNumbers, kAtOnce> turns;
+  for (std::size_t g = 0; g < four_.size(); ++g) {
     FourBins& four = four_[g];
-    four.turn.reserve(whole_);
+    for (std::size_t n = 0; n < kAtOnce; ++n) {
+      turns[n] = turned(g, n);
+    }
+    four.turn.resize(whole_);
+    for (std::size_t first = 0; first < whole_; first += kAtOnce) {
+      const FourNumbers begun = turned(g, first + circle.size() - before_ % circle.size());
+      put_products(begun, turns.data(), std::min(kAtOnce, whole_ - first), &four.turn[first]);
+    }
     four.blocks.resize((whole_ + block_ - 1) / block_);
-    for (std::size_t n = 0; n < whole_; ++n) {
-      FourNumbers turn;
-      for (std::size_t lane = 0; lane < kTogether; ++lane) {
-        turn.re[lane] = circle[place[lane]].real();
-        turn.im[lane] = circle[place[lane]].imag();
-        place[lane] += step[lane];
-        place[lane] -= place[lane] >= circle.size() ? circle.size() : 0;
-      }
-      four.turn.push_back(turn);
-      four.blocks[n / block_].add(1.0, turn);
+    for (std::size_t m = 0; m < four.blocks.size(); ++m) {
+      const std::size_t first = m * block_;
+      add_all(&four.turn[first], std::min(block_, whole_ - first), four.blocks[m]);
     }
   }
 }

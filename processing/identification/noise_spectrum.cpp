@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -139,30 +140,31 @@ Eigen::ArrayXd in_fours(const Eigen::ArrayXd& values) {
   return out;
 }
 
-/// Of a sum of parts its inverse, and the data's power over its square.
-/// @param parts  white noise first: 1 at each bin
-KOLSKY_WIDE void put_inverse(const std::vector<Eigen::ArrayXd>& parts,
-                             const std::vector<double>& weights, const Eigen::ArrayXd& power,
-                             Eigen::ArrayXd& inverse, Eigen::ArrayXd& excess) {
+KOLSKY_WIDE void put_inverse_of_sum(const std::vector<Eigen::ArrayXd>& parts,
+                                    const std::vector<double>& weights, Eigen::ArrayXd& inverse) {
   auto* const inverses = reinterpret_cast<Four*>(inverse.data());
-  auto* const excesses = reinterpret_cast<Four*>(excess.data());
-  for (Eigen::Index q = 0; q < power.size() / 4; ++q) {
-    const Four one = fours(parts.front())[q];
-    Four sum = 1.0 - one;  // nothing is divided by 0 beyond the last bin
+  for (Eigen::Index q = 0; q < inverse.size() / 4; ++q) {
+    // Beyond the last bin all parts are 0: what they are divided by must not be.
+    Four sum = Four{} + std::numeric_limits<double>::min();
     for (std::size_t part = 0; part < parts.size(); ++part) {
       sum += weights[part] * fours(parts[part])[q];
     }
-    inverses[q] = one / sum;
-    excesses[q] = inverses[q] * inverses[q] * fours(power)[q];
+    inverses[q] = 1.0 / sum;
   }
 }
 
-KOLSKY_WIDE double product(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
-  Four sum{};
-  for (Eigen::Index q = 0; q < a.size() / 4; ++q) {
-    sum += fours(a)[q] * fours(b)[q];
+/// What data of this power ask of a part whose weight should grow or shrink, over what it gives.
+/// @param inverse  of the sum of all parts
+KOLSKY_WIDE double asked_over_given(const Eigen::ArrayXd& part, const Eigen::ArrayXd& inverse,
+                                    const Eigen::ArrayXd& power) {
+  Four asked{};
+  Four given{};
+  for (Eigen::Index q = 0; q < part.size() / 4; ++q) {
+    const Four own = fours(part)[q] * fours(inverse)[q];
+    given += own;
+    asked += own * fours(inverse)[q] * fours(power)[q];
   }
-  return sum[0] + sum[1] + sum[2] + sum[3];
+  return (asked[0] + asked[1] + asked[2] + asked[3]) / (given[0] + given[1] + given[2] + given[3]);
 }
 
 }  // namespace
@@ -209,13 +211,12 @@ class NoiseSpectrum::Fit {
   /// has not been seen to either (Fevotte and Idier 2011).
   void refine() {
     Eigen::ArrayXd inverse(power_.size());
-    Eigen::ArrayXd excess(power_.size());
     double moved = 1.0;
     for (int round = 0; round < kMostRounds && moved > kSettled; ++round) {
-      put_inverse(parts_, weights_, power_, inverse, excess);
+      put_inverse_of_sum(parts_, weights_, inverse);
       moved = 0.0;
       for (std::size_t part = 0; part < parts_.size(); ++part) {
-        const double factor = product(parts_[part], excess) / product(parts_[part], inverse);
+        const double factor = asked_over_given(parts_[part], inverse, power_);
         weights_[part] *= factor;
         moved = std::max(moved, std::abs(factor - 1.0));
       }
