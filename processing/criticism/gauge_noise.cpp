@@ -136,11 +136,14 @@ void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
 }
 
 Eigen::MatrixXd GaugeNoise::covariance(std::size_t bin) const {
-  Eigen::VectorXd amplitude(static_cast<Eigen::Index>(scale_.size()));
-  for (std::size_t j = 0; j < scale_.size(); ++j) {
-    amplitude[static_cast<Eigen::Index>(j)] = std::sqrt(scale_[j][bin]);
+  const auto gauges = static_cast<Eigen::Index>(scale_.size());
+  Eigen::MatrixXd all(gauges, gauges);
+  for (Eigen::Index a = 0; a < gauges; ++a) {
+    for (Eigen::Index b = 0; b < gauges; ++b) {
+      all(a, b) = covariance(bin, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    }
   }
-  return amplitude.asDiagonal() * quiet_[bin] * amplitude.asDiagonal();
+  return all;
 }
 
 double GaugeNoise::power(std::size_t gauge, std::size_t bin) const {

@@ -135,8 +135,8 @@ class WhiteResiduals : public ShotResiduals {
   void know_noise(Workspace& work, const Composition& composition,
                   const std::vector<AppliedEffect>& effects) const;
   void carry_noise(Workspace& work, const Ratios& ratios) const;
-  [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
-                                          Eigen::MatrixXcd& cross) const;
+  void put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
+                    Eigen::MatrixXcd& whitener) const;
   void find_residuals(Workspace& work, const Composition& composition,
                       const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
