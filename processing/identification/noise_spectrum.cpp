@@ -300,6 +300,9 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
     for (double time = 1.0; time < 4.0 * static_cast<double>(data.samples); time *= 2.0) {
       look(time);
     }
+    if (highest < likelihood + kWorthAPart / 2.0) {
+      break;  // what gains so little at octaves has not been seen to do between them
+    }
     for (const double factor : {std::numbers::sqrt2, std::sqrt(std::numbers::sqrt2)}) {
       const double centre = likely;
       look(centre * factor);
