@@ -35,23 +35,23 @@ std::size_t reference_of(const Bench& bench) {
 
 /// A record's values, each once, in order; none where they are more than so many.
 std::vector<double> values_of(const std::vector<double>& record, std::size_t most) {
-  const auto bits = static_cast<int>(std::bit_width(4 * most + 1));
-  const std::size_t places = std::size_t{1} << bits;
-  std::vector<std::optional<double>> table(places);
+  // By its bits a value has a place in a table, or the next that is free: half of them stay so.
+  const auto bits = static_cast<int>(std::bit_width(2 * most + 1));
+  std::vector<std::uint32_t> known(std::size_t{1} << bits);  // 1 + the index of a value, or 0
   std::vector<double> values;
   for (const double value : record) {
     const double signless_zero = value + 0.0;
     std::size_t place =
         (std::bit_cast<std::uint64_t>(signless_zero) * 0x9e3779b97f4a7c15U) >> (64 - bits);
-    while (table[place] && *table[place] != value) {
-      place = (place + 1) % places;
+    while (known[place] != 0 && values[known[place] - 1] != value) {
+      place = (place + 1) % known.size();
     }
-    if (!table[place]) {
+    if (known[place] == 0) {
       if (values.size() == most) {
         return {};
       }
-      table[place] = value;
       values.push_back(value);
+      known[place] = static_cast<std::uint32_t>(values.size());
     }
   }
   std::sort(values.begin(), values.end());

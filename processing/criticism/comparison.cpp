@@ -111,12 +111,13 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
     for (const auto& of_gauge : windows_.back()) {
       quiet_.back().push_back(mean_before(of_gauge));
       // Gauges of one station have the same windows.
-      const auto same = std::find_if(windows_.back().begin(), windows_.back().end(),
+      auto& noise = noise_.back();
+      const auto end = windows_.back().begin() + static_cast<std::ptrdiff_t>(noise.size());
+      const auto same = std::find_if(windows_.back().begin(), end,
                                      [&](const auto& other) { return alike(other, of_gauge); });
-      const auto before = static_cast<std::size_t>(same - windows_.back().begin());
-      noise_.back().push_back(before < noise_.back().size()
-                                  ? noise_.back()[before]
-                                  : noise_in(of_gauge, quiet_.back().back()));
+      noise.push_back(same == end
+                          ? noise_in(of_gauge, quiet_.back().back())
+                          : noise[static_cast<std::size_t>(same - windows_.back().begin())]);
     }
   }
 }

@@ -119,9 +119,6 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
   for (std::size_t k = 1; k <= band_.bins_judged; ++k) {
     plain_path_.push_back(work.plain.s(k));
   }
-  for (const CampaignShot& shot : campaign.shots) {
-    own_noise_.emplace_back(campaign.gauges(), std::vector<double>(shot.strain.front().size()));
-  }
   prepare_spectra();
   measure_signal();
 }
@@ -203,8 +200,9 @@ void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEff
       // What was bent follows from the reading without its noise: bent straight with the signal,
       // noise would shrink under every b > 0, and any record would ask for some.
       std::vector<double> read = work.shaped;
-      for (std::size_t n = 0; n < read.size(); ++n) {
-        read[n] -= own_noise_[of_shot][j][n];
+      put_own_noise(work, of_shot, j);
+      for (std::size_t n = 0; n < work.fine_record.size(); ++n) {
+        read[band_.edge + n] -= work.fine_record[n];
       }
       std::vector<double> straight = read;
       record.straighten(j, straight);
@@ -398,18 +396,22 @@ void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
   work.on_noise = effects;
 }
 
-void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
+Eigen::VectorXd WhiteResiduals::freeze(const Composition& composition,
+                                       const std::vector<double>& theta) {
   Workspace& work = *work_.front();
   know_noise(work, composition, Effects(composition, theta, 0).on_waves);
+  Eigen::VectorXd white = evaluate(composition, theta);
   spread_.resize(band_.bins_judged);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
     spread_[k].noalias() = 0.5 * work.cross[k].lazyProduct(work.whitener[k].adjoint());
   }
-  estimate_noise(evaluate(composition, theta));
+  frozen_ = white;
+  return white;
 }
 
 bool WhiteResiduals::know_steps() {
+  Workspace& work = *work_.front();
   bool coarse = false;
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     if (!noise_.is_coarse(j)) {
@@ -421,7 +423,8 @@ bool WhiteResiduals::know_steps() {
       const auto judged = static_cast<std::ptrdiff_t>(band_.judged * band_.decimation);
       const auto first = static_cast<std::ptrdiff_t>(band_.edge);
       clean.emplace_back(record.begin() + first, record.begin() + first + judged);
-      std::transform(clean.back().begin(), clean.back().end(), own_noise_[n][j].begin() + first,
+      put_own_noise(work, n, j);
+      std::transform(clean.back().begin(), clean.back().end(), work.fine_record.begin(),
                      clean.back().begin(), std::minus<>());
     }
     noise_.add_steps(j, clean);
@@ -433,22 +436,21 @@ bool WhiteResiduals::know_steps() {
   return coarse;
 }
 
-void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
-  Workspace& work = *work_.front();
-  const std::size_t d = band_.decimation;
-  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-    const auto spectra =
-        deviation_spectra(std::span<const double>(white.data() + n * per_shot(), per_shot()));
-    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-      std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);
-      for (std::size_t k = 0; k <= band_.bins_judged; ++k) {
-        work.fine_spectrum[k] = spectra[j][k] * static_cast<double>(d);
-      }
-      work.fine.inverse(work.fine_spectrum, work.fine_record);
-      std::copy(work.fine_record.begin(), work.fine_record.end(),
-                own_noise_[n][j].begin() + static_cast<std::ptrdiff_t>(band_.edge));
+/// A gauge's noise over the judged window at the records' rate, as much of it as residuals show.
+void WhiteResiduals::put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const {
+  std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  for (std::size_t k = 0; k < band_.bins_judged && frozen_.size() > 0; ++k) {
+    Complex noise = 0.0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto at =
+          static_cast<Eigen::Index>(shot * per_shot() + index(k, static_cast<std::size_t>(i)));
+      noise +=
+          spread_[k](static_cast<Eigen::Index>(gauge), i) * Complex(frozen_[at], frozen_[at + 1]);
     }
+    work.fine_spectrum[k + 1] = noise * static_cast<double>(band_.decimation);
   }
+  work.fine.inverse(work.fine_spectrum, work.fine_record);
 }
 
 void WhiteResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {

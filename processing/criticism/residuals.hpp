@@ -47,7 +47,8 @@ class WhiteResiduals : public ShotResiduals {
 
   /// Takes from this composition how residuals are shared out among the gauges, and what they say
   /// of each gauge's noise.
-  void freeze(const Composition& composition, const std::vector<double>& theta);
+  /// @return the residuals there
+  Eigen::VectorXd freeze(const Composition& composition, const std::vector<double>& theta);
 
   /// Adds to what is known of each gauge's noise what a coarse converter's steps leave of records
   /// like those foretold when `freeze` was called.
@@ -150,7 +151,7 @@ class WhiteResiduals : public ShotResiduals {
   void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
                      std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
-  void estimate_noise(const Eigen::VectorXd& white);
+  void put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const;
   void share_out_noise(const Eigen::VectorXd& white);
   void forget_whitener();
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
@@ -171,8 +172,7 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
   ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
   std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
-  /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
-  std::vector<std::vector<std::vector<double>>> own_noise_;
+  Eigen::VectorXd frozen_;                ///< whitened residuals as frozen; none before
   std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;
