@@ -340,26 +340,35 @@ void CarriedNoise::put_turns() {
     circle[n] = {0.0, -2.0 * std::numbers::pi * share};
   }
   each_exp(circle);
-  const auto turned = [&](std::size_t g, std::size_t strides) {
-    FourNumbers turn;
+  /// Four bins' turns, the next always so many strides after the one before.
+  const auto each_turn = [&](std::size_t g, std::size_t from, std::size_t apart) {
+    std::array<std::size_t, kTogether> place{};
+    std::array<std::size_t, kTogether> step{};
     for (std::size_t lane = 0; lane < kTogether; ++lane) {
-      const Complex own = circle[(g * kTogether + lane + 1) * stride_ * strides % circle.size()];
-      turn.re[lane] = own.real();
-      turn.im[lane] = own.imag();
+      const std::size_t stride = (g * kTogether + lane + 1) * stride_;
+      place[lane] = stride * from % circle.size();
+      step[lane] = stride * apart % circle.size();
     }
-    return turn;
+    return [place, step, &circle]() mutable {
+      FourNumbers turn;
+      for (std::size_t lane = 0; lane < kTogether; ++lane) {
+        turn.re[lane] = circle[place[lane]].real();
+        turn.im[lane] = circle[place[lane]].imag();
+        place[lane] += step[lane];
+        place[lane] -= place[lane] >= circle.size() ? circle.size() : 0;
+      }
+      return turn;
+    };
   };
   constexpr std::size_t kAtOnce = 32;
   std::array<FourNumbers, kAtOnce> turns;
   for (std::size_t g = 0; g < four_.size(); ++g) {
     FourBins& four = four_[g];
-    for (std::size_t n = 0; n < kAtOnce; ++n) {
-      turns[n] = turned(g, n);
-    }
+    std::generate(turns.begin(), turns.end(), each_turn(g, 0, 1));
+    auto begun = each_turn(g, circle.size() - before_ % circle.size(), kAtOnce);
     four.turn.resize(whole_);
     for (std::size_t first = 0; first < whole_; first += kAtOnce) {
-      const FourNumbers begun = turned(g, first + circle.size() - before_ % circle.size());
-      put_products(begun, turns.data(), std::min(kAtOnce, whole_ - first), &four.turn[first]);
+      put_products(begun(), turns.data(), std::min(kAtOnce, whole_ - first), &four.turn[first]);
     }
     four.blocks.resize((whole_ + block_ - 1) / block_);
     for (std::size_t m = 0; m < four.blocks.size(); ++m) {

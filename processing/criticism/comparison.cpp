@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "processing/criticism/statistics.hpp"
@@ -39,6 +38,10 @@ void mark_significant(std::vector<Place>& places) {
   for (Place& place : places) {
     place.significant = place.log_p <= limit;
   }
+}
+
+Eigen::Map<const Eigen::VectorXd> as_vector(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
 /// Weights of the mean before the pulse.
@@ -99,11 +102,7 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
     windows_.push_back(arrival_windows(residuals, composition, theta, n));
     std::vector<double> peaks;
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-      double peak = 0.0;
-      for (const double value : residuals.judged_record(n, j)) {
-        peak = std::max(peak, std::abs(value));
-      }
-      peaks.push_back(peak);
+      peaks.push_back(as_vector(residuals.judged_record(n, j)).lpNorm<Eigen::Infinity>());
     }
     peaks_.push_back(std::move(peaks));
     quiet_.emplace_back();
@@ -162,7 +161,7 @@ std::vector<std::vector<TileNoise>> Comparer::noise_in(const std::vector<Arrival
 void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const {
   const std::vector<double>& quiet = quiet_[shot][gauge];
   if (!quiet.empty()) {
-    const double mean = std::inner_product(record.begin(), record.end(), quiet.begin(), 0.0);
+    const double mean = as_vector(record).dot(as_vector(quiet));
     for (double& value : record) {
       value -= mean;
     }
@@ -192,7 +191,7 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
   const double peak = peaks_[shot][reading.gauge];
   for (const Windowed& own : windows) {
     const auto& weight = own.window->weight;
-    const double length = std::inner_product(weight.begin(), weight.end(), weight.begin(), 0.0);
+    const double length = as_vector(weight).squaredNorm();
     for (std::size_t b = 0; b < bands_.size(); ++b) {
       Tile tile;
       tile.gauge = reading.gauge;
@@ -275,10 +274,13 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     region.band = tile.band;
     region.energy += tile.energy;
     region.noise += tile.noise;
+    region.log_p = tile.log_p;
     comparison.excess += std::max(0.0, tile.energy - tile.noise.mean);
   }
   for (auto& [key, region] : regions) {
-    region.log_p = region.noise.log_tail(region.energy);
+    if (shots > 1) {
+      region.log_p = region.noise.log_tail(region.energy);
+    }
     double followed = 0.0;
     double total = 0.0;
     for (const Following& bin : following[key]) {

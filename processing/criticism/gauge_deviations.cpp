@@ -92,16 +92,18 @@ std::size_t GaugeDeviations::judged_bin(std::size_t fine) const {
 GaugeDeviations::Estimate GaugeDeviations::estimate(const std::vector<bool>& left_out) const {
   const auto gauges = static_cast<Eigen::Index>(left_out.size());
   Estimate out{Eigen::MatrixXcd(gauges, waves_.cols()), Eigen::MatrixXd(gauges, waves_.cols())};
-  Eigen::MatrixXd noise;
-  Eigen::MatrixXd inverse;
+  Eigen::MatrixXd noise(gauges, gauges);
+  Eigen::MatrixXd weighted(gauges, gauges);
+  Eigen::MatrixXd inverse(gauges, gauges);
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors(gauges);
   for (std::size_t f = 0; f < bins_; ++f) {
     if (f == 0 || judged_bin(f) != judged_bin(f - 1)) {
-      noise = residuals_.noise().covariance(judged_bin(f));
-      Eigen::MatrixXd weighted = noise;
+      residuals_.noise().put_covariance(judged_bin(f), noise);
+      weighted = noise;
       for (Eigen::Index j = 0; j < gauges; ++j) {
         weighted(j, j) *= left_out[static_cast<std::size_t>(j)] ? kLeftOut : 1.0;
       }
-      inverse = weighted.inverse();
+      inverse = factors.compute(weighted).inverse();
     }
     const auto wave = waves_.col(static_cast<Eigen::Index>(f));
     auto weight = out.weight.col(static_cast<Eigen::Index>(f));

@@ -36,8 +36,11 @@ std::vector<NoiseSpectrum> quiet_spectra(const Campaign& campaign) {
 double quiet_product(const Campaign& campaign, std::size_t a, std::size_t b, std::size_t later) {
   double sum = 0.0;
   for (const CampaignShot& shot : campaign.shots) {
-    for (std::size_t n = 0; n + later < shot.quiet_samples; ++n) {
-      sum += shot.strain[a][n] * shot.strain[b][n + later];
+    if (later < shot.quiet_samples) {
+      const auto left = static_cast<Eigen::Index>(shot.quiet_samples - later);
+      const Eigen::Map<const Eigen::VectorXd> first(shot.strain[a].data(), left);
+      const Eigen::Map<const Eigen::VectorXd> second(shot.strain[b].data() + later, left);
+      sum += first.dot(second);
     }
   }
   return sum;
@@ -141,15 +144,14 @@ void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
   }
 }
 
-Eigen::MatrixXd GaugeNoise::covariance(std::size_t bin) const {
+void GaugeNoise::put_covariance(std::size_t bin, Eigen::MatrixXd& all) const {
   const auto gauges = static_cast<Eigen::Index>(scale_.size());
-  Eigen::MatrixXd all(gauges, gauges);
+  all.resize(gauges, gauges);
   for (Eigen::Index a = 0; a < gauges; ++a) {
     for (Eigen::Index b = 0; b < gauges; ++b) {
       all(a, b) = covariance(bin, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
     }
   }
-  return all;
 }
 
 double GaugeNoise::power(std::size_t gauge, std::size_t bin) const {

@@ -24,7 +24,7 @@ class GaugeNoise {
   GaugeNoise& operator=(const GaugeNoise&) = delete;
 
   /// Covariance of the gauges at a bin, in power of the judged window's transform.
-  [[nodiscard]] Eigen::MatrixXd covariance(std::size_t bin) const;
+  void put_covariance(std::size_t bin, Eigen::MatrixXd& all) const;
   /// That of two gauges.
   [[nodiscard]] double covariance(std::size_t bin, std::size_t a, std::size_t b) const {
     return std::sqrt(scale_[a][bin] * scale_[b][bin]) *

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 
 #include "processing/criticism/carried_noise.hpp"
@@ -695,8 +694,9 @@ void WhiteResiduals::measure_signal() {
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
       const auto& record =
           judged_records_.back().emplace_back(judged_part(*work_.front(), of_shot[j]));
-      sum += std::inner_product(record.begin(), record.end(), record.begin(), 0.0) /
-             noise_.quiet_power(j);
+      const Eigen::Map<const Eigen::VectorXd> values(record.data(),
+                                                     static_cast<Eigen::Index>(record.size()));
+      sum += values.squaredNorm() / noise_.quiet_power(j);
     }
   }
   // Noise of unit power has as many whitened residuals as its band has bins, twice.

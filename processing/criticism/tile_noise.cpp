@@ -7,7 +7,6 @@
 
 #include "processing/base/wide.hpp"
 #include "processing/criticism/statistics.hpp"
-#include "processing/identification/wide_products.hpp"
 
 namespace kolsky {
 
@@ -20,28 +19,44 @@ Complex times(Complex a, Complex b) {
 
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-/// Sum of conj(a) b. Four terms go together, whatever the machine: on every one to the same bits.
-KOLSKY_WIDE Complex product(const double* a_re, const double* a_im, const double* b_re,
-                            const double* b_im, std::size_t size) {
+/// Four terms of a sum of conj(a) b at a time.
+struct FourTerms {
   Four re{};
   Four im{};
-  std::size_t k = 0;
-  for (; k + 4 <= size; k += 4) {
-    const Four a = *reinterpret_cast<const Four*>(a_re + k);
-    const Four ai = *reinterpret_cast<const Four*>(a_im + k);
-    const Four b = *reinterpret_cast<const Four*>(b_re + k);
-    const Four bi = *reinterpret_cast<const Four*>(b_im + k);
+
+  [[gnu::always_inline]] void add(const double* a_re, const double* a_im, const double* b_re,
+                                  const double* b_im) {
+    const Four a = *reinterpret_cast<const Four*>(a_re);
+    const Four ai = *reinterpret_cast<const Four*>(a_im);
+    const Four b = *reinterpret_cast<const Four*>(b_re);
+    const Four bi = *reinterpret_cast<const Four*>(b_im);
     re += a * b + ai * bi;
     im += a * bi - ai * b;
   }
+};
+
+/// Sum of conj(a) b, in one order whatever the machine: on every one to the same bits. Two sums
+/// side by side, or each term would wait for the one before.
+KOLSKY_WIDE Complex product(const double* a_re, const double* a_im, const double* b_re,
+                            const double* b_im, std::size_t size) {
+  FourTerms even;
+  FourTerms odd;
+  std::size_t k = 0;
+  for (; k + 8 <= size; k += 8) {
+    even.add(a_re + k, a_im + k, b_re + k, b_im + k);
+    odd.add(a_re + k + 4, a_im + k + 4, b_re + k + 4, b_im + k + 4);
+  }
+  Four re = even.re + odd.re;
+  Four im = even.im + odd.im;
   for (; k < size; ++k) {
-    re[0] += a_re[k] * b_re[k] + a_im[k] * b_im[k];
-    im[0] += a_re[k] * b_im[k] - a_im[k] * b_re[k];
+    re[k % 4] += a_re[k] * b_re[k] + a_im[k] * b_im[k];
+    im[k % 4] += a_re[k] * b_im[k] - a_im[k] * b_re[k];
   }
   return {re[0] + re[1] + re[2] + re[3], im[0] + im[1] + im[2] + im[3]};
 }
 
-/// A real record's transform at whole frequencies, so far to both sides.
+/// A real record's transform at whole frequencies, so far to both sides: less than twice its
+/// length.
 class Lines {
  public:
   Lines(DampedTransform& transform, std::span<const double> record, std::size_t reach)
@@ -49,7 +64,7 @@ class Lines {
     std::vector<Complex> spectrum(transform.bins());
     transform.forward(record, spectrum);
     for (std::size_t k = 0; k <= reach; ++k) {
-      const std::size_t bin = k % record.size();
+      const std::size_t bin = k < record.size() ? k : k - record.size();
       const bool mirrored = bin >= spectrum.size();
       const Complex line = mirrored ? std::conj(spectrum[record.size() - bin]) : spectrum[bin];
       re_[reach + k] = re_[reach - k] = line.real();
@@ -115,38 +130,48 @@ class SpectralMoments {
     return out;
   }
 
-  /// Covariance of U's real parts over a range of bins, then its imaginary parts.
-  [[nodiscard]] Eigen::MatrixXd covariance(const BinRange& range) const {
+  /// Covariance over a range of bins of root U, real parts first and then the imaginary ones, with
+  /// zeros up to a multiple of four.
+  [[nodiscard]] Eigen::MatrixXd covariance(const BinRange& range,
+                                           const Eigen::VectorXd& root) const {
     const auto first = static_cast<std::ptrdiff_t>(range.first);
-    const auto bins = static_cast<Eigen::Index>(range.end - range.first);
-    Eigen::MatrixXcd alikes(bins, bins);
-    Eigen::MatrixXcd crossed(bins, bins);
-    for (Eigen::Index g = 0; g < bins; ++g) {
-      for (Eigen::Index f = 0; f <= g; ++f) {
-        alikes(f, g) = f > 0 ? next_alike(alikes(f - 1, g - 1), first + f, first + g)
-                             : alike(first + f, first + g);
-      }
-      for (Eigen::Index f = bins; f-- > 0;) {
-        crossed(f, g) = g > 0 && f + 1 < bins
-                            ? before_crossed(crossed(f + 1, g - 1), first + f, first + g)
-                            : crossing(first + f, first + g);
-      }
-    }
-    Eigen::MatrixXd out(2 * bins, 2 * bins);
-    for (Eigen::Index g = 0; g < bins; ++g) {
-      for (Eigen::Index f = 0; f <= g; ++f) {
-        const Complex w_f = w_.at(first + f);
-        const Complex w_g = w_.at(first + g);
-        // Halves of E U(f) U(g)* and of E U(f) U(g).
-        const Complex proper = less_mean(alikes(f, g), first + f, first + g);
-        const Complex other = crossed(f, g) + crossed(g, f) - times(shared_at(first + f), w_g) -
-                              times(w_f, shared_at(first + g)) + 2.0 * quiet_ * times(w_f, w_g);
-        out(f, g) = out(g, f) = (proper + other).real();
-        out(bins + f, bins + g) = out(bins + g, bins + f) = (proper - other).real();
-        out(f, bins + g) = out(bins + g, f) = (other - proper).imag();
-        out(g, bins + f) = out(bins + f, g) = (other + proper).imag();
+    const Eigen::Index bins = root.size();
+    const Eigen::Index size = (2 * bins + 3) / 4 * 4;
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
+    const auto real = [&](Eigen::Index f) { return f; };
+    const auto imaginary = [&](Eigen::Index f) { return bins + f; };
+    // E U(f) U(g)*, as far apart in turn.
+    for (Eigen::Index apart = 0; apart < bins; ++apart) {
+      Complex sum = 0.0;
+      for (Eigen::Index f = 0; f + apart < bins; ++f) {
+        const Eigen::Index g = f + apart;
+        sum = f > 0 ? next_alike(sum, first + f, first + g) : alike(first + f, first + g);
+        const Complex half = root[f] * root[g] * less_mean(sum, first + f, first + g);
+        out(real(f), real(g)) = out(imaginary(f), imaginary(g)) = half.real();
+        out(real(f), imaginary(g)) = -half.imag();
+        out(real(g), imaginary(f)) = half.imag();
       }
     }
+    // E U(f) U(g), from where they are nearest to where they are farthest apart.
+    for (Eigen::Index both = 0; both <= 2 * (bins - 1); ++both) {
+      Eigen::Index f = both / 2;
+      Eigen::Index g = both - f;
+      Complex one = crossing(first + f, first + g);
+      Complex other = f == g ? one : outwards(one, first + f, first + g);
+      for (; f >= 0 && g < bins; --f, ++g) {
+        const Complex half =
+            root[f] * root[g] * (one + other - crossed_with_mean(first + f, first + g));
+        out(real(f), real(g)) += half.real();
+        out(imaginary(f), imaginary(g)) -= half.real();
+        out(real(f), imaginary(g)) += half.imag();
+        if (f != g) {
+          out(real(g), imaginary(f)) += half.imag();
+        }
+        other = outwards(other, first + g, first + f);
+        one = inwards(one, first + f - 1, first + g + 1);
+      }
+    }
+    out.triangularView<Eigen::StrictlyLower>() = out.transpose();
     return out;
   }
 
@@ -176,8 +201,16 @@ class SpectralMoments {
     return w_.product_from(1 - f, 1 + g, static_cast<std::size_t>(judged_));
   }
   /// Of (f, g), from that of (f + 1, g - 1).
-  [[nodiscard]] Complex before_crossed(Complex after, std::ptrdiff_t f, std::ptrdiff_t g) const {
+  [[nodiscard]] Complex inwards(Complex after, std::ptrdiff_t f, std::ptrdiff_t g) const {
     return after - times(w_.at(f), w_.at(g)) + times(w_.at(f - judged_), w_.at(g + judged_));
+  }
+  /// Of (f + 1, g - 1), from that of (f, g).
+  [[nodiscard]] Complex outwards(Complex before, std::ptrdiff_t f, std::ptrdiff_t g) const {
+    return before + times(w_.at(f), w_.at(g)) - times(w_.at(f - judged_), w_.at(g + judged_));
+  }
+  [[nodiscard]] Complex crossed_with_mean(std::ptrdiff_t f, std::ptrdiff_t g) const {
+    return times(shared_at(f), w_.at(g)) + times(w_.at(f), shared_at(g)) -
+           2.0 * quiet_ * times(w_.at(f), w_.at(g));
   }
 
   std::ptrdiff_t judged_;
@@ -189,14 +222,32 @@ class SpectralMoments {
 /// Operations that a tile's exact moments may cost.
 constexpr std::size_t kMostOperations = 1'000'000;
 
-/// @param root  of each bin's share in the energy
-TileNoise exact(Eigen::MatrixXd covariance, const Eigen::VectorXd& root) {
-  const Eigen::VectorXd twice = root.replicate(2, 1);
-  covariance = (twice.asDiagonal() * covariance * twice.asDiagonal()).eval();
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
-  add_square(covariance, square);
-  const Eigen::MatrixXd lower = square.cwiseProduct(covariance).triangularView<Eigen::Lower>();
-  return {covariance.trace(), covariance.squaredNorm(), 2.0 * lower.sum() - lower.trace()};
+/// Of a symmetric matrix of whole fours of rows.
+KOLSKY_WIDE double trace_of_cube(const Eigen::MatrixXd& matrix) {
+  const auto column = [&](Eigen::Index k) {
+    return reinterpret_cast<const Four*>(matrix.data() + k * matrix.rows());
+  };
+  Four trace{};
+  for (Eigen::Index j = 0; j < matrix.cols(); j += 4) {
+    for (Eigen::Index q = j / 4; q < matrix.rows() / 4; ++q) {
+      Four square0{}, square1{}, square2{}, square3{};  // of four columns
+      for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+        const double* const others = &matrix(j, k);
+        square0 += column(k)[q] * others[0];
+        square1 += column(k)[q] * others[1];
+        square2 += column(k)[q] * others[2];
+        square3 += column(k)[q] * others[3];
+      }
+      const double times = 4 * q == j ? 1.0 : 2.0;  // above the diagonal too
+      trace += times * (square0 * column(j)[q] + square1 * column(j + 1)[q] +
+                        square2 * column(j + 2)[q] + square3 * column(j + 3)[q]);
+    }
+  }
+  return trace[0] + trace[1] + trace[2] + trace[3];
+}
+
+TileNoise exact(const Eigen::MatrixXd& covariance) {
+  return {covariance.trace(), covariance.squaredNorm(), trace_of_cube(covariance)};
 }
 
 /// As if the window's spectrum were narrow against the judged band.
@@ -214,11 +265,13 @@ TileNoise nearly(double mean, const Lines& squared, const BinRange& range,
   }
   const Eigen::VectorXd share = root.array().square();
   for (std::ptrdiff_t f = 0; f < bins; ++f) {
-    for (std::ptrdiff_t g = 0; g < bins; ++g) {
-      noise.second += 2.0 * share[f] * share[g] *
-                      (apart[static_cast<std::size_t>(std::abs(f - g))] +
-                       together[static_cast<std::size_t>(f + g)]);
+    double before = 0.0;
+    for (std::ptrdiff_t g = 0; g < f; ++g) {
+      before += share[g] * (apart[static_cast<std::size_t>(f - g)] +
+                            together[static_cast<std::size_t>(f + g)]);
     }
+    const double itself = share[f] * (apart[0] + together[static_cast<std::size_t>(2 * f)]);
+    noise.second += 2.0 * share[f] * (2.0 * before + itself);
   }
   noise.third = noise.second * noise.second / noise.mean;
   return noise;
@@ -271,7 +324,7 @@ std::vector<TileNoise> tile_noise(DampedTransform& transform, std::span<const do
       root[static_cast<Eigen::Index>(f - range.first)] = (half ? std::sqrt(0.5) : 1.0) / n;
     }
     if (4 * bins * bins * 2 * judged <= kMostOperations) {
-      list.push_back(exact(moments.covariance(range), root));
+      list.push_back(exact(moments.covariance(range, root)));
       continue;
     }
     if (!squared) {

@@ -6,7 +6,6 @@
 #include <complex>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "processing/base/wide.hpp"
 #include "processing/waves/transform.hpp"
@@ -26,12 +25,12 @@ std::vector<double> autocovariances(const std::vector<std::span<const double>>& 
     if (stretch.empty()) {
       continue;
     }
-    const double mean =
-        std::accumulate(stretch.begin(), stretch.end(), 0.0) / static_cast<double>(stretch.size());
+    const Eigen::Map<const Eigen::VectorXd> own(stretch.data(),
+                                                static_cast<Eigen::Index>(stretch.size()));
+    const Eigen::VectorXd about_mean = own.array() - own.mean();
     for (std::size_t lag = 0; lag <= kHighestOrder && lag < stretch.size(); ++lag) {
-      for (std::size_t n = lag; n < stretch.size(); ++n) {
-        covariance[lag] += (stretch[n] - mean) * (stretch[n - lag] - mean);
-      }
+      const auto left = static_cast<Eigen::Index>(stretch.size() - lag);
+      covariance[lag] += about_mean.tail(left).dot(about_mean.head(left));
     }
     samples += stretch.size();
   }
