@@ -395,18 +395,17 @@ void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
   work.on_noise = effects;
 }
 
-Eigen::VectorXd WhiteResiduals::freeze(const Composition& composition,
-                                       const std::vector<double>& theta) {
+void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
   Workspace& work = *work_.front();
   know_noise(work, composition, Effects(composition, theta, 0).on_waves);
+  // With the noise of the freeze before: what it straightens is known no better yet.
   Eigen::VectorXd white = evaluate(composition, theta);
   spread_.resize(band_.bins_judged);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
     spread_[k].noalias() = 0.5 * work.cross[k].lazyProduct(work.whitener[k].adjoint());
   }
-  frozen_ = white;
-  return white;
+  frozen_ = std::move(white);
 }
 
 bool WhiteResiduals::know_steps() {

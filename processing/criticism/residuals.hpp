@@ -47,8 +47,7 @@ class WhiteResiduals : public ShotResiduals {
 
   /// Takes from this composition how residuals are shared out among the gauges, and what they say
   /// of each gauge's noise.
-  /// @return the residuals there
-  Eigen::VectorXd freeze(const Composition& composition, const std::vector<double>& theta);
+  void freeze(const Composition& composition, const std::vector<double>& theta);
 
   /// Adds to what is known of each gauge's noise what a coarse converter's steps leave of records
   /// like those foretold when `freeze` was called.

@@ -58,14 +58,14 @@ Studied Study::as_it_is(const Model& model) {
   Composition composition(model, campaign_);
   ModelFit fit;
   fit.theta = composition.start();
-  fit.residual = residuals_.freeze(composition, fit.theta);
+  residuals_.freeze(composition, fit.theta);
   if (campaign_.shots.size() > 1 && residuals_.noise().flatness() < kWhite) {
     residuals_.calibrate(composition, fit.theta);
-    fit.residual = residuals_.evaluate(composition, fit.theta);
   }
   if (residuals_.know_steps()) {
-    fit.residual = residuals_.freeze(composition, fit.theta);
+    residuals_.freeze(composition, fit.theta);
   }
+  fit.residual = residuals_.evaluate(composition, fit.theta);
   fit.chi2 = fit.residual.squaredNorm();
   fit.converged = true;
   const Misfit misfit =
