@@ -63,36 +63,39 @@ Layout layout_of(const Scene& scene, std::size_t gauge, std::size_t reference, d
 
 /// 0 before the boundary, 1 after; a quarter of a cosine between, so that squares add up to one.
 double risen(double time_s, const Boundary& boundary) {
-  const double place = std::clamp((time_s - boundary.time_s) / boundary.fade_s, -1.0, 1.0);
+  const double place = (time_s - boundary.time_s) / boundary.fade_s;
+  if (place <= -1.0 || place >= 1.0) {
+    return place < 0.0 ? 0.0 : 1.0;
+  }
   return std::sin(std::numbers::pi / 4.0 * (place + 1.0));
 }
 
 std::vector<ArrivalWindow> windows_of(const Layout& layout, double start_s, double period_s,
                                       std::size_t samples) {
-  std::vector<ArrivalWindow> windows;
+  std::vector<ArrivalWindow> windows(layout.names.size());
   const double end_s = start_s + period_s * static_cast<double>(samples);
-  for (std::size_t w = 0; w < layout.names.size(); ++w) {
-    ArrivalWindow window;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    ArrivalWindow& window = windows[w];
     window.name = layout.names[w];
     window.start_s = w == 0 ? start_s : std::max(start_s, layout.boundaries[w - 1].time_s);
     window.end_s =
         w == layout.boundaries.size() ? end_s : std::min(end_s, layout.boundaries[w].time_s);
-    bool any = false;
-    for (std::size_t n = 0; n < samples; ++n) {
-      const double t = start_s + static_cast<double>(n) * period_s;
-      // Later boundaries take from what earlier ones have given.
-      double weight = w == 0 ? 1.0 : risen(t, layout.boundaries[w - 1]);
-      for (std::size_t b = w; b < layout.boundaries.size(); ++b) {
-        const double after = risen(t, layout.boundaries[b]);
-        weight *= std::sqrt(std::max(0.0, 1.0 - after * after));
-      }
-      window.weight.push_back(weight);
-      any = any || weight > 0.5;
-    }
-    if (any) {
-      windows.push_back(std::move(window));
+    window.weight.resize(samples);
+  }
+  for (std::size_t n = 0; n < samples; ++n) {
+    const double t = start_s + static_cast<double>(n) * period_s;
+    // Later boundaries take from what earlier ones have given.
+    double left = 1.0;
+    for (std::size_t w = windows.size(); w-- > 0;) {
+      const double own = w == 0 ? 1.0 : risen(t, layout.boundaries[w - 1]);
+      windows[w].weight[n] = own * left;
+      left *= std::sqrt(std::max(0.0, 1.0 - own * own));
     }
   }
+  std::erase_if(windows, [](const ArrivalWindow& window) {
+    return std::none_of(window.weight.begin(), window.weight.end(),
+                        [](double weight) { return weight > 0.5; });
+  });
   return windows;
 }
 

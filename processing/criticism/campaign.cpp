@@ -33,38 +33,36 @@ std::size_t reference_of(const Bench& bench) {
   return reference;
 }
 
-/// How many values every so many samples take, or a few less: values are counted by the places of a
-/// table that they fall into.
-std::size_t values_at_least(const std::vector<double>& record, std::size_t every) {
-  const std::size_t samples = record.size() / every + 1;
-  const auto bits = static_cast<int>(std::bit_width(8 * samples));
-  std::vector<bool> taken(std::size_t{1} << bits);
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < record.size(); n += every) {
-    const auto place =
-        (std::bit_cast<std::uint64_t>(record[n]) * 0x9e3779b97f4a7c15U) >> (64 - bits);
-    count += taken[place] ? 0 : 1;
-    taken[place] = true;
+/// A record's values, each once, in order; none where they are more than so many.
+std::vector<double> values_of(const std::vector<double>& record, std::size_t most) {
+  // By its bits a value has a place in a table, or the next that is free: half of them stay so.
+  const auto bits = static_cast<int>(std::bit_width(2 * most + 1));
+  std::vector<std::uint32_t> known(std::size_t{1} << bits);  // 1 + the index of a value, or 0
+  std::vector<double> values;
+  for (const double value : record) {
+    const double signless_zero = value + 0.0;
+    std::size_t place =
+        (std::bit_cast<std::uint64_t>(signless_zero) * 0x9e3779b97f4a7c15U) >> (64 - bits);
+    while (known[place] != 0 && values[known[place] - 1] != value) {
+      place = (place + 1) % known.size();
+    }
+    if (known[place] == 0) {
+      if (values.size() == most) {
+        return {};
+      }
+      values.push_back(value);
+      known[place] = static_cast<std::uint32_t>(values.size());
+    }
   }
-  return count;
-}
-
-/// A record's values, each once, in order.
-std::vector<double> values_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 
 /// The step between neighbouring codes where the record takes few enough values to show it.
 double step_of(const std::vector<double>& strain) {
   constexpr std::size_t kSamplesPerValue = 4;
-  constexpr std::size_t kEnough = 3;  // of these samples show most records to have fine steps
-  if (values_at_least(strain, kEnough) * kSamplesPerValue > strain.size()) {
-    return 0.0;
-  }
-  const std::vector<double> values = values_of(strain);
-  if (values.size() < 3 || values.size() * kSamplesPerValue > strain.size()) {
+  const std::vector<double> values = values_of(strain, strain.size() / kSamplesPerValue);
+  if (values.size() < 3) {
     return 0.0;
   }
   std::vector<double> steps;
@@ -82,24 +80,27 @@ double step_of(const std::vector<double>& strain) {
 std::size_t flat_top(const std::vector<double>& readings) {
   const auto [least, most] = std::minmax_element(readings.begin(), readings.end());
   const double extreme = std::abs(*most) >= std::abs(*least) ? *most : *least;
-  /// Longest run of one code there, and anywhere else that is at least `from`.
-  const auto runs = [&](double from) {
-    std::pair<std::size_t, std::size_t> longest{0, 0};
+  /// Longest run of one code, of those that are asked for.
+  const auto longest_run = [&](const auto& asked) {
+    std::size_t longest = 0;
     std::size_t run = 0;
     for (std::size_t n = 0; n < readings.size(); ++n) {
       run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
-      if (readings[n] == extreme) {
-        longest.first = std::max(longest.first, run);
-      } else if (std::abs(readings[n]) > from) {
-        longest.second = std::max(longest.second, run);
+      if (run > longest && asked(readings[n])) {
+        longest = run;
       }
     }
     return longest;
   };
   constexpr std::size_t kLongRun = 8;
+  const std::size_t at_extreme = longest_run([&](double value) { return value == extreme; });
+  if (at_extreme < kLongRun) {
+    return 0;
+  }
   const auto cut_off = [&](double from) {
-    const auto [at_extreme, elsewhere] = runs(from);
-    return at_extreme >= kLongRun && at_extreme > 3 * elsewhere ? at_extreme : 0;
+    const std::size_t elsewhere =
+        longest_run([&](double value) { return value != extreme && std::abs(value) > from; });
+    return at_extreme > 3 * elsewhere ? at_extreme : 0;
   };
   const std::size_t found = cut_off(0.5 * std::abs(extreme));
   constexpr double kCoarse = 1.0 / 300.0;

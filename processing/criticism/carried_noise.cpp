@@ -1,11 +1,13 @@
 #include "processing/criticism/carried_noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "processing/base/wide.hpp"
+#include "processing/waves/each_exp.hpp"
 
 namespace kolsky {
 
@@ -77,6 +79,15 @@ KOLSKY_WIDE void add_all(const FourNumbers* from, std::size_t size, FourNumbers&
 
 KOLSKY_WIDE void add_squares(const FourNumbers* a, std::size_t size, FourNumbers& sum) {
   for (std::size_t v = 0; v < size; ++v) sum.add_square(a[v]);
+}
+
+KOLSKY_WIDE void put_products(const FourNumbers& a, const FourNumbers* b, std::size_t size,
+                              FourNumbers* out) {
+  for (std::size_t v = 0; v < size; ++v) {
+    FourNumbers product;
+    product.add_product(a, b[v]);
+    out[v] = product;
+  }
 }
 
 KOLSKY_WIDE void add_products(const FourNumbers* a, const FourNumbers* b, std::size_t size,
@@ -309,38 +320,60 @@ CarriedNoise::CarriedNoise(const NoiseSpectrum& spectrum, double least_power,
   }
   bins_ = bins;
   four_.resize((bins + kTogether - 1) / kTogether);
-  for (FourBins& four : four_) {
-    four.turn.resize(whole_);
-    four.blocks.resize((whole_ + block_ - 1) / block_);
-  }
-  std::vector<Complex> circle(window.judged);
-  for (std::size_t n = 0; n < window.judged; ++n) {
-    circle[n] = std::polar(
-        1.0, -2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(window.judged));
-  }
   for (std::size_t k = 0; k < bins; ++k) {
-    FourBins& four = four_[k / kTogether];
-    const std::size_t lane = k % kTogether;
     const double per_judged = static_cast<double>(k + 1) / static_cast<double>(window.judged);
     const double cycles = per_judged / static_cast<double>(window.decimation);
     double power = spectrum.power(cycles);
     for (const NoiseSpectrum::SlowPart& part : slow) {
       power -= part.power(cycles);
     }
-    four.white[lane] = std::max(power, least_power) / coarse;
-    // Whole steps of the judged window's own circle.
-    const std::size_t step = (k + 1) * stride_ % window.judged;
-    std::size_t place = (window.judged - step * before_ % window.judged) % window.judged;
-    for (std::size_t n = 0; n < whole_; ++n) {
-      four.turn[n].re[lane] = circle[place].real();
-      four.turn[n].im[lane] = circle[place].imag();
-      place += step;
-      place -= place >= window.judged ? window.judged : 0;
-    }
+    four_[k / kTogether].white[k % kTogether] = std::max(power, least_power) / coarse;
   }
-  for (FourBins& four : four_) {
-    for (std::size_t n = 0; n < whole_; ++n) {
-      four.blocks[n / block_].add(1.0, four.turn[n]);
+  put_turns();
+}
+
+void CarriedNoise::put_turns() {
+  // Whole steps of the judged window's own circle.
+  std::vector<Complex> circle(window_.judged);
+  for (std::size_t n = 0; n < circle.size(); ++n) {
+    const double share = static_cast<double>(n) / static_cast<double>(circle.size());
+    circle[n] = {0.0, -2.0 * std::numbers::pi * share};
+  }
+  each_exp(circle);
+  /// Four bins' turns, the next always so many strides after the one before.
+  const auto each_turn = [&](std::size_t g, std::size_t from, std::size_t apart) {
+    std::array<std::size_t, kTogether> place{};
+    std::array<std::size_t, kTogether> step{};
+    for (std::size_t lane = 0; lane < kTogether; ++lane) {
+      const std::size_t stride = (g * kTogether + lane + 1) * stride_;
+      place[lane] = stride * from % circle.size();
+      step[lane] = stride * apart % circle.size();
+    }
+    return [place, step, &circle]() mutable {
+      FourNumbers turn;
+      for (std::size_t lane = 0; lane < kTogether; ++lane) {
+        turn.re[lane] = circle[place[lane]].real();
+        turn.im[lane] = circle[place[lane]].imag();
+        place[lane] += step[lane];
+        place[lane] -= place[lane] >= circle.size() ? circle.size() : 0;
+      }
+      return turn;
+    };
+  };
+  constexpr std::size_t kAtOnce = 32;
+  std::array<FourNumbers, kAtOnce> turns;
+  for (std::size_t g = 0; g < four_.size(); ++g) {
+    FourBins& four = four_[g];
+    std::generate(turns.begin(), turns.end(), each_turn(g, 0, 1));
+    auto begun = each_turn(g, circle.size() - before_ % circle.size(), kAtOnce);
+    four.turn.resize(whole_);
+    for (std::size_t first = 0; first < whole_; first += kAtOnce) {
+      put_products(begun(), turns.data(), std::min(kAtOnce, whole_ - first), &four.turn[first]);
+    }
+    four.blocks.resize((whole_ + block_ - 1) / block_);
+    for (std::size_t m = 0; m < four.blocks.size(); ++m) {
+      const std::size_t first = m * block_;
+      add_all(&four.turn[first], std::min(block_, whole_ - first), four.blocks[m]);
     }
   }
 }

@@ -67,6 +67,7 @@ class CarriedNoise {
   struct PartialSums;
   struct Room;
 
+  void put_turns();
   void put_at_strides(std::span<const std::vector<double>> responses, Carried& out) const;
   void carry(const PartialSums& sums, std::size_t four, const Carried* known, Carried& out) const;
   void put_noise_in(const Carried& carried, std::size_t four, Room& room) const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <tuple>
 
 #include "processing/criticism/statistics.hpp"
@@ -40,6 +40,10 @@ void mark_significant(std::vector<Place>& places) {
   }
 }
 
+Eigen::Map<const Eigen::VectorXd> as_vector(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
 /// Weights of the mean before the pulse.
 std::vector<double> mean_before(const std::vector<ArrivalWindow>& windows) {
   if (windows.empty() || windows.front().name != kBeforePulse) {
@@ -55,6 +59,11 @@ std::vector<double> mean_before(const std::vector<ArrivalWindow>& windows) {
     weight /= sum;
   }
   return weights;
+}
+
+bool alike(const std::vector<ArrivalWindow>& a, const std::vector<ArrivalWindow>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& one, const auto& other) { return one.weight == other.weight; });
 }
 
 using Key = std::tuple<std::size_t, std::string, std::size_t>;
@@ -93,19 +102,21 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
     windows_.push_back(arrival_windows(residuals, composition, theta, n));
     std::vector<double> peaks;
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-      double peak = 0.0;
-      for (const double value : residuals.judged_record(n, j)) {
-        peak = std::max(peak, std::abs(value));
-      }
-      peaks.push_back(peak);
+      peaks.push_back(as_vector(residuals.judged_record(n, j)).lpNorm<Eigen::Infinity>());
     }
     peaks_.push_back(std::move(peaks));
     quiet_.emplace_back();
+    noise_.emplace_back();
     for (const auto& of_gauge : windows_.back()) {
       quiet_.back().push_back(mean_before(of_gauge));
-      for (const ArrivalWindow& window : of_gauge) {
-        static_cast<void>(noise_of(window, quiet_.back().back()));
-      }
+      // Gauges of one station have the same windows.
+      auto& noise = noise_.back();
+      const auto end = windows_.back().begin() + static_cast<std::ptrdiff_t>(noise.size());
+      const auto same = std::find_if(windows_.back().begin(), end,
+                                     [&](const auto& other) { return alike(other, of_gauge); });
+      noise.push_back(same == end
+                          ? noise_in(of_gauge, quiet_.back().back())
+                          : noise[static_cast<std::size_t>(same - windows_.back().begin())]);
     }
   }
 }
@@ -131,27 +142,26 @@ void Comparer::choose_bands() {
   }
 }
 
-const std::vector<TileNoise>& Comparer::noise_of(const ArrivalWindow& window,
-                                                 const std::vector<double>& quiet) {
-  const auto found = noise_.find({window.weight, quiet});
-  if (found != noise_.end()) {
-    return found->second;
-  }
+std::vector<std::vector<TileNoise>> Comparer::noise_in(const std::vector<ArrivalWindow>& windows,
+                                                       const std::vector<double>& quiet) {
   std::vector<BinRange> ranges;
   for (const ComparedBand& band : bands_) {
     ranges.push_back(band.bins);
   }
-  return noise_
-      .emplace(std::pair{window.weight, quiet},
-               tile_noise(transform_, window.weight, quiet, deviations_.bins_held(), ranges))
-      .first->second;
+  const std::size_t held = deviations_.bins_held();
+  const QuietMean mean = quiet.empty() ? QuietMean() : QuietMean(transform_, quiet, held);
+  std::vector<std::vector<TileNoise>> list;
+  for (const ArrivalWindow& window : windows) {
+    list.push_back(tile_noise(transform_, window.weight, mean, held, ranges));
+  }
+  return list;
 }
 
 /// Deviations hold no bin 0: here they are zero on average before the pulse.
 void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const {
   const std::vector<double>& quiet = quiet_[shot][gauge];
   if (!quiet.empty()) {
-    const double mean = std::inner_product(record.begin(), record.end(), quiet.begin(), 0.0);
+    const double mean = as_vector(record).dot(as_vector(quiet));
     for (double& value : record) {
       value -= mean;
     }
@@ -163,11 +173,12 @@ std::vector<Comparer::Windowed> Comparer::windowed(std::vector<double> record, s
   level(record, shot, gauge);
   std::vector<Windowed> list;
   std::vector<double> part(record.size());
-  for (const ArrivalWindow& window : windows_[shot][gauge]) {
+  for (std::size_t w = 0; w < windows_[shot][gauge].size(); ++w) {
+    const ArrivalWindow& window = windows_[shot][gauge][w];
     for (std::size_t n = 0; n < record.size(); ++n) {
       part[n] = record[n] * window.weight[n];
     }
-    Windowed own{&window, Spectrum(transform_.bins())};
+    Windowed own{&window, &noise_[shot][gauge][w], Spectrum(transform_.bins())};
     transform_.forward(part, own.spectrum);
     list.push_back(std::move(own));
   }
@@ -180,8 +191,7 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
   const double peak = peaks_[shot][reading.gauge];
   for (const Windowed& own : windows) {
     const auto& weight = own.window->weight;
-    const double length = std::inner_product(weight.begin(), weight.end(), weight.begin(), 0.0);
-    const std::vector<TileNoise>& noise = noise_of(*own.window, quiet_[shot][reading.gauge]);
+    const double length = as_vector(weight).squaredNorm();
     for (std::size_t b = 0; b < bands_.size(); ++b) {
       Tile tile;
       tile.gauge = reading.gauge;
@@ -196,7 +206,7 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
         tile.energy += power;
         squares += power * scale * scale;
       }
-      tile.noise = noise[b];
+      tile.noise = (*own.noise)[b];
       tile.sigma = std::sqrt(tile.energy / tile.noise.mean);
       // Parseval: a mean square is 2/N times the one-sided sum over the window's length.
       const double mean_square = 2.0 * squares / static_cast<double>(weight.size()) / length;
@@ -229,8 +239,9 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
   Comparison comparison;
   comparison.misfit = misfit;
   comparison.bands = bands_;
+  // One shot shows nothing that follows its source or not.
   std::vector<Spectrum> sources;
-  for (std::size_t n = 0; n < shots; ++n) {
+  for (std::size_t n = 0; shots > 1 && n < shots; ++n) {
     sources.push_back(residuals_.source_spectrum(n, white));
   }
   std::map<Key, std::vector<Following>> following;
@@ -238,6 +249,9 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     for (std::size_t n = 0; n < shots; ++n) {
       const auto windows = windowed(reading.records[n], n, reading.gauge);
       add_tiles(reading, windows, n, comparison.tiles);
+      if (sources.empty()) {
+        continue;
+      }
       for (const Windowed& own : windows) {
         for (std::size_t b = 0; b < bands_.size(); ++b) {
           auto& bin = following[{reading.gauge, own.window->name, b}];
@@ -260,10 +274,13 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
     region.band = tile.band;
     region.energy += tile.energy;
     region.noise += tile.noise;
+    region.log_p = tile.log_p;
     comparison.excess += std::max(0.0, tile.energy - tile.noise.mean);
   }
   for (auto& [key, region] : regions) {
-    region.log_p = region.noise.log_tail(region.energy);
+    if (shots > 1) {
+      region.log_p = region.noise.log_tail(region.energy);
+    }
     double followed = 0.0;
     double total = 0.0;
     for (const Following& bin : following[key]) {

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "processing/criticism/arrival_windows.hpp"
@@ -95,6 +93,7 @@ class Comparer {
   using Spectrum = std::vector<Complex>;
   struct Windowed {
     const ArrivalWindow* window;
+    const std::vector<TileNoise>* noise;  ///< by band
     Spectrum spectrum;
   };
 
@@ -103,8 +102,8 @@ class Comparer {
                                                std::size_t gauge);
   void add_tiles(const GaugeDeviation& reading, const std::vector<Windowed>& windows,
                  std::size_t shot, std::vector<Tile>& tiles);
-  [[nodiscard]] const std::vector<TileNoise>& noise_of(const ArrivalWindow& window,
-                                                       const std::vector<double>& quiet);
+  [[nodiscard]] std::vector<std::vector<TileNoise>> noise_in(
+      const std::vector<ArrivalWindow>& windows, const std::vector<double>& quiet);
   void level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const;
 
   WhiteResiduals& residuals_;
@@ -115,8 +114,8 @@ class Comparer {
   std::vector<std::vector<double>> peaks_;                        ///< by shot and gauge
   /// Weights of the mean before the pulse, by shot and gauge; empty where nothing is before it.
   std::vector<std::vector<std::vector<double>>> quiet_;
-  /// By the weights of a window and of the mean.
-  std::map<std::pair<std::vector<double>, std::vector<double>>, std::vector<TileNoise>> noise_;
+  /// By shot, gauge, window and band.
+  std::vector<std::vector<std::vector<std::vector<TileNoise>>>> noise_;
 };
 
 /// Compares a model where it stands. @param studied  of this study, the last one evaluated

@@ -27,18 +27,21 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
       transform_(2 * residuals.band().judged, residuals.judged_period_s(), 1.0) {
   const JudgedBand& band = residuals.band();
   const PlainResiduals plain = residuals.plain(composition, theta);
-  const auto filter = [&](std::size_t fine) {
-    const double ratio = static_cast<double>(fine) * transform_.bin_width_Hz() / band.filter_Hz;
-    return std::exp(-std::numbers::ln2 * std::pow(ratio, 4));
-  };
-  while (bins_ < transform_.bins() && filter(bins_) > kFilterPasses) {
+  std::vector<double> filter;
+  while (bins_ < transform_.bins()) {
+    const double ratio = static_cast<double>(bins_) * transform_.bin_width_Hz() / band.filter_Hz;
+    const double passes = std::exp(-std::numbers::ln2 * std::pow(ratio, 4));
+    if (passes <= kFilterPasses) {
+      break;
+    }
+    filter.push_back(passes);
     ++bins_;
   }
   const std::size_t last = 2 * band.bins_judged;
   double held = 0.0;
   for (std::size_t f = 0; f < bins_; ++f) {
-    gain_.push_back(1.0 / filter(std::min(f, last)));
-    held += f > last ? std::pow(filter(f) * gain_.back(), 2) : 0.0;
+    gain_.push_back(1.0 / filter[std::min(f, last)]);
+    held += f > last ? std::pow(filter[f] * gain_.back(), 2) : 0.0;
   }
   bins_held_ = band.bins_judged + static_cast<std::size_t>(held / 2.0);
 
@@ -58,17 +61,16 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
     if (responses.size() == others) {
       return 1.0;
     }
-    const Complex own = responses[others][f] / filter(f);
+    const Complex own = responses[others][f] / filter[f];
     return std::abs(own) > kBlind ? own : Complex(kBlind);
   };
   const std::size_t gauges = residuals.campaign().gauges();
+  waves_.setOnes(static_cast<Eigen::Index>(gauges), static_cast<Eigen::Index>(bins_));
   for (std::size_t f = 0; f < bins_; ++f) {
-    Eigen::VectorXcd wave = Eigen::VectorXcd::Ones(static_cast<Eigen::Index>(gauges));
     for (std::size_t i = 0; i < others; ++i) {
-      wave[static_cast<Eigen::Index>(residuals.others()[i])] =
-          responses[i][f] / (filter(f) * mean(f));
+      waves_(static_cast<Eigen::Index>(residuals.others()[i]), static_cast<Eigen::Index>(f)) =
+          responses[i][f] / (filter[f] * mean(f));
     }
-    waves_.push_back(std::move(wave));
   }
   for (const auto& of_shot : plain.records) {
     y_.emplace_back(gauges, Spectrum(transform_.bins(), 0.0));
@@ -89,30 +91,32 @@ std::size_t GaugeDeviations::judged_bin(std::size_t fine) const {
 /// Generalised least squares: s = w^H y / w^H k with w = P^-1 k, k the waves and P the noise.
 GaugeDeviations::Estimate GaugeDeviations::estimate(const std::vector<bool>& left_out) const {
   const auto gauges = static_cast<Eigen::Index>(left_out.size());
-  Estimate out;
-  Eigen::MatrixXd noise;
-  Eigen::MatrixXd inverse;
+  Estimate out{Eigen::MatrixXcd(gauges, waves_.cols()), Eigen::MatrixXd(gauges, waves_.cols())};
+  Eigen::MatrixXd noise(gauges, gauges);
+  Eigen::MatrixXd weighted(gauges, gauges);
+  Eigen::MatrixXd inverse(gauges, gauges);
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors(gauges);
   for (std::size_t f = 0; f < bins_; ++f) {
     if (f == 0 || judged_bin(f) != judged_bin(f - 1)) {
-      noise = residuals_.noise().covariance(judged_bin(f));
-      Eigen::MatrixXd weighted = noise;
+      residuals_.noise().put_covariance(judged_bin(f), noise);
+      weighted = noise;
       for (Eigen::Index j = 0; j < gauges; ++j) {
         weighted(j, j) *= left_out[static_cast<std::size_t>(j)] ? kLeftOut : 1.0;
       }
-      inverse = weighted.inverse();
+      inverse = factors.compute(weighted).inverse();
     }
-    const Eigen::VectorXcd weight = inverse.cast<Complex>() * waves_[f];
-    const double known = weight.dot(waves_[f]).real();
-    out.weight.push_back(weight / known);
-    Eigen::VectorXd sd(gauges);
+    const auto wave = waves_.col(static_cast<Eigen::Index>(f));
+    auto weight = out.weight.col(static_cast<Eigen::Index>(f));
+    weight.noalias() = inverse * wave;
+    const double known = weight.dot(wave).real();
+    weight /= known;
     for (Eigen::Index j = 0; j < gauges; ++j) {
       // What the gauge has of the estimate's error, unlike it or not in it at all.
-      const double of_source = std::norm(waves_[f][j]) / known;
+      const double of_source = std::norm(wave[j]) / known;
       const double square =
           left_out[static_cast<std::size_t>(j)] ? noise(j, j) + of_source : noise(j, j) - of_source;
-      sd[j] = std::sqrt(std::max(square, 1e-6 * noise(j, j)));
+      out.sd(j, static_cast<Eigen::Index>(f)) = std::sqrt(std::max(square, 1e-6 * noise(j, j)));
     }
-    out.sd.push_back(std::move(sd));
   }
   return out;
 }
@@ -126,15 +130,16 @@ GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate, std::siz
   for (std::size_t n = first; n < end; ++n) {
     out.spectra.emplace_back(gauges, Spectrum(transform_.bins(), 0.0));
     for (std::size_t f = 0; f < bins_; ++f) {
+      const auto bin = static_cast<Eigen::Index>(f);
       Complex source = 0.0;
       for (std::size_t j = 0; j < gauges; ++j) {
-        source += std::conj(estimate.weight[f][static_cast<Eigen::Index>(j)]) * y_[n][j][f];
+        source += std::conj(estimate.weight(static_cast<Eigen::Index>(j), bin)) * y_[n][j][f];
       }
       for (std::size_t j = 0; j < gauges; ++j) {
         const auto at = static_cast<Eigen::Index>(j);
         Complex& z = out.spectra.back()[j][f];
-        z = std::numbers::sqrt2 * gain_[f] * (y_[n][j][f] - waves_[f][at] * source) /
-            estimate.sd[f][at];
+        z = std::numbers::sqrt2 * gain_[f] * (y_[n][j][f] - waves_(at, bin) * source) /
+            estimate.sd(at, bin);
         // Bins are half as wide as judged ones.
         out.energy[j] += f > 0 && f <= last ? 0.5 * std::norm(z) : 0.0;
       }
@@ -183,7 +188,8 @@ std::vector<GaugeDeviation> GaugeDeviations::of_shots(std::size_t first, std::si
       transform_.inverse(of_shot[j], own.records.back());
     }
     for (std::size_t k = 1; k <= residuals_.band().bins_judged; ++k) {
-      own.scale.push_back(used.sd[2 * k][static_cast<Eigen::Index>(j)] / std::numbers::sqrt2);
+      own.scale.push_back(used.sd(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(2 * k)) /
+                          std::numbers::sqrt2);
     }
     list.push_back(std::move(own));
   }

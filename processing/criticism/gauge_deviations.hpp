@@ -43,8 +43,8 @@ class GaugeDeviations {
   using Spectrum = std::vector<Complex>;
   /// The source's estimate where some gauges are left out.
   struct Estimate {
-    std::vector<Eigen::VectorXcd> weight;  ///< by bin: of the gauges' deviations in it
-    std::vector<Eigen::VectorXd> sd;       ///< by bin: of each gauge's deviation
+    Eigen::MatrixXcd weight;  ///< by gauge and bin: of the gauges' deviations in it
+    Eigen::MatrixXd sd;       ///< by gauge and bin: of each gauge's deviation
   };
   struct Found {
     std::vector<std::vector<Spectrum>> spectra;  ///< by shot and gauge, over their deviations
@@ -61,7 +61,7 @@ class GaugeDeviations {
   std::size_t bins_ = 0;       ///< of it, as far as the filter passes anything
   std::size_t bins_held_ = 0;
   std::vector<double> gain_;              ///< by bin: what makes filtered records' power even
-  std::vector<Eigen::VectorXcd> waves_;   ///< by bin: of each gauge per unit source
+  Eigen::MatrixXcd waves_;                ///< by gauge and bin: per unit source
   std::vector<std::vector<Spectrum>> y_;  ///< by shot and gauge: records less what is foretold
 };
 

@@ -36,28 +36,39 @@ std::vector<NoiseSpectrum> quiet_spectra(const Campaign& campaign) {
 double quiet_product(const Campaign& campaign, std::size_t a, std::size_t b, std::size_t later) {
   double sum = 0.0;
   for (const CampaignShot& shot : campaign.shots) {
-    for (std::size_t n = 0; n + later < shot.quiet_samples; ++n) {
-      sum += shot.strain[a][n] * shot.strain[b][n + later];
+    if (later < shot.quiet_samples) {
+      const auto left = static_cast<Eigen::Index>(shot.quiet_samples - later);
+      const Eigen::Map<const Eigen::VectorXd> first(shot.strain[a].data(), left);
+      const Eigen::Map<const Eigen::VectorXd> second(shot.strain[b].data() + later, left);
+      sum += first.dot(second);
     }
   }
   return sum;
 }
 
-/// By gauge and lag, from 1 to a quarter of the shortest quiet, at most `kMostLags`.
-std::vector<std::vector<double>> quiet_autocorrelations(const Campaign& campaign) {
+/// Of a gauge's quiet samples by lag, from 1 to a quarter of the shortest quiet, at most
+/// `kMostLags`.
+std::vector<double> quiet_autocorrelation(const Campaign& campaign, std::size_t gauge) {
   constexpr std::size_t kMostLags = 256;
   std::size_t shortest = 4 * kMostLags;
   for (const CampaignShot& shot : campaign.shots) {
     shortest = std::min(shortest, shot.quiet_samples);
   }
-  std::vector<std::vector<double>> list(campaign.gauges());
-  for (std::size_t j = 0; j < list.size(); ++j) {
-    const double power = quiet_product(campaign, j, j, 0);
-    for (std::size_t lag = 1; power > 0.0 && lag <= shortest / 4; ++lag) {
-      list[j].push_back(quiet_product(campaign, j, j, lag) / power);
-    }
+  std::vector<double> list;
+  const double power = quiet_product(campaign, gauge, gauge, 0);
+  for (std::size_t lag = 1; power > 0.0 && lag <= shortest / 4; ++lag) {
+    list.push_back(quiet_product(campaign, gauge, gauge, lag) / power);
   }
   return list;
+}
+
+/// How many times fewer independent samples tell as much of two gauges' correlation.
+double slowness(const Campaign& campaign, std::size_t a, std::size_t b) {
+  const std::vector<double> of_a = quiet_autocorrelation(campaign, a);
+  const std::vector<double> of_b = quiet_autocorrelation(campaign, b);
+  const auto lags = static_cast<std::ptrdiff_t>(std::min(of_a.size(), of_b.size()));
+  const double alike = std::inner_product(of_a.begin(), of_a.begin() + lags, of_b.begin(), 0.0);
+  return std::max(1.0, 1.0 + 2.0 * alike);
 }
 
 /// How far gauges share their noise; nothing where chance does as much. Slow samples tell less than
@@ -68,7 +79,6 @@ Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
   for (const CampaignShot& shot : campaign.shots) {
     samples += static_cast<double>(shot.quiet_samples);
   }
-  const std::vector<std::vector<double>> own = quiet_autocorrelations(campaign);
   const auto size = static_cast<Eigen::Index>(gauges);
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
   for (std::size_t a = 0; a < gauges; ++a) {
@@ -76,11 +86,10 @@ Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
       const double scale =
           std::sqrt(quiet_product(campaign, a, a, 0) * quiet_product(campaign, b, b, 0));
       const double rho = scale > 0.0 ? quiet_product(campaign, a, b, 0) / scale : 0.0;
-      const std::size_t lags = std::min(own[a].size(), own[b].size());
-      const double slow = std::inner_product(
-          own[a].begin(), own[a].begin() + static_cast<std::ptrdiff_t>(lags), own[b].begin(), 0.0);
       constexpr double kSignificant = 5.0;
-      if (std::abs(rho) > kSignificant * std::sqrt(std::max(1.0, 1.0 + 2.0 * slow) / samples)) {
+      const double least = kSignificant / std::sqrt(samples);
+      // How slow they are is asked where it can matter.
+      if (std::abs(rho) > least && std::abs(rho) > least * std::sqrt(slowness(campaign, a, b))) {
         const auto row = static_cast<Eigen::Index>(a);
         const auto column = static_cast<Eigen::Index>(b);
         correlation(row, column) = correlation(column, row) = std::clamp(rho, -0.95, 0.95);
@@ -135,12 +144,14 @@ void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
   }
 }
 
-Eigen::MatrixXd GaugeNoise::covariance(std::size_t bin) const {
-  Eigen::VectorXd amplitude(static_cast<Eigen::Index>(scale_.size()));
-  for (std::size_t j = 0; j < scale_.size(); ++j) {
-    amplitude[static_cast<Eigen::Index>(j)] = std::sqrt(scale_[j][bin]);
+void GaugeNoise::put_covariance(std::size_t bin, Eigen::MatrixXd& all) const {
+  const auto gauges = static_cast<Eigen::Index>(scale_.size());
+  all.resize(gauges, gauges);
+  for (Eigen::Index a = 0; a < gauges; ++a) {
+    for (Eigen::Index b = 0; b < gauges; ++b) {
+      all(a, b) = covariance(bin, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    }
   }
-  return amplitude.asDiagonal() * quiet_[bin] * amplitude.asDiagonal();
 }
 
 double GaugeNoise::power(std::size_t gauge, std::size_t bin) const {

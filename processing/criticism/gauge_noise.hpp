@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,7 +30,12 @@ class GaugeNoise {
   GaugeNoise& operator=(const GaugeNoise&) = delete;
 
   /// Covariance of the gauges at a bin, in power of the judged window's transform.
-  [[nodiscard]] Eigen::MatrixXd covariance(std::size_t bin) const;
+  void put_covariance(std::size_t bin, Eigen::MatrixXd& all) const;
+  /// That of two gauges.
+  [[nodiscard]] double covariance(std::size_t bin, std::size_t a, std::size_t b) const {
+    return std::sqrt(scale_[a][bin] * scale_[b][bin]) *
+           quiet_[bin](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
   /// That of one gauge.
   [[nodiscard]] double power(std::size_t gauge, std::size_t bin) const;
   /// That over what the quiet parts say.

@@ -1,12 +1,12 @@
 #include "processing/criticism/residuals.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "processing/criticism/carried_noise.hpp"
+#include "processing/criticism/small_factor.hpp"
 #include "processing/criticism/specimen_response.hpp"
 #include "processing/reduction/pulse.hpp"
 
@@ -118,9 +118,6 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
   for (std::size_t k = 1; k <= band_.bins_judged; ++k) {
     plain_path_.push_back(work.plain.s(k));
   }
-  for (const CampaignShot& shot : campaign.shots) {
-    own_noise_.emplace_back(campaign.gauges(), std::vector<double>(shot.strain.front().size()));
-  }
   prepare_spectra();
   measure_signal();
 }
@@ -202,8 +199,9 @@ void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEff
       // What was bent follows from the reading without its noise: bent straight with the signal,
       // noise would shrink under every b > 0, and any record would ask for some.
       std::vector<double> read = work.shaped;
-      for (std::size_t n = 0; n < read.size(); ++n) {
-        read[n] -= own_noise_[of_shot][j][n];
+      put_own_noise(work, of_shot, j);
+      for (std::size_t n = 0; n < work.fine_record.size(); ++n) {
+        read[band_.edge + n] -= work.fine_record[n];
       }
       std::vector<double> straight = read;
       record.straighten(j, straight);
@@ -304,40 +302,55 @@ void WhiteResiduals::carry_noise(Workspace& work, const Ratios& ratios) const {
   }
 }
 
-/// Inverse Cholesky factor of the residuals' covariance at one bin; `cross` becomes P G^H.
-Eigen::MatrixXcd WhiteResiduals::whitener(const CarriedBin& carried, std::size_t bin,
-                                          Eigen::MatrixXcd& cross) const {
+/// What whitens residuals at one bin: the inverse Cholesky factor of half their covariance, for
+/// real and imaginary parts are of unit variance each. `cross` becomes P G^H.
+void WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
+                                  Eigen::MatrixXcd& cross, Eigen::MatrixXcd& whitener) const {
   const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
   const auto rows = static_cast<Eigen::Index>(others_.size());
+  const auto other = [&](Eigen::Index i) { return others_[static_cast<std::size_t>(i)]; };
+  const auto noise = [&](std::size_t a, std::size_t b) { return noise_.covariance(bin, a, b); };
+  const std::size_t reference = campaign_.reference;
   const bool means = carried.ratio.size() > rows;
   const Complex mean = means ? carried.ratio[rows] : Complex(1.0);
-  Eigen::MatrixXcd G = Eigen::MatrixXcd::Zero(rows, gauges);
+  cross.resize(gauges, rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const auto other = static_cast<std::size_t>(i);
-    G(i, static_cast<Eigen::Index>(others_[other])) = mean;
-    G(i, static_cast<Eigen::Index>(campaign_.reference)) = -carried.ratio[i];
-  }
-  const Eigen::MatrixXd noise = noise_.covariance(bin);
-  cross.noalias() = noise * G.adjoint();
-  const auto reference = static_cast<Eigen::Index>(campaign_.reference);
-  const auto ratio = carried.ratio.head(rows);
-  Eigen::MatrixXcd own =
-      G * cross - noise(reference, reference) * ratio * ratio.adjoint() +
-      noise_.scale(campaign_.reference, bin) * carried.power.topLeftCorner(rows, rows);
-  if (means) {
-    // Where the reference is blind, what the window's ends leak of slow noise stays.
-    const double kept = carried.power(rows, rows).real() / carried.power(rows + 1, rows + 1).real();
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const auto j = static_cast<Eigen::Index>(others_[static_cast<std::size_t>(i)]);
-      own(i, i) += noise(j, j) * (kept - std::norm(mean));
+    for (Eigen::Index j = 0; j < gauges; ++j) {
+      const auto gauge = static_cast<std::size_t>(j);
+      cross(j, i) = std::conj(mean) * noise(gauge, other(i)) -
+                    std::conj(carried.ratio[i]) * noise(gauge, reference);
     }
   }
-  Eigen::LLT<Eigen::MatrixXcd> factor(own);
-  if (factor.info() != Eigen::Success) {
-    // What gauges share is known as if it were stationary: among long echoes it can contradict.
-    factor.compute(Eigen::MatrixXcd(own.diagonal().real().cast<Complex>().asDiagonal()));
+  const double of_reference = noise(reference, reference);
+  const double scale = noise_.scale(reference, bin);
+  // G P G^H, but of the reference's own noise what is carried.
+  const auto covariance = [&](Eigen::Index i, Eigen::Index j) -> Complex {
+    return mean * cross(static_cast<Eigen::Index>(other(i)), j) -
+           carried.ratio[i] * (cross(static_cast<Eigen::Index>(reference), j) +
+                               std::conj(carried.ratio[j]) * of_reference) +
+           scale * carried.power(i, j);
+  };
+  // Where the reference is blind, what the window's ends leak of slow noise stays.
+  const double kept =
+      means ? carried.power(rows, rows).real() / carried.power(rows + 1, rows + 1).real() : 0.0;
+  const auto variance = [&](Eigen::Index i) {
+    const double leaked = means ? noise(other(i), other(i)) * (kept - std::norm(mean)) : 0.0;
+    return covariance(i, i).real() + leaked;
+  };
+  whitener.resize(rows, rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      whitener(i, j) = 0.5 * covariance(i, j);
+    }
+    whitener(i, i) = 0.5 * variance(i);
   }
-  return factor.matrixL().solve(Eigen::MatrixXcd::Identity(rows, rows));
+  if (!invert_factor(whitener)) {
+    // What gauges share is known as if it were stationary: among long echoes it can contradict.
+    whitener.setZero();
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      whitener(i, i) = 1.0 / std::sqrt(0.5 * variance(i));
+    }
+  }
 }
 
 /// Scene and transfers of a shot under what acts on waves, unless they are known.
@@ -377,7 +390,7 @@ void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
   work.whitener.resize(band_.bins_judged);
   work.cross.resize(band_.bins_judged);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    work.whitener[k] = std::numbers::sqrt2 * whitener(work.bins[k], k, work.cross[k]);
+    put_whitener(work.bins[k], k, work.cross[k], work.whitener[k]);
   }
   work.on_noise = effects;
 }
@@ -385,12 +398,14 @@ void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
   Workspace& work = *work_.front();
   know_noise(work, composition, Effects(composition, theta, 0).on_waves);
-  spread_.clear();
+  // With the noise of the freeze before: what it straightens is known no better yet.
+  Eigen::VectorXd white = evaluate(composition, theta);
+  spread_.resize(band_.bins_judged);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     // P G^H (L L^H)^-1 L of white: what each gauge's noise would have to be.
-    spread_.push_back(0.5 * work.cross[k] * work.whitener[k].adjoint());
+    spread_[k].noalias() = 0.5 * work.cross[k].lazyProduct(work.whitener[k].adjoint());
   }
-  estimate_noise(evaluate(composition, theta));
+  frozen_ = std::move(white);
 }
 
 bool WhiteResiduals::know_steps() {
@@ -415,29 +430,31 @@ bool WhiteResiduals::know_steps() {
   return coarse;
 }
 
-std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) const {
+std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) {
+  Workspace& work = *work_.front();
+  put_own_noise(work, shot, gauge);
   std::vector<double> record = campaign_.shots[shot].strain[gauge];
-  std::transform(record.begin(), record.end(), own_noise_[shot][gauge].begin(), record.begin(),
-                 std::minus<>());
+  const auto first = record.begin() + static_cast<std::ptrdiff_t>(band_.edge);
+  std::transform(work.fine_record.begin(), work.fine_record.end(), first, first,
+                 [](double noise, double read) { return read - noise; });
   return record;
 }
 
-void WhiteResiduals::estimate_noise(const Eigen::VectorXd& white) {
-  Workspace& work = *work_.front();
-  const std::size_t d = band_.decimation;
-  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-    const auto spectra =
-        deviation_spectra(std::span<const double>(white.data() + n * per_shot(), per_shot()));
-    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-      std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);
-      for (std::size_t k = 0; k <= band_.bins_judged; ++k) {
-        work.fine_spectrum[k] = spectra[j][k] * static_cast<double>(d);
-      }
-      work.fine.inverse(work.fine_spectrum, work.fine_record);
-      std::copy(work.fine_record.begin(), work.fine_record.end(),
-                own_noise_[n][j].begin() + static_cast<std::ptrdiff_t>(band_.edge));
+/// A gauge's noise over the judged window at the records' rate, as much of it as residuals show.
+void WhiteResiduals::put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const {
+  std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);
+  const auto rows = static_cast<Eigen::Index>(others_.size());
+  for (std::size_t k = 0; k < band_.bins_judged && frozen_.size() > 0; ++k) {
+    Complex noise = 0.0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto at =
+          static_cast<Eigen::Index>(shot * per_shot() + index(k, static_cast<std::size_t>(i)));
+      noise +=
+          spread_[k](static_cast<Eigen::Index>(gauge), i) * Complex(frozen_[at], frozen_[at + 1]);
     }
+    work.fine_spectrum[k + 1] = noise * static_cast<double>(band_.decimation);
   }
+  work.fine.inverse(work.fine_spectrum, work.fine_record);
 }
 
 void WhiteResiduals::believe_quiet() {
@@ -598,7 +615,7 @@ void WhiteResiduals::whiten_shots(const Composition& composition, const std::vec
       for (Eigen::Index i = 0; i < rows; ++i) {
         r[i] = work.rows[static_cast<std::size_t>(i)][k];
       }
-      white.noalias() = work.whitener[k] * r;
+      white.noalias() = work.whitener[k].lazyProduct(r);
       for (Eigen::Index i = 0; i < rows; ++i) {
         *next++ = white[i].real();
         *next++ = white[i].imag();
@@ -635,13 +652,14 @@ std::vector<WhiteResiduals::Spectrum> WhiteResiduals::deviation_spectra(
   const Workspace& work = *work_.front();
   const auto rows = static_cast<Eigen::Index>(others_.size());
   std::vector<Spectrum> spectra(campaign_.gauges(), Spectrum(work.plain.bins(), 0.0));
+  Eigen::VectorXcd w(rows);
+  Eigen::VectorXcd e(static_cast<Eigen::Index>(campaign_.gauges()));
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    Eigen::VectorXcd w(rows);
     for (Eigen::Index i = 0; i < rows; ++i) {
       const std::size_t at = index(k, static_cast<std::size_t>(i));
       w[i] = {white[at], white[at + 1]};
     }
-    const Eigen::VectorXcd e = spread_[k] * w;
+    e.noalias() = spread_[k].lazyProduct(w);
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
       spectra[j][k + 1] = e[static_cast<Eigen::Index>(j)];
     }
@@ -660,10 +678,9 @@ std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const doub
   return list;
 }
 
-std::vector<double> WhiteResiduals::judged_record(std::size_t shot, std::size_t gauge) {
-  Workspace& work = *work_.front();
+std::vector<double> WhiteResiduals::judged_part(Workspace& work, const Spectrum& damped) const {
   Spectrum plain;
-  plain_spectrum(work, spectra_[shot][gauge], plain);
+  plain_spectrum(work, damped, plain);
   std::fill(work.judged.begin(), work.judged.end(), 0.0);
   const Complex mean = [&] {
     double sum = 0.0;
@@ -682,13 +699,14 @@ std::vector<double> WhiteResiduals::judged_record(std::size_t shot, std::size_t 
 
 void WhiteResiduals::measure_signal() {
   double sum = 0.0;
-  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-      double energy = 0.0;
-      for (const double value : judged_record(n, j)) {
-        energy += value * value;
-      }
-      sum += energy / noise_.quiet_power(j);
+  for (const std::vector<Spectrum>& of_shot : spectra_) {
+    judged_records_.emplace_back();
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      const auto& record =
+          judged_records_.back().emplace_back(judged_part(*work_.front(), of_shot[j]));
+      const Eigen::Map<const Eigen::VectorXd> values(record.data(),
+                                                     static_cast<Eigen::Index>(record.size()));
+      sum += values.squaredNorm() / noise_.quiet_power(j);
     }
   }
   // Noise of unit power has as many whitened residuals as its band has bins, twice.

@@ -58,7 +58,7 @@ class WhiteResiduals : public ShotResiduals {
   void believe_quiet();
 
   /// A gauge's record less what is known of its noise since `freeze`.
-  [[nodiscard]] std::vector<double> signal(std::size_t shot, std::size_t gauge) const;
+  [[nodiscard]] std::vector<double> signal(std::size_t shot, std::size_t gauge);
 
   /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
@@ -109,7 +109,10 @@ class WhiteResiduals : public ShotResiduals {
   /// deviations there: gauges x others.
   [[nodiscard]] const Eigen::MatrixXcd& spread(std::size_t bin) const { return spread_[bin]; }
   /// The judged window of one gauge's record, filtered and decimated alike.
-  [[nodiscard]] std::vector<double> judged_record(std::size_t shot, std::size_t gauge);
+  [[nodiscard]] const std::vector<double>& judged_record(std::size_t shot,
+                                                         std::size_t gauge) const {
+    return judged_records_[shot][gauge];
+  }
   /// Energy of all records over that of their noise, in the units of whitened residuals.
   [[nodiscard]] double signal_energy() const { return signal_energy_; }
   [[nodiscard]] double judged_period_s() const;
@@ -139,8 +142,8 @@ class WhiteResiduals : public ShotResiduals {
   void know_noise(Workspace& work, const Composition& composition,
                   const std::vector<AppliedEffect>& effects) const;
   void carry_noise(Workspace& work, const Ratios& ratios) const;
-  [[nodiscard]] Eigen::MatrixXcd whitener(const CarriedBin& carried, std::size_t bin,
-                                          Eigen::MatrixXcd& cross) const;
+  void put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
+                    Eigen::MatrixXcd& whitener) const;
   void find_residuals(Workspace& work, const Composition& composition,
                       const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
@@ -148,12 +151,13 @@ class WhiteResiduals : public ShotResiduals {
   void whiten_shots(const Composition& composition, const std::vector<double>& theta,
                     std::size_t first, std::size_t end, std::size_t worker, double* out);
   void prepare_spectra();
+  [[nodiscard]] std::vector<double> judged_part(Workspace& work, const Spectrum& damped) const;
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
   void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
                      std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
-  void estimate_noise(const Eigen::VectorXd& white);
+  void put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const;
   void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
   void forget_whitener();
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
@@ -174,8 +178,8 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
   ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
   std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
-  /// Each gauge's noise at the records' rate, by shot and gauge: as much of it as residuals show.
-  std::vector<std::vector<std::vector<double>>> own_noise_;
+  Eigen::VectorXd frozen_;                ///< whitened residuals as frozen; none before
+  std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;
 };

@@ -31,6 +31,16 @@ struct BinRange {
   std::size_t end = 0;
 };
 
+/// A weighted mean of noise before the pulse.
+struct QuietMean {
+  std::vector<double> weights;  ///< but for what no judged bin holds; empty: no mean is taken
+  double power = 0.0;           ///< of their judged bins
+
+  QuietMean() = default;
+  /// @param transform  of the weights' length, without damping
+  QuietMean(DampedTransform& transform, std::span<const double> weights, std::size_t judged);
+};
+
 /// Energies of z(t), a record that holds the judged bins 1..judged alone, real and imaginary parts
 /// independent and of unit variance, after multiplication with a window: sum of |Z(f)|^2 over each
 /// range of bins, Z by the transform in which z has them (bin 0 and the last count half).
@@ -39,13 +49,12 @@ struct BinRange {
 /// spectrum alone, as if it were narrow against the judged band.
 ///
 /// Bin 0 is not judged, so z floats; it is taken to be zero on average before the pulse: z(t) less
-/// its mean there, weighted by `quiet`. That mean's own noise is counted.
+/// its mean there. That mean's own noise is counted.
 /// @param transform  of the window's length, without damping
 /// @param window  one weight per sample, an even number of them
-/// @param quiet   weights of the mean, summing to one; empty: nothing is subtracted
 [[nodiscard]] std::vector<TileNoise> tile_noise(DampedTransform& transform,
                                                 std::span<const double> window,
-                                                std::span<const double> quiet, std::size_t judged,
+                                                const QuietMean& quiet, std::size_t judged,
                                                 std::span<const BinRange> ranges);
 
 }  // namespace kolsky

@@ -6,7 +6,7 @@
 
 namespace kolsky {
 
-Wander::Wander(const WhiteResiduals& residuals)
+Wander::Wander(WhiteResiduals& residuals)
     : Effect({
           .id = "wander",
           .stage = Stage::record,

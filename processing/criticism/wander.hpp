@@ -14,7 +14,7 @@ class Wander final : public Effect {
  public:
   /// @param residuals  whose records it distorts, frozen, so that their noise is known: noise that
   ///   was distorted too would find itself again
-  explicit Wander(const WhiteResiduals& residuals);
+  explicit Wander(WhiteResiduals& residuals);
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override;
 

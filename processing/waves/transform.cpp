@@ -3,6 +3,7 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -135,10 +136,26 @@ struct DampedTransform::State {
     if (!time || !frequency) {
       throw std::bad_alloc();
     }
-    for (std::size_t n = 0; eta_per_s > 0.0 && n < length; ++n) {
-      const double exponent = eta_per_s * period_s * static_cast<double>(n);
-      damping[n] = std::exp(-exponent);
-      undamping[n] = std::exp(exponent) / static_cast<double>(length);
+    if (eta_per_s > 0.0) {
+      damp(eta_per_s * period_s);
+    }
+  }
+
+  void damp(double eta_per_sample) {
+    constexpr std::size_t kBlock = 64;
+    const auto after = [&](std::size_t n) {
+      return std::exp(-eta_per_sample * static_cast<double>(n));
+    };
+    std::array<double, kBlock> within;
+    for (std::size_t n = 0; n < kBlock; ++n) {
+      within[n] = after(n);
+    }
+    for (std::size_t first = 0; first < length; first += kBlock) {
+      const double before = after(first);
+      for (std::size_t n = first; n < std::min(first + kBlock, length); ++n) {
+        damping[n] = before * within[n - first];
+        undamping[n] = 1.0 / (damping[n] * static_cast<double>(length));
+      }
     }
   }
 };

@@ -86,7 +86,8 @@ TEST(TileNoise, MeanAndVarianceAreThoseOfManyRecordsOfNoise) {
   std::fill(quiet.begin(), quiet.begin() + 16, 1.0 / 16.0);
   const std::vector<BinRange> ranges{{0, 5}, {5, 9}, {9, kSamples / 2 + 1}};
   DampedTransform transform(kSamples, 1.0, 1.0);
-  const auto expected = tile_noise(transform, window, quiet, kJudged, ranges);
+  const auto expected =
+      tile_noise(transform, window, QuietMean(transform, quiet, kJudged), kJudged, ranges);
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   std::vector<double> sum(3, 0.0);

@@ -40,7 +40,8 @@ void draw_quiet(Campaign& campaign, double keep, double shared, std::uint64_t se
 }
 
 int pairs_that_share(const Campaign& campaign) {
-  const Eigen::MatrixXd noise = GaugeNoise(campaign, judged_band(campaign, 0.0)).covariance(0);
+  Eigen::MatrixXd noise;
+  GaugeNoise(campaign, judged_band(campaign, 0.0)).put_covariance(0, noise);
   int count = 0;
   for (Eigen::Index a = 0; a < noise.rows(); ++a) {
     for (Eigen::Index b = 0; b < a; ++b) {

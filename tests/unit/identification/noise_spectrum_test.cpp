@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <random>
 
 namespace kolsky {
@@ -54,6 +56,31 @@ TEST(NoiseSpectrum, SlowNoiseThatHardlyShowsInAStretchIsFound) {
     sum += 2.0 * (1.0 - lag / 400.0) * std::pow(kKeep, lag);
   }
   EXPECT_NEAR(noise.variance_of_mean(400) / ((sum + 0.25) / 400.0), 1.0, 0.5);
+}
+
+// Where the likelihood is highest, any factor on all weights together loses: data over model are 1
+// on average over the bins, with the data's transform and the model's power as anyone has them.
+TEST(NoiseSpectrum, WeightsAreWhereTheLikelihoodIsHighest) {
+  constexpr std::size_t kSamples = 240;
+  for (const double keep : {0.0, 0.9, 0.99, 0.999}) {
+    const auto list = stretches(3, kSamples, 0.5, keep);
+    const NoiseSpectrum noise = spectrum_of(list);
+    double sum = 0.0;
+    for (std::size_t k = 1; k < kSamples / 2; ++k) {
+      const double cycles = static_cast<double>(k) / kSamples;
+      double power = 0.0;
+      for (const auto& stretch : list) {
+        std::complex<double> bin = 0.0;
+        for (std::size_t n = 0; n < kSamples; ++n) {
+          const double turn = 2.0 * std::numbers::pi * static_cast<double>(k * n % kSamples);
+          bin += stretch[n] * std::polar(1.0, -turn / kSamples);
+        }
+        power += std::norm(bin) / kSamples / static_cast<double>(list.size());
+      }
+      sum += power / noise.power_within(cycles, kSamples);
+    }
+    EXPECT_NEAR(sum / (kSamples / 2 - 1), 1.0, 1e-4) << keep;
+  }
 }
 
 TEST(NoiseSpectrum, ShapedNoiseIsFollowed) {
