@@ -314,6 +314,13 @@ class Diagnostician {
           law->values[0].value, law->values[0].sd));
     }
     note_friction(current);
+    if (residuals.falling_share() > 0.0) {
+      diagnosis_.notes.push_back(fmt::format(
+          "at the highest speed {:.2g} % of the softening layer is strained beyond 1/(2|b|), from "
+          "where on its law's stress falls with strain: such a strength is outside of what the law "
+          "allows, and its size hangs on the mesh",
+          100.0 * residuals.falling_share()));
+    }
     if (residuals.speed_sd() > 0.0) {
       diagnosis_.notes.push_back(
           fmt::format("speeds scatter by {:.2g} % beyond what is filed or "

@@ -53,6 +53,9 @@ class ImpactResiduals : public ShotResiduals {
               AnchorBy by = AnchorBy::fine);
   /// Where the fine forces were taken last.
   [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
+  /// Of the core or the cover where the fine forces were taken last, at the highest speed: the
+  /// share that is strained beyond what the law of a solid that softens allows.
+  [[nodiscard]] double falling_share() const { return anchors_.back()[1].fine.falling_share; }
   /// Corrects noise and speeds' deviation by how shots of one speed scatter about their mean.
   void calibrate(const Composition& composition, const std::vector<double>& theta);
 
