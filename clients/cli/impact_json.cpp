@@ -85,6 +85,7 @@ JsonValue describe(const ImpactRun& run) {
                     {"core", describe(run.model.layers.front().solid)},
                     {"cover", describe(run.model.layers.back().solid)},
                     {"strained_share", history.strained_share},
+                    {"falling_share", history.falling_share},
                     {"mesh", mesh_of(history)},
                     {"remarks", history.remarks},
                     {"probe_window_s", kRateWindow_s},

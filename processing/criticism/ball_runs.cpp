@@ -66,6 +66,7 @@ std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed
   auto own = std::make_shared<BallRun>();
   own->force_N = std::move(history.force_N);
   own->rebound_m_per_s = history.rebound_speed_m_per_s;
+  own->falling_share = *std::ranges::max_element(history.falling_share);
   const std::scoped_lock held(lock_);
   return known_.emplace(std::move(key), std::move(own)).first->second;
 }

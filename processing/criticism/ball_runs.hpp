@@ -14,6 +14,7 @@ namespace kolsky {
 struct BallRun {
   std::vector<double> force_N;  ///< from first touch, kRunStep_s apart, to the end of the contact
   double rebound_m_per_s = 0.0;
+  double falling_share = 0.0;  ///< of the core or the cover: where its law's stress falls
 };
 
 constexpr double kRunStep_s = 1e-6;

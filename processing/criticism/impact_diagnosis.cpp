@@ -22,6 +22,7 @@ constexpr double kTie = 7.5;            ///< squares of normal deviates, as for 
 constexpr double kAllowedRest = 0.03;   ///< of a misfit that certified effects explain
 constexpr double kUnexplained = -9.2;   ///< ln of the chance that noise leaves as much
 constexpr double kSpeedsDiffer = -9.2;  ///< ln of the chance of strengths so different
+constexpr double kWorthAllowing = 0.8;  ///< of the solver's usual share: less is not worth it
 constexpr double kPart = 0.02;  ///< of what an effect explains: no matter where speeds differ
 const char* const kReading = "three-dimensional-reading";
 constexpr std::array kReadingNames{"full", "bulk-E1", "bulk-Einf", "exact"};
@@ -81,10 +82,18 @@ class Diagnostician {
     options_.progress(fmt::format("impacts at {} speeds on {} and {} elements, then the fit",
                                   records().groups.size(), study_.residuals().meshes().fine,
                                   study_.residuals().meshes().middle));
-    const Studied first = study_.fit(model);
+    Studied first = study_.fit(model);
     first_anchor_ = study_.residuals().anchored_at();
+    options_.progress("testing every effect of the library");
+    std::optional<ImpactSearch> search(std::in_place, study_, first);
+    if (const double share = search->solver_share(); share < kWorthAllowing) {
+      first = study_.allowing(share, first);
+      search.emplace(study_, first);
+    }
     Studied current = first;
-    while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
+    while (add_one(*search, current) && diagnosis_.effects.size() < options_.most_effects) {
+      options_.progress("testing what remains after " + diagnosis_.effects.back());
+      search.emplace(study_, current);
     }
     conclude(first, current);
     return std::move(diagnosis_);
@@ -115,11 +124,7 @@ class Diagnostician {
            (speeds < 2.0 || gain_on_speeds(current, refit.studied) > 0.0);
   }
 
-  bool add_one(Studied& current) {
-    options_.progress(diagnosis_.effects.empty()
-                          ? "testing every effect of the library"
-                          : "testing what remains after " + diagnosis_.effects.back());
-    ImpactSearch search(study_, current);
+  bool add_one(ImpactSearch& search, Studied& current) {
     options_.progress("refitting rivals");
     const std::vector<ImpactRefit> refits = search.refits();
     scale_ = search.scale();
@@ -290,12 +295,17 @@ class Diagnostician {
     }
     diagnosis_.notes.push_back(fmt::format(
         "judged up to {:.3g} kHz{}; the calculation may be off by {:.2g} % of the force slowly and "
-        "by as much from sample to sample (the mesh of {} elements differs from {} by {:.2g} % "
+        "by as much from sample to sample ({}the mesh of {} elements differs from {} by {:.2g} % "
         "rms), and a square of a deviate counts over {:.2g}: `detectable` says what that leaves",
         1e-3 * window.cutoff_Hz,
         window.to_far_end_only ? ", until the far end's reflection is back" : "",
-        100.0 * residuals.solver_sd(), residuals.meshes().middle, residuals.meshes().fine,
-        100.0 * residuals.mesh_difference(), scale_));
+        100.0 * residuals.solver_sd(),
+        residuals.solver_share() < 1.0
+            ? fmt::format("by these records, {:.2f} of what is allowed for else; ",
+                          residuals.solver_share())
+            : "",
+        residuals.meshes().middle, residuals.meshes().fine, 100.0 * residuals.mesh_difference(),
+        scale_));
     const std::size_t unsaid = records().unsaid_rebounds();
     if (unsaid == study_.campaign().shots.size()) {
       diagnosis_.notes.emplace_back(
@@ -314,6 +324,13 @@ class Diagnostician {
           law->values[0].value, law->values[0].sd));
     }
     note_friction(current);
+    if (residuals.falling_share() > 0.0) {
+      diagnosis_.notes.push_back(fmt::format(
+          "at the highest speed {:.2g} % of the softening layer is strained beyond 1/(2|b|), from "
+          "where on its law's stress falls with strain: such a strength is outside of what the law "
+          "allows, and its size hangs on the mesh",
+          100.0 * residuals.falling_share()));
+    }
     if (residuals.speed_sd() > 0.0) {
       diagnosis_.notes.push_back(
           fmt::format("speeds scatter by {:.2g} % beyond what is filed or "

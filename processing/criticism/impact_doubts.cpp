@@ -123,7 +123,7 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
     }
   }
   mesh_difference_ = std::sqrt(mesh_square / reading_square);
-  solver_sd_ = std::max(kSolverFloor, 2.0 * mesh_difference_);
+  solver_sd_ = std::max(solver_share_ * kSolverFloor, 2.0 * mesh_difference_);
   speed_sd_ = std::max(speed_sd_, records_.own_speed_sd);
   rebound_sd_ = std::max(rebound_sd_, filed_rebound_sd(records_));
   const Eigen::MatrixXd noise = noise_matrix();
@@ -135,6 +135,12 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
     const Eigen::Map<const Eigen::VectorXd> y(judged.data(), noise.rows());
     signal_energy_ += y.dot(noise_inverse_ * y);
   }
+}
+
+void ImpactResiduals::allow(double share, const Composition& composition,
+                            const std::vector<double>& theta) {
+  solver_share_ = share;
+  set_whitening(foretell(composition, theta, executor_.first), composition, theta);
 }
 
 Eigen::MatrixXd ImpactResiduals::doubt_of(const Eigen::MatrixXd& jacobian,

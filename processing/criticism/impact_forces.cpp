@@ -73,6 +73,7 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
 }
 
 void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {
+  solver_share_ = 1.0;
   anchor(composition, theta, AnchorBy::fine);
   Foretold foretold = foretell(composition, theta, executor_.first);
   if (!foretold.sound) {

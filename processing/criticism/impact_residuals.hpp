@@ -53,6 +53,14 @@ class ImpactResiduals : public ShotResiduals {
               AnchorBy by = AnchorBy::fine);
   /// Where the fine forces were taken last.
   [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
+  /// Of the core or the cover where the fine forces were taken last, at the highest speed: the
+  /// share that is strained beyond what the law of a solid that softens allows.
+  [[nodiscard]] double falling_share() const { return anchors_.back()[1].fine.falling_share; }
+  /// Allows for this share of what the force's calculation is commonly off by, and for twice what
+  /// the meshes show at least.
+  void allow(double share, const Composition& composition, const std::vector<double>& theta);
+  [[nodiscard]] double solver_share() const { return solver_share_; }
+  [[nodiscard]] const ImpactWhitening& whitening() const { return *whitening_; }
   /// Corrects noise and speeds' deviation by how shots of one speed scatter about their mean.
   void calibrate(const Composition& composition, const std::vector<double>& theta);
 
@@ -193,6 +201,7 @@ class ImpactResiduals : public ShotResiduals {
   double noise_scale_ = 1.0;
   double speed_sd_ = 0.0;
   double rebound_sd_ = 0.0;
+  double solver_share_ = 1.0;
   double solver_sd_ = 0.0;
   double mesh_difference_ = 0.0;
   double signal_energy_ = 0.0;

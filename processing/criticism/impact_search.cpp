@@ -6,6 +6,7 @@
 
 #include "processing/criticism/own_strengths.hpp"
 #include "processing/criticism/search_trials.hpp"
+#include "processing/criticism/solver_share.hpp"
 #include "processing/criticism/statistics.hpp"
 
 namespace kolsky {
@@ -130,6 +131,10 @@ double ImpactSearch::log_trials() const {
 
 double ImpactSearch::with_search(double log_p) const {
   return std::min(0.0, log_p + std::log(trials_));
+}
+
+double ImpactSearch::solver_share() const {
+  return largest_solver_share(study_.residuals().whitening(), base_.fit, candidates_, directions_);
 }
 
 /// The best variant of each effect within the margin: first order says little where much is

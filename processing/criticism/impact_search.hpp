@@ -40,6 +40,9 @@ class ImpactSearch {
   [[nodiscard]] double with_search(double log_p) const;
   /// The candidates worth it, refitted; the best first.
   [[nodiscard]] std::vector<ImpactRefit> refits();
+  /// Of what is allowed for the calculation's error, what the records leave open
+  /// (solver_share.hpp).
+  [[nodiscard]] double solver_share() const;
   /// Squares of deviates are over this.
   [[nodiscard]] double scale() const { return scale_; }
 

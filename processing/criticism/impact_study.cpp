@@ -216,6 +216,12 @@ Studied ImpactStudy::settled(const Studied& studied) {
   return finish(studied.model, studied.composition, std::move(fit));
 }
 
+Studied ImpactStudy::allowing(double share, const Studied& studied) {
+  residuals_.allow(share, studied.composition, studied.fit.theta);
+  ModelFit fit = fit_by_secants(studied.composition, residuals_, executor_, studied.fit.theta);
+  return finish(studied.model, studied.composition, std::move(fit));
+}
+
 Studied ImpactStudy::as_it_is(const Model& model) {
   Composition composition(model, campaign_);
   ModelFit fit;

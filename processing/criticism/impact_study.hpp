@@ -85,6 +85,8 @@ class ImpactStudy {
   /// With the fine forces taken where a fit has led, and fitted again from there. The whitener
   /// stays.
   [[nodiscard]] Studied settled(const Studied& studied);
+  /// With the solver's error allowed for by this share of the usual, and fitted again.
+  [[nodiscard]] Studied allowing(double share, const Studied& studied);
   [[nodiscard]] Studied as_it_is(const Model& model);
   [[nodiscard]] ImpactComparison compare(const Studied& studied);
 

@@ -152,17 +152,30 @@ Eigen::MatrixXd ImpactWhitening::shared(std::size_t g, std::size_t h) const {
                        size_, size_);
 }
 
-Eigen::MatrixXd ImpactWhitening::pulls(const Eigen::MatrixXd& jacobian) const {
-  Eigen::MatrixXd groups = Eigen::MatrixXd::Zero(mean_root_.rows(), jacobian.cols());
+Eigen::MatrixXd ImpactWhitening::means(const Eigen::MatrixXd& white) const {
+  Eigen::MatrixXd groups = Eigen::MatrixXd::Zero(mean_root_.rows(), white.cols());
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
     const double share = 1.0 / std::sqrt(static_cast<double>(group.shots.size()));
     for (const std::size_t n : group.shots) {
       groups.middleRows(static_cast<Eigen::Index>(g) * size_, size_) +=
-          share * jacobian.middleRows(static_cast<Eigen::Index>(n) * size_, size_);
+          share * white.middleRows(static_cast<Eigen::Index>(n) * size_, size_);
     }
   }
-  return groups.transpose() * mean_root_;
+  return groups;
+}
+
+Eigen::MatrixXd ImpactWhitening::pulls(const Eigen::MatrixXd& jacobian) const {
+  return means(jacobian).transpose() * mean_root_;
+}
+
+Eigen::MatrixXd ImpactWhitening::white_force_doubt() const {
+  Eigen::MatrixXd force = solver_;
+  for (Eigen::Index rebound = size_ - 1; rebound < force.rows(); rebound += size_) {
+    force.row(rebound).setZero();
+    force.col(rebound).setZero();
+  }
+  return mean_root_ * force * mean_root_;
 }
 
 Eigen::VectorXd ImpactWhitening::white(const std::vector<Eigen::VectorXd>& residual) const {

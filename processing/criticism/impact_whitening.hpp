@@ -55,6 +55,11 @@ class ImpactWhitening {
   /// how an error that the shots share pulls at the numbers of a fit. @param jacobian  of white
   /// residuals
   [[nodiscard]] Eigen::MatrixXd pulls(const Eigen::MatrixXd& jacobian) const;
+  /// What white residuals, or derivatives of them, hold of the groups' means, each by itself
+  /// with unit variance.
+  [[nodiscard]] Eigen::MatrixXd means(const Eigen::MatrixXd& white) const;
+  /// The force's part of D as such means have it.
+  [[nodiscard]] Eigen::MatrixXd white_force_doubt() const;
   /// Of D, what the calculation may be off by.
   [[nodiscard]] const Eigen::MatrixXd& solver() const { return solver_; }
   [[nodiscard]] const Eigen::MatrixXd& own(std::size_t group) const { return own_[group]; }

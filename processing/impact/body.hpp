@@ -98,9 +98,9 @@ class Body {
   [[nodiscard]] double axial_stress_Pa(ElementIndex element) const;
   [[nodiscard]] double axial_log_stretch(ElementIndex element) const;
 
-  /// Share of each solid's volume whose equivalent Hencky strain is beyond `strain`.
-  /// @pre as many shares as solids
-  void find_strained_share(double strain, std::span<double> share) const;
+  /// Share of each solid's volume whose equivalent Hencky strain is beyond its own of `strain`.
+  /// @pre as many strains and shares as solids
+  void find_strained_share(std::span<const double> strain, std::span<double> share) const;
 
   /// The element whose area has shrunk most: the inverted one, where there is one.
   [[nodiscard]] ElementIndex most_squeezed() const;

@@ -38,7 +38,7 @@ double Body::axial_log_stretch(ElementIndex element) const {
   return total;
 }
 
-void Body::find_strained_share(double strain, std::span<double> share) const {
+void Body::find_strained_share(std::span<const double> strain, std::span<double> share) const {
   std::fill(share.begin(), share.end(), 0.0);
   for (const Range& range : ranges_) {
     const Block& block = mesh_.blocks[range.region.block];
@@ -54,7 +54,7 @@ void Body::find_strained_share(double strain, std::span<double> share) const {
         const double volume = range.geometry[(kGeometryArrays - 1) * range.elements.pitch +
                                              row * block.stride() + column];
         share[range.region.solid] +=
-            equivalent > strain ? volume / volume_m3_[range.region.solid] : 0.0;
+            equivalent > strain[range.region.solid] ? volume / volume_m3_[range.region.solid] : 0.0;
       }
     }
   }

@@ -142,10 +142,17 @@ class Run {
 
   [[nodiscard]] std::string when() const { return in_words(time_s_, "s"); }
 
+  [[nodiscard]] bool softens() const {
+    return std::any_of(model_.layers.begin(), model_.layers.end(),
+                       [](const Layer& layer) { return layer.solid.nonlinearity < 0.0; });
+  }
+
   void refuse_inverted() const {
     throw InputError("impact",
                      ball_.describe(ball_.most_squeezed()) + " turned inside out at " + when(),
-                     "lower the speed, stiffen the solid or change the number of elements");
+                     softens() ? "soften the solid less or lower the speed"
+                               : "lower the speed, stiffen the solid or change the number of "
+                                 "elements");
   }
 
   void step() {
@@ -240,7 +247,7 @@ class Run {
     }
     if (time_s_ > kLongest_s) {
       throw InputError("impact", "the ball has not left the target by " + when(),
-                       "stiffen its solids, raise the speed, or give a duration");
+                       "stiffen its solids or raise the speed");
     }
     const double seen_s = gauge_delay_s();
     return survey_ && last_touch_s_ > 0.0 && time_s_ > last_touch_s_ + kLeftAfter_s + seen_s &&
@@ -285,6 +292,18 @@ class Run {
       history.remarks.emplace_back(
           "off-centre contact as its mean round the axis: what overhangs carries no load; the "
           "bending it puts into the bar is not computed");
+    }
+    for (std::size_t i = 0; i < history.falling_share.size(); ++i) {
+      const Solid& solid = model_.layers[i].solid;
+      if (history.falling_share[i] > 0.0) {
+        history.remarks.push_back(
+            in_words(0.1 * std::round(1e3 * history.falling_share[i]), "%") + " of layer " +
+            std::to_string(i + 1) + " is strained beyond " +
+            in_words(solid.falls_beyond_strain(), "") +
+            ", from where on stress falls with strain at a nonlinearity of " +
+            in_words(solid.nonlinearity, "") +
+            ": outside of what the law allows, and what is calculated hangs on the mesh");
+      }
     }
     for (std::size_t i = 0; !energy_.dissipated_by_difference && i < history.strained_share.size();
          ++i) {

@@ -56,6 +56,8 @@ struct ImpactHistory {
   double largest_contact_radius_m = 0.0;
   std::vector<double>
       strained_share;  ///< by layer: volume beyond 0.1 equivalent Hencky strain at the turn
+  std::vector<double>
+      falling_share;  ///< by layer: volume where stress falls with strain, at the turn
   double impulse_N_s = 0.0;
   double rebound_speed_m_per_s = 0.0;  ///< of the centre of mass
   double restitution = 0.0;

@@ -44,7 +44,12 @@ Observer::Observer(const ImpactModel& model, const Body& ball, double longest_s)
       positions_m_(model.gauge_positions_m),
       field_times_s_(model.field_times_s),
       field_at_turn_(model.field_at_turn) {
+  small_strain_.assign(model.layers.size(), kSmallStrain);
   strained_share_.assign(model.layers.size(), 0.0);
+  for (const Layer& layer : model.layers) {
+    falling_strain_.push_back(layer.solid.falls_beyond_strain());
+  }
+  falling_share_.assign(model.layers.size(), 0.0);
   const auto room = static_cast<std::size_t>(longest_s / interval_s_) + 3;
   impulse_.assign(room, 0.0);
   radius_m_.reserve(room);
@@ -156,7 +161,8 @@ void Observer::watch_turn(double time_s, const Body& ball) {
     return;
   }
   turned_ = true;
-  ball.find_strained_share(kSmallStrain, strained_share_);
+  ball.find_strained_share(small_strain_, strained_share_);
+  ball.find_strained_share(falling_strain_, falling_share_);
   if (field_at_turn_) {
     fields_.push_back(field_of(ball, time_s));
   }
@@ -200,6 +206,7 @@ ImpactHistory Observer::history() {
   history.gauge_strain = std::move(gauge_strain_);
   history.fields = std::move(fields_);
   history.strained_share = std::move(strained_share_);
+  history.falling_share = std::move(falling_share_);
   history.largest_contact_radius_m = largest_radius_m_;
   return history;
 }

@@ -43,7 +43,10 @@ class Observer {
   double last_s_ = 0.0;
   double largest_radius_m_ = 0.0;
   bool turned_ = false;
+  std::vector<double> small_strain_;  ///< by layer: to which its law was identified
   std::vector<double> strained_share_;
+  std::vector<double> falling_strain_;  ///< by layer: from which its law's stress falls
+  std::vector<double> falling_share_;
   std::vector<Field> fields_;
 };
 

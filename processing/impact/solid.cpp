@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
@@ -211,6 +212,11 @@ double Solid::bulk_instantaneous_Pa() const {
     modulus += arm.bulk_Pa;
   }
   return modulus;
+}
+
+double Solid::falls_beyond_strain() const {
+  // (1 + b e) e is steepest at no strain and level here.
+  return nonlinearity < 0.0 ? -0.5 / nonlinearity : std::numeric_limits<double>::infinity();
 }
 
 double Solid::fastest_wave_m_per_s() const {

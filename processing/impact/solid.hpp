@@ -85,6 +85,9 @@ struct Solid {
 
   [[nodiscard]] double shear_instantaneous_Pa() const;
   [[nodiscard]] double bulk_instantaneous_Pa() const;
+  /// Equivalent strain from which on the deviatoric stress falls, 1 / (2 |b|) of a solid that
+  /// softens: nothing holds its shape there. Of others, infinite.
+  [[nodiscard]] double falls_beyond_strain() const;
   /// Of pressure waves at the front, undeformed.
   [[nodiscard]] double fastest_wave_m_per_s() const;
 };

@@ -30,13 +30,17 @@ struct Settings {
   int repeats = 1;
   int nulls = 3;
   int jobs = 1;
-  std::size_t across = 0;  ///< of the generator's mesh; 0: drawn for every case
+  std::vector<std::size_t> across{7, 10};  ///< least and most of the generator's mesh
+  double size = 1.0;                       ///< of every strength, over the usual
+  bool held = false;                       ///< materials
+  bool quick = false;
 };
 
-/// What can be hidden, in the sizes that are tried.
+/// What can be hidden, in the sizes that are tried. Friction and what is off centre come in one.
 struct Kind {
   testing::HiddenEffect effect;
   void (*hide)(double strength, ImpactWishes& wishes);
+  bool sized = true;
 };
 
 const std::vector<Kind>& kinds() {
@@ -50,29 +54,50 @@ const std::vector<Kind>& kinds() {
          w.core_tau_s = 1.5e-4;
        }},
       {{"cover-nonlinearity", "", 6.0, {}}, [](double b, ImpactWishes& w) { w.cover_b = b; }},
-      {{"contact-friction", "", 0.0, {}}, [](double mu, ImpactWishes& w) { w.friction = mu; }},
+      {{"cover-second-relaxation", "", 2e-9, {}},
+       [](double D, ImpactWishes& w) {
+         w.cover_D_per_Pa = D;
+         w.cover_tau_s = 1e-4;
+       }},
+      {{"contact-friction", "", 0.0, {}},
+       [](double mu, ImpactWishes& w) { w.friction = mu; },
+       false},
       {{"bridge-nonlinearity", "", 240.0, {}}, [](double b, ImpactWishes& w) { w.bridge_b = b; }},
-      {{"off-centre-contact", "", 4e-3, {}}, [](double d, ImpactWishes& w) { w.offset_m = d; }}};
+      {{"off-centre-contact", "", 4e-3, {}},
+       [](double d, ImpactWishes& w) { w.offset_m = d; },
+       false}};
   return all;
 }
+
+/// Which of these are hidden together.
+constexpr std::array<std::pair<std::size_t, std::size_t>, 2> kPairs{{{0, 7}, {2, 3}}};
 
 struct Draw {
   Case drawn;
   ImpactWishes wishes;
 };
 
-/// Materials within what is filed of them, another mesh and noise for every case.
-ImpactWishes drawn_wishes(std::uint64_t seed) {
+/// Other speeds, friction, mesh and noise for every case; materials within what is filed of them.
+ImpactWishes drawn_wishes(std::uint64_t seed, const Settings& settings) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   ImpactWishes wishes;
   wishes.seed = random();
-  wishes.shots = 4;
+  const double slowest = between(20.0, 33.0);
+  const double fastest = between(44.0, 52.0);
+  wishes.speeds_m_per_s = {slowest, std::sqrt(slowest * fastest), fastest};
+  wishes.shots = std::uniform_int_distribution<std::size_t>(3, 5)(random);
   wishes.speed_error = 1e-3;
-  wishes.rebound_error = 2e-3;
-  wishes.across = std::uniform_int_distribution<std::size_t>(7, 10)(random);
+  wishes.rebound_error = between(1e-3, 2e-3);
+  wishes.noise_strain = between(0.5e-6, 1.5e-6);
+  wishes.friction = between(0.2, 0.35);
+  wishes.across = std::uniform_int_distribution<std::size_t>(settings.across.front(),
+                                                             settings.across.back())(random);
   for (double& modulus : wishes.moduli) {
-    modulus = 1.0 + kModulus_sd * normal(random);
+    modulus = settings.held ? 1.0 : 1.0 + kModulus_sd * normal(random);
   }
   return wishes;
 }
@@ -81,8 +106,7 @@ std::vector<Draw> draws_of(const Settings& settings) {
   std::vector<Draw> list;
   const auto add = [&](std::string id, CaseKind kind) -> Draw& {
     Draw& own = list.emplace_back();
-    own.wishes = drawn_wishes(1000 * settings.seed + list.size());
-    own.wishes.across = settings.across > 0 ? settings.across : own.wishes.across;
+    own.wishes = drawn_wishes(1000 * settings.seed + list.size(), settings);
     own.drawn.id = std::move(id);
     own.drawn.kind = kind;
     return own;
@@ -90,12 +114,26 @@ std::vector<Draw> draws_of(const Settings& settings) {
   for (int n = 0; n < settings.nulls; ++n) {
     add(fmt::format("null-{}", n), CaseKind::null);
   }
+  const auto hide = [&](const Kind& kind, Draw& own) {
+    testing::HiddenEffect effect = kind.effect;
+    effect.strength *= kind.sized ? settings.size : 1.0;
+    kind.hide(effect.strength, own.wishes);
+    own.drawn.campaign.effects.push_back(effect);
+  };
+  const auto called = [&](const Kind& kind) {
+    return fmt::format("{}={:g}", kind.effect.id,
+                       kind.effect.strength * (kind.sized ? settings.size : 1.0));
+  };
   for (int n = 0; n < settings.repeats; ++n) {
     for (const Kind& kind : kinds()) {
-      Draw& own =
-          add(fmt::format("{}={:g}-{}", kind.effect.id, kind.effect.strength, n), CaseKind::single);
-      kind.hide(kind.effect.strength, own.wishes);
-      own.drawn.campaign.effects = {kind.effect};
+      hide(kind, add(fmt::format("{}-{}", called(kind), n), CaseKind::single));
+    }
+    for (const auto& [first, second] : kPairs) {
+      const Kind& one = kinds()[first];
+      const Kind& other = kinds()[second];
+      Draw& own = add(fmt::format("{}+{}-{}", called(one), called(other), n), CaseKind::two);
+      hide(one, own);
+      hide(other, own);
     }
   }
   std::erase_if(
@@ -116,7 +154,8 @@ std::filesystem::path write_material(const std::filesystem::path& file, double d
   return file;
 }
 
-CaseFiles write_impacts(const Draw& own, const std::filesystem::path& root) {
+CaseFiles write_impacts(const Draw& own, const Settings& settings) {
+  const std::filesystem::path root = settings.out;
   CaseFiles files;
   files.folder = root / "cases" / own.drawn.id;
   files.bench = files.folder / "bench.toml";
@@ -124,13 +163,15 @@ CaseFiles write_impacts(const Draw& own, const std::filesystem::path& root) {
   files.kind = "impact";
   files.captures = testing::write_campaign({.folder = files.folder, .tables = false},
                                            testing::impact_shots(own.wishes));
-  files.core = write_material(files.folder / "core.toml", 1140.0, 0.376, {121e6, 143e6, 2860.0});
-  files.cover = write_material(files.folder / "cover.toml", 960.0, 0.319, {987e6, 452e6, 6020.0});
+  if (!settings.held) {
+    files.core = write_material(files.folder / "core.toml", 1140.0, 0.376, {121e6, 143e6, 2860.0});
+    files.cover = write_material(files.folder / "cover.toml", 960.0, 0.319, {987e6, 452e6, 6020.0});
+  }
   std::filesystem::create_directories(files.truth.parent_path());
-  nlohmann::json truth{{"effects", nlohmann::json::array()},
-                       {"moduli", own.wishes.moduli},
-                       {"across", own.wishes.across},
-                       {"seed", own.wishes.seed}};
+  nlohmann::json truth{
+      {"effects", nlohmann::json::array()}, {"moduli", own.wishes.moduli},
+      {"across", own.wishes.across},        {"speeds_m_per_s", own.wishes.speeds_m_per_s},
+      {"friction", own.wishes.friction},    {"seed", own.wishes.seed}};
   for (const testing::HiddenEffect& effect : own.drawn.campaign.effects) {
     truth["effects"].push_back({{"effect", effect.name()}, {"strength", effect.strength}});
   }
@@ -200,9 +241,10 @@ int run(const Settings& settings) {
                            "closed", "z", "left/noise", "claimed (~ tied)");
   const auto work = [&] {
     for (std::size_t i = next++; i < draws.size(); i = next++) {
-      const CaseFiles files = write_impacts(draws[i], settings.out);
+      const CaseFiles files = write_impacts(draws[i], settings);
       verdicts[i] = judge(draws[i].drawn, diagnose(settings.analyser, files));
-      const std::string left = left_of(compare_found(settings.analyser, files));
+      const std::string left =
+          settings.quick ? "" : left_of(compare_found(settings.analyser, files));
       const std::lock_guard lock(mutex);
       std::cout << line_of(verdicts[i], left) << std::flush;
     }
@@ -239,8 +281,12 @@ int main(int argc, char** argv) {
   app.add_option("--only", settings.only, "cases with this in their name");
   app.add_option("--jobs", settings.jobs);
   app.add_option("--across", settings.across,
-                 "cells of the generator's mesh, else 7 to 10: 24 take minutes a case and leave no "
-                 "error of its own that noise does not hide");
+                 "cells of the generator's mesh, or least and most of them, else 7 to 10: 24 take "
+                 "minutes a case and leave no error of its own that noise does not hide")
+      ->expected(1, 2);
+  app.add_option("--size", settings.size, "of every hidden strength, over the usual");
+  app.add_flag("--held", settings.held, "materials as filed, and not fitted");
+  app.add_flag("--quick", settings.quick, "do not ask what the model found leaves");
   app.add_option("--timeout", settings.analyser.timeout_s, "s per command");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -82,6 +82,14 @@ JsonObject describe(const Diagnosis& diagnosis) {
                     {"notes", diagnosis.notes}};
 }
 
+std::string notes(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const std::string& note : diagnosis.notes) {
+    text += "  note: " + note + "\n";
+  }
+  return text;
+}
+
 std::string report(const Diagnosis& diagnosis) {
   std::string text = "verdict: " + kolsky::name_of(diagnosis.verdict) + "\n";
   for (const std::string& id : diagnosis.effects) {
@@ -91,6 +99,9 @@ std::string report(const Diagnosis& diagnosis) {
       text += (i == 0 ? "   (cannot be told from " : ", ") + ties[i];
     }
     text += ties.empty() ? "\n" : ")\n";
+  }
+  if (!diagnosis.model) {
+    return text + notes(diagnosis);
   }
   text +=
       fmt::format("  held-out misfit {:.4f} -> {:.4f}, noise alone {:.4f}\n",
@@ -116,10 +127,7 @@ std::string report(const Diagnosis& diagnosis) {
   for (const NextExperiment& next : diagnosis.next_experiment) {
     text += "\n  next: " + next.change + "\n";
   }
-  for (const std::string& note : diagnosis.notes) {
-    text += "  note: " + note + "\n";
-  }
-  return text;
+  return text + notes(diagnosis);
 }
 
 Diagnosis examine_impacts(const Settings& settings, const Model& model,

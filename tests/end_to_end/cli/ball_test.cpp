@@ -316,6 +316,23 @@ TEST_F(BallTables, RepeatsAreGroupedBySpeed) {
   EXPECT_EQ(kolsky({"reduce", folder_ / "a.h5", folder_ / "c.h5"}).code, 0);
 }
 
+TEST_F(BallTables, DataThatNothingWasFittedToHaveNoTableOfEffects) {
+  // In km/h.
+  const std::string capture = import("fast", 183.6, 0.1);
+  const std::string model = folder_ / "m.toml";
+  ASSERT_EQ(
+      kolsky({"model", "new", "--kind", "impact", "--bench", folder_ / "bench.toml", "-o", model})
+          .code,
+      0);
+  const Answer told = kolsky({"diagnose", capture, "--model", model});
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_NE(told.out.find("verdict: bad-data"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("note: "), std::string::npos) << told.out;
+  for (const std::string unwanted : {"held-out misfit", "detectable"}) {
+    EXPECT_EQ(told.out.find(unwanted), std::string::npos) << told.out;
+  }
+}
+
 // The ball's surface is at the gap g from the face; it blocks a beam at d from g = d - 42.7 mm to g
 // = d.
 TEST_F(BallTables, PhotoSensorsAreColumnsByTheirNames) {

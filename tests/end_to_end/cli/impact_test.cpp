@@ -144,7 +144,12 @@ TEST(Impact, RefusesWhatCannotBe) {
   refuses(impact({"--speed", "40", "--core-relaxation", "1e-9"}), {"--core-relaxation", "comma"});
   refuses(impact({"--speed", "40", "--core-relaxation", "-1e-9,1e-4"}), {"compliance"});
   refuses(impact({"--speed", "40", "--offset", "0.02"}), {"--offset", "edge"});
-  refuses(impact({"--speed", "51", "--core-nonlinearity", "-2"}), {"element", "turned inside out"});
+  refuses(impact({"--speed", "51", "--core-nonlinearity", "-2"}),
+          {"element", "turned inside out", "soften the solid less"});
+  const std::vector<std::string> creeping = impact({"--speed", "1e-9", "--elements", "300"});
+  refuses(creeping, {"has not left the target", "raise the speed"});
+  EXPECT_EQ(scene::kolsky(creeping).err.find("duration"), std::string::npos)
+      << "no option of the command";
   std::vector<std::string> shpb = impact({"--speed", "40"});
   shpb[2] = kBenches + "paper-shpb.toml";
   refuses(shpb, {"paper-shpb.toml", "kind", "impact"});

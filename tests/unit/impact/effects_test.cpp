@@ -123,5 +123,24 @@ TEST(Effects, OffCentreContactOverhangsAndSaysSo) {
   EXPECT_EQ(simulate(slow).peak_force_N, plain);
 }
 
+/// 51 m/s strain the core to some 0.45; what softens by b carries most at 1 / (2 |b|).
+TEST(Effects, SofteningBeyondWhatTheLawAllowsIsSaid) {
+  ImpactModel model = small(51.0);
+  const auto falling = [&](double b) {
+    model.layers[0].solid.nonlinearity = b;
+    const ImpactHistory history = simulate(model);
+    const bool said =
+        std::any_of(history.remarks.begin(), history.remarks.end(), [](const std::string& remark) {
+          return remark.find("stress falls with strain") != std::string::npos;
+        });
+    EXPECT_EQ(said, history.falling_share[0] > 0.0) << b;
+    EXPECT_EQ(history.falling_share[1], 0.0) << b;
+    return history.falling_share[0];
+  };
+  EXPECT_EQ(falling(-0.9), 0.0);
+  EXPECT_EQ(falling(1.5), 0.0);
+  EXPECT_GT(falling(-1.2), 0.0);
+}
+
 }  // namespace
 }  // namespace kolsky::impact
