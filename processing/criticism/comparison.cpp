@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "processing/criticism/statistics.hpp"
 
@@ -65,25 +63,6 @@ bool alike(const std::vector<ArrivalWindow>& a, const std::vector<ArrivalWindow>
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const auto& one, const auto& other) { return one.weight == other.weight; });
 }
-
-using Key = std::tuple<std::size_t, std::string, std::size_t>;
-
-/// How much of a place's spectra follows the sources, shot by shot.
-class Following {
- public:
-  void add(Complex value, Complex source) {
-    all_ += std::norm(value);
-    power_ += std::norm(source);
-    sum_ += value * std::conj(source);
-  }
-  [[nodiscard]] double all() const { return all_; }
-  [[nodiscard]] double followed() const { return power_ > 0.0 ? std::norm(sum_) / power_ : 0.0; }
-
- private:
-  double all_ = 0.0;
-  double power_ = 0.0;
-  Complex sum_ = 0.0;
-};
 
 }  // namespace
 
@@ -234,12 +213,101 @@ std::vector<Tile> Comparer::compare_shot(std::size_t shot) {
 }
 
 Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit) {
-  const std::size_t shots = residuals_.campaign().shots.size();
-  const std::size_t bins = residuals_.band().bins_judged;
   Comparison comparison;
   comparison.misfit = misfit;
   comparison.bands = bands_;
-  // One shot shows nothing that follows its source or not.
+  const std::map<Key, std::vector<Following>> following = add_all_tiles(white, comparison.tiles);
+  mark_significant(comparison.tiles);
+  std::map<Key, Region> regions = regions_of(comparison.tiles);
+  const std::size_t shots = residuals_.campaign().shots.size();
+  if (shots > 1) {
+    for (auto& [key, region] : regions) {
+      region.log_p = region.noise.log_tail(region.energy);
+      const auto own = following.find(key);
+      region.repeat_log_p = own != following.end() ? repeat_log_p(region, own->second, shots) : 0.0;
+    }
+  }
+  mark_regions(regions);
+  comparison.excess = share_out(comparison.tiles, regions);
+  for (auto& [key, region] : regions) {
+    comparison.regions.push_back(std::move(region));
+  }
+  const auto larger = [](const auto& a, const auto& b) { return a.share > b.share; };
+  std::stable_sort(comparison.tiles.begin(), comparison.tiles.end(), larger);
+  std::stable_sort(comparison.regions.begin(), comparison.regions.end(), larger);
+  return comparison;
+}
+
+std::map<Comparer::Key, Region> Comparer::regions_of(const std::vector<Tile>& tiles) {
+  std::map<Key, Region> regions;
+  for (const Tile& tile : tiles) {
+    Region& region = regions[{tile.gauge, tile.window, tile.band}];
+    region.gauge = tile.gauge;
+    region.window = tile.window;
+    region.band = tile.band;
+    region.energy += tile.energy;
+    region.noise += tile.noise;
+    region.log_p = tile.log_p;
+  }
+  return regions;
+}
+
+/// ln of the chance that so much of a place follows the sources, by Fisher's F.
+double Comparer::repeat_log_p(const Region& region, const std::vector<Following>& bins,
+                              std::size_t shots) {
+  double followed = 0.0;
+  double total = 0.0;
+  for (const Following& bin : bins) {
+    followed += bin.followed();
+    total += bin.all();
+  }
+  if (total <= followed) {
+    return 0.0;
+  }
+  const double free = region.noise.freedom() / static_cast<double>(shots);
+  const double rest = free * static_cast<double>(shots - 1);
+  return log_f_tail((followed / free) / ((total - followed) / rest), free, rest);
+}
+
+void Comparer::mark_regions(std::map<Key, Region>& regions) {
+  std::vector<double> log_ps;
+  std::vector<double> repeat_log_ps;
+  for (const auto& [key, region] : regions) {
+    log_ps.push_back(region.log_p);
+    repeat_log_ps.push_back(region.repeat_log_p);
+  }
+  const double limit = discovery_limit(std::move(log_ps));
+  const double repeat_limit = discovery_limit(std::move(repeat_log_ps));
+  for (auto& [key, region] : regions) {
+    region.significant = region.log_p <= limit;
+    region.repeats = region.significant && region.repeat_log_p <= repeat_limit;
+  }
+}
+
+/// @return chi-square over what noise leaves, over all tiles
+double Comparer::share_out(std::vector<Tile>& tiles, std::map<Key, Region>& regions) {
+  const auto over = [](const Tile& tile) { return std::max(0.0, tile.energy - tile.noise.mean); };
+  double excess = 0.0;
+  for (const Tile& tile : tiles) {
+    excess += over(tile);
+  }
+  for (Tile& tile : tiles) {
+    Region& region = regions[{tile.gauge, tile.window, tile.band}];
+    tile.share = excess > 0.0 ? over(tile) / excess : 0.0;
+    // A place that fails over all shots does so in every shot that shows it at all.
+    tile.significant =
+        tile.significant || (region.significant && tile.log_p < std::log(kFalseDiscovery));
+    tile.repeats = tile.significant && region.repeats;
+    region.share += tile.share;
+  }
+  return excess;
+}
+
+/// @return of the places of all shots together, what of each bin follows the sources: one shot
+///   shows nothing of it, and then this is empty
+std::map<Comparer::Key, std::vector<Comparer::Following>> Comparer::add_all_tiles(
+    const Eigen::VectorXd& white, std::vector<Tile>& tiles) {
+  const std::size_t shots = residuals_.campaign().shots.size();
   std::vector<Spectrum> sources;
   for (std::size_t n = 0; shots > 1 && n < shots; ++n) {
     sources.push_back(residuals_.source_spectrum(n, white));
@@ -248,79 +316,26 @@ Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit)
   for (const GaugeDeviation& reading : deviations_.of_shots(0, shots)) {
     for (std::size_t n = 0; n < shots; ++n) {
       const auto windows = windowed(reading.records[n], n, reading.gauge);
-      add_tiles(reading, windows, n, comparison.tiles);
-      if (sources.empty()) {
-        continue;
-      }
-      for (const Windowed& own : windows) {
-        for (std::size_t b = 0; b < bands_.size(); ++b) {
-          auto& bin = following[{reading.gauge, own.window->name, b}];
-          bin.resize(bins);
-          for (std::size_t f = std::max<std::size_t>(1, bands_[b].bins.first);
-               f < std::min(bands_[b].bins.end, bins + 1); ++f) {
-            bin[f - 1].add(own.spectrum[f], sources[n][f - 1]);
-          }
-        }
+      add_tiles(reading, windows, n, tiles);
+      for (std::size_t w = 0; !sources.empty() && w < windows.size(); ++w) {
+        follow(windows[w], sources[n], reading.gauge, following);
       }
     }
   }
-  mark_significant(comparison.tiles);
+  return following;
+}
 
-  std::map<Key, Region> regions;
-  for (const Tile& tile : comparison.tiles) {
-    Region& region = regions[{tile.gauge, tile.window, tile.band}];
-    region.gauge = tile.gauge;
-    region.window = tile.window;
-    region.band = tile.band;
-    region.energy += tile.energy;
-    region.noise += tile.noise;
-    region.log_p = tile.log_p;
-    comparison.excess += std::max(0.0, tile.energy - tile.noise.mean);
-  }
-  for (auto& [key, region] : regions) {
-    if (shots > 1) {
-      region.log_p = region.noise.log_tail(region.energy);
+void Comparer::follow(const Windowed& own, const Spectrum& source, std::size_t gauge,
+                      std::map<Key, std::vector<Following>>& following) const {
+  const std::size_t bins = residuals_.band().bins_judged;
+  for (std::size_t b = 0; b < bands_.size(); ++b) {
+    auto& bin = following[{gauge, own.window->name, b}];
+    bin.resize(bins);
+    for (std::size_t f = std::max<std::size_t>(1, bands_[b].bins.first);
+         f < std::min(bands_[b].bins.end, bins + 1); ++f) {
+      bin[f - 1].add(own.spectrum[f], source[f - 1]);
     }
-    double followed = 0.0;
-    double total = 0.0;
-    for (const Following& bin : following[key]) {
-      followed += bin.followed();
-      total += bin.all();
-    }
-    if (shots > 1 && total > followed) {
-      const double free = region.noise.freedom() / static_cast<double>(shots);
-      const double rest = free * static_cast<double>(shots - 1);
-      region.repeat_log_p = log_f_tail((followed / free) / ((total - followed) / rest), free, rest);
-    }
-    comparison.regions.push_back(region);
   }
-  mark_significant(comparison.regions);
-  std::vector<double> repeat_log_ps;
-  for (const Region& region : comparison.regions) {
-    repeat_log_ps.push_back(region.repeat_log_p);
-  }
-  const double repeat_limit = discovery_limit(std::move(repeat_log_ps));
-  for (Region& region : comparison.regions) {
-    region.repeats = region.significant && region.repeat_log_p <= repeat_limit;
-    regions[{region.gauge, region.window, region.band}] = region;
-  }
-  for (Tile& tile : comparison.tiles) {
-    Region& region = regions[{tile.gauge, tile.window, tile.band}];
-    const double over = std::max(0.0, tile.energy - tile.noise.mean);
-    tile.share = comparison.excess > 0.0 ? over / comparison.excess : 0.0;
-    // A place that fails over all shots does so in every shot that shows it at all.
-    tile.significant =
-        tile.significant || (region.significant && tile.log_p < std::log(kFalseDiscovery));
-    tile.repeats = tile.significant && region.repeats;
-    region.share += tile.share;
-  }
-  for (Region& region : comparison.regions) {
-    region.share = regions[{region.gauge, region.window, region.band}].share;
-  }
-  const auto larger = [](const auto& a, const auto& b) { return a.share > b.share; };
-  std::stable_sort(comparison.tiles.begin(), comparison.tiles.end(), larger);
-  std::stable_sort(comparison.regions.begin(), comparison.regions.end(), larger);
-  return comparison;
 }
 
 ComparedRecord Comparer::record(std::span<const double> white, std::size_t shot,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "processing/criticism/arrival_windows.hpp"
@@ -97,6 +99,25 @@ class Comparer {
     Spectrum spectrum;
   };
 
+  using Key = std::tuple<std::size_t, std::string, std::size_t>;  ///< gauge, window and band
+
+  /// How much of a place's spectra follows the sources, shot by shot.
+  class Following {
+   public:
+    void add(Complex value, Complex source) {
+      all_ += std::norm(value);
+      power_ += std::norm(source);
+      sum_ += value * std::conj(source);
+    }
+    [[nodiscard]] double all() const { return all_; }
+    [[nodiscard]] double followed() const { return power_ > 0.0 ? std::norm(sum_) / power_ : 0.0; }
+
+   private:
+    double all_ = 0.0;
+    double power_ = 0.0;
+    Complex sum_ = 0.0;
+  };
+
   void choose_bands();
   [[nodiscard]] std::vector<Windowed> windowed(std::vector<double> record, std::size_t shot,
                                                std::size_t gauge);
@@ -104,6 +125,15 @@ class Comparer {
                  std::size_t shot, std::vector<Tile>& tiles);
   [[nodiscard]] std::vector<std::vector<TileNoise>> noise_in(
       const std::vector<ArrivalWindow>& windows, const std::vector<double>& quiet);
+  [[nodiscard]] std::map<Key, std::vector<Following>> add_all_tiles(const Eigen::VectorXd& white,
+                                                                    std::vector<Tile>& tiles);
+  void follow(const Windowed& own, const Spectrum& source, std::size_t gauge,
+              std::map<Key, std::vector<Following>>& following) const;
+  [[nodiscard]] static std::map<Key, Region> regions_of(const std::vector<Tile>& tiles);
+  [[nodiscard]] static double repeat_log_p(const Region& region, const std::vector<Following>& bins,
+                                           std::size_t shots);
+  static void mark_regions(std::map<Key, Region>& regions);
+  static double share_out(std::vector<Tile>& tiles, std::map<Key, Region>& regions);
   void level(std::vector<double>& record, std::size_t shot, std::size_t gauge) const;
 
   WhiteResiduals& residuals_;
