@@ -9,34 +9,8 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kFalseDiscovery = 0.005;
 constexpr std::size_t kFewestBins = 4;
 constexpr std::size_t kMostBands = 6;
-
-/// Benjamini and Hochberg: the largest ln p that still counts among these.
-double discovery_limit(std::vector<double> log_ps) {
-  std::sort(log_ps.begin(), log_ps.end());
-  double limit = -HUGE_VAL;
-  for (std::size_t i = 0; i < log_ps.size(); ++i) {
-    const double share = static_cast<double>(i + 1) / static_cast<double>(log_ps.size());
-    if (log_ps[i] <= std::log(kFalseDiscovery * share)) {
-      limit = log_ps[i];
-    }
-  }
-  return limit;
-}
-
-template <class Place>
-void mark_significant(std::vector<Place>& places) {
-  std::vector<double> log_ps;
-  for (const Place& place : places) {
-    log_ps.push_back(place.log_p);
-  }
-  const double limit = discovery_limit(std::move(log_ps));
-  for (Place& place : places) {
-    place.significant = place.log_p <= limit;
-  }
-}
 
 Eigen::Map<const Eigen::VectorXd> as_vector(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};

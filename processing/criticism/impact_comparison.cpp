@@ -62,27 +62,6 @@ std::vector<Window> windows_of(const Eigen::VectorXd& reading) {
   return windows;
 }
 
-/// False discovery held at 0.5 % (Benjamini and Hochberg).
-void mark_significant(std::vector<ImpactTile>& tiles) {
-  std::vector<ImpactTile*> ranked;
-  for (ImpactTile& tile : tiles) {
-    ranked.push_back(&tile);
-  }
-  std::sort(ranked.begin(), ranked.end(),
-            [](const ImpactTile* a, const ImpactTile* b) { return a->log_p < b->log_p; });
-  constexpr double kFalse = 0.005;
-  std::size_t last = 0;
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
-    if (ranked[i]->log_p <=
-        std::log(kFalse * static_cast<double>(i + 1) / static_cast<double>(ranked.size()))) {
-      last = i + 1;
-    }
-  }
-  for (std::size_t i = 0; i < last; ++i) {
-    ranked[i]->significant = true;
-  }
-}
-
 /// Shares what a model leaves of impacts out among speeds and places.
 class ImpactComparer {
  public:

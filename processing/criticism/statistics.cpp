@@ -72,4 +72,16 @@ double equivalent_square(double log_tail) {
   return 0.5 * (low + high);
 }
 
+double discovery_limit(std::vector<double> log_ps) {
+  std::sort(log_ps.begin(), log_ps.end());
+  double limit = -HUGE_VAL;
+  for (std::size_t i = 0; i < log_ps.size(); ++i) {
+    const double share = static_cast<double>(i + 1) / static_cast<double>(log_ps.size());
+    if (log_ps[i] <= std::log(kFalseDiscovery * share)) {
+      limit = log_ps[i];
+    }
+  }
+  return limit;
+}
+
 }  // namespace kolsky

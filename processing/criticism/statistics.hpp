@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 namespace kolsky {
 
 /// ln of the probability that a chi-square variable of k degrees of freedom exceeds x; exact far
@@ -17,5 +20,25 @@ namespace kolsky {
 /// Evidence on one scale whatever the number of free strengths: the square of the normal deviate
 /// with this two-sided tail probability.
 [[nodiscard]] double equivalent_square(double log_tail);
+
+/// Share of false ones among the places that a comparison marks, at most.
+inline constexpr double kFalseDiscovery = 0.005;
+
+/// The largest of these ln p that still counts where false discovery is held at that share
+/// (Benjamini and Hochberg 1995); below all of them where none does.
+[[nodiscard]] double discovery_limit(std::vector<double> log_ps);
+
+/// Marks the places whose `log_p` counts.
+template <class Place>
+void mark_significant(std::vector<Place>& places) {
+  std::vector<double> log_ps;
+  for (const Place& place : places) {
+    log_ps.push_back(place.log_p);
+  }
+  const double limit = discovery_limit(std::move(log_ps));
+  for (Place& place : places) {
+    place.significant = place.log_p <= limit;
+  }
+}
 
 }  // namespace kolsky

@@ -29,6 +29,19 @@ TEST(EquivalentSquare, UndoesTheTailOfOneDegreeOfFreedom) {
   }
 }
 
+TEST(DiscoveryLimit, StepsUpToTheLastThatCounts) {
+  // Of four, at 0.5 %: limits of 1.25, 2.5, 3.75 and 5 in a thousand by rank.
+  const auto limit = [](std::vector<double> ps) {
+    for (double& p : ps) {
+      p = std::log(p);
+    }
+    return std::exp(discovery_limit(std::move(ps)));
+  };
+  EXPECT_NEAR(limit({0.2, 0.0036, 0.0010, 0.0030}), 0.0036, 1e-12) << "0.0030 counts with it";
+  EXPECT_NEAR(limit({0.2, 0.0038, 0.0010, 0.0030}), 0.0010, 1e-12);
+  EXPECT_EQ(limit({0.2, 0.3, 0.0013, 0.9}), 0.0);
+}
+
 TEST(SmoothPower, FindsTheSpectrumThatDrewThePowers) {
   std::mt19937_64 random(7);
   std::gamma_distribution<double> chance(8.0, 1.0 / 8.0);
