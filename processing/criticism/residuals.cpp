@@ -440,6 +440,20 @@ std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) 
   return record;
 }
 
+SpecimenHistories WhiteResiduals::specimen_histories(const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t shot) {
+  Workspace& work = *work_.front();
+  Scene scene(campaign_.bench, campaign_.shots[shot].facts, damped_path_);
+  shape(Effects(composition, theta, shot).on_waves, scene);
+  scene.specimen->further_strain.assign(work.decimated.length(), 0.0);
+  Spectrum source;
+  transform_record(work, signal(shot, campaign_.reference), source);
+  work.response.solve(scene, ratios_of(scene), campaign_.reference, source, damped_filter_,
+                      work.decimated);
+  return {work.response.stress_Pa(), work.response.strain()};
+}
+
 /// A gauge's noise over the judged window at the records' rate, as much of it as residuals show.
 void WhiteResiduals::put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const {
   std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);

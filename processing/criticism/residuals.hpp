@@ -24,6 +24,12 @@ struct PlainResiduals {
   std::size_t before = 0;
 };
 
+/// By step of a specimen's histories (`SpecimenScene::further_strain`).
+struct SpecimenHistories {
+  std::vector<double> stress_Pa;
+  std::vector<double> strain;
+};
+
 /// Whitened residuals of a campaign under compositions of effects.
 ///
 /// Each shot's source is free at all times and eliminated exactly: with H_j a gauge's reading of a
@@ -59,6 +65,12 @@ class WhiteResiduals : public ShotResiduals {
 
   /// A gauge's record less what is known of its noise since `freeze`.
   [[nodiscard]] std::vector<double> signal(std::size_t shot, std::size_t gauge);
+
+  /// What a specimen goes through under a shot's source, as all gauges together have it: errors of
+  /// these histories are independent of the residuals. @param theta  as frozen
+  [[nodiscard]] SpecimenHistories specimen_histories(const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t shot);
 
   /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
   /// each frequency the part that does not follow the shots' sources cannot be an unchanging error

@@ -145,7 +145,8 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     put_history(of_stress_, transform, stress_);
     put_history(of_strain_, transform, strain_);
-    extra_.assign(strain_.size(), 0.0);
+    extra_ = specimen.further_strain;
+    extra_.resize(strain_.size());
     material_.assign(strain_.size(), 0.0);
     accelerated_.assign(strain_.size(), 0.0);
     if (specimen.lateral_inertia_kg_per_m != 0.0) {

@@ -17,6 +17,7 @@ namespace kolsky {
 ///   friction     material stress = measured / (1 + mu d / 3h), current d and h
 ///   gap          bars approach by delta before the specimen is loaded, and again if it reopens
 ///   lateral      - m strain'^2 / 16 of the stress is inertia (its linear part is in the transfers)
+///   further      a given history
 class SpecimenResponse {
  public:
   /// @param transfers   reading relative to the reference's, except the reference's own
@@ -26,6 +27,9 @@ class SpecimenResponse {
              DampedTransform& transform);
 
   [[nodiscard]] const std::vector<Complex>& q() const { return q_; }
+  /// Histories at the last solution, over the transform's length.
+  [[nodiscard]] const std::vector<double>& stress_Pa() const { return stress_; }
+  [[nodiscard]] const std::vector<double>& strain() const { return strain_; }
 
  private:
   /// A history's spectrum is a source's and so much more for each unit of q.

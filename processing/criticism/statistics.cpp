@@ -5,6 +5,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace kolsky {
 
@@ -70,6 +71,25 @@ double equivalent_square(double log_tail) {
     (log_chi2_tail(middle, 1.0) > log_tail ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+double combined_log_p(std::span<const double> log_ps, std::span<const double> weights) {
+  constexpr double kFarOut = -30.0;  // the tangent is the reciprocal there
+  constexpr double kMost = 0.99;     // a chance of nearly 1 would cancel any other
+  const double least = *std::ranges::min_element(log_ps);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < log_ps.size(); ++i) {
+    if (least < kFarOut) {
+      sum += weights[i] * std::exp(least - log_ps[i]);
+    } else {
+      const double p = std::min(kMost, std::exp(log_ps[i]));
+      sum += weights[i] / std::tan(std::numbers::pi * p);
+    }
+  }
+  if (least < kFarOut) {
+    return least - std::log(sum);
+  }
+  return std::log(std::atan2(1.0, sum) / std::numbers::pi);
 }
 
 double discovery_limit(std::vector<double> log_ps) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,12 @@ namespace kolsky {
 /// Evidence on one scale whatever the number of free strengths: the square of the normal deviate
 /// with this two-sided tail probability.
 [[nodiscard]] double equivalent_square(double log_tail);
+
+/// ln of the chance of several tests taken together, whatever depends on what among them (Cauchy's
+/// combination; Liu and Xie 2020): of one that stands out, its own chance over its weight.
+/// @param weights  of sum 1
+[[nodiscard]] double combined_log_p(std::span<const double> log_ps,
+                                    std::span<const double> weights);
 
 /// Share of false ones among the places that a comparison marks, at most.
 inline constexpr double kFalseDiscovery = 0.005;

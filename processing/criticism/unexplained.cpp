@@ -1,9 +1,11 @@
 #include "processing/criticism/unexplained.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/candidates.hpp"
+#include "processing/criticism/departure.hpp"
 #include "processing/criticism/distortion.hpp"
 #include "processing/criticism/statistics.hpp"
 #include "processing/criticism/wander.hpp"
@@ -15,15 +17,31 @@ namespace {
 /// Degrees of freedom by which the quiet before a single pulse tells slow noise.
 constexpr double kOneStretch = 3.0;
 
+/// Columns of one kind of distortion at one place, and where they stand among all.
+struct Kind {
+  Eigen::Index first = 0;
+  Eigen::Index count = 0;
+};
+
+struct Distortions {
+  Eigen::MatrixXd columns;
+  std::vector<Kind> kinds;
+};
+
 /// Residuals of the records, and below them those of the priors.
 struct Extended {
-  Eigen::MatrixXd columns;
+  Distortions distortions;
   Eigen::VectorXd residual;
 };
 
-Eigen::MatrixXd unit_columns(Study& study, const Studied& studied) {
+Distortions unit_columns(Study& study, const Studied& studied) {
   const Wander wander(study.residuals());
+  std::optional<Departure> departure;
   std::vector<EffectUse> uses{null_use(bent_scale_effect())};
+  if (study.campaign().bench.specimen) {
+    departure.emplace(study, studied);
+    uses.push_back(null_use(*departure));
+  }
   for (const std::size_t j : study.residuals().others()) {
     const std::string& gauge = study.campaign().bench.gauges[j].name;
     uses.push_back(null_use(distortion_effect(), gauge));
@@ -33,36 +51,37 @@ Eigen::MatrixXd unit_columns(Study& study, const Studied& studied) {
   study.executor().run(uses.size(), [&](std::size_t i, std::size_t worker) {
     list[i] = direction_of({uses[i], false, false}, studied, study, worker).columns;
   });
+  Distortions out;
   Eigen::Index total = 0;
   for (const Eigen::MatrixXd& own : list) {
+    out.kinds.push_back({total, own.cols()});
     total += own.cols();
   }
-  Eigen::MatrixXd columns(studied.fit.residual.size(), total);
-  Eigen::Index at = 0;
-  for (const Eigen::MatrixXd& own : list) {
-    columns.middleCols(at, own.cols()) = own;
-    at += own.cols();
+  out.columns.resize(studied.fit.residual.size(), total);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    out.columns.middleCols(out.kinds[i].first, out.kinds[i].count) = list[i];
   }
-  columns.colwise().normalize();
-  return columns;
+  out.columns.colwise().normalize();
+  return out;
 }
 
 /// Every distortion, less what the model's own numbers take up of it.
 Extended clear_columns(Study& study, const Studied& studied) {
   const ModelFit& fit = studied.fit;
-  const Eigen::MatrixXd columns = unit_columns(study, studied);
-  const Eigen::MatrixXd taken = fit.covariance * (fit.jacobian.transpose() * columns);
-  const Eigen::Index rows = columns.rows();
+  Distortions unit = unit_columns(study, studied);
+  const Eigen::MatrixXd taken = fit.covariance * (fit.jacobian.transpose() * unit.columns);
+  const Eigen::Index rows = unit.columns.rows();
   const auto numbers = static_cast<Eigen::Index>(fit.theta.size());
-  Extended out{Eigen::MatrixXd::Zero(rows + numbers, columns.cols()),
+  Extended out{{Eigen::MatrixXd::Zero(rows + numbers, unit.columns.cols()), std::move(unit.kinds)},
                Eigen::VectorXd::Zero(rows + numbers)};
-  out.columns.topRows(rows) = columns - fit.jacobian * taken;
+  Eigen::MatrixXd& columns = out.distortions.columns;
+  columns.topRows(rows) = unit.columns - fit.jacobian * taken;
   out.residual.head(rows) = fit.residual;
   for (Eigen::Index i = 0; i < numbers; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const FreeNumber& number = studied.composition.numbers()[at];
     if (number.prior_sd > 0.0) {
-      out.columns.row(rows + i) = -number.scale / number.prior_sd * taken.row(i);
+      columns.row(rows + i) = -number.scale / number.prior_sd * taken.row(i);
       out.residual[rows + i] =
           (number.value_at(fit.theta[at]) - number.prior_mean) / number.prior_sd;
     }
@@ -80,62 +99,103 @@ Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns) {
          values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
-/// Power of what differs between the shots in each direction, over its expectation under noise of
-/// unit variance.
-Eigen::VectorXd between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
+/// Covariance, between directions, of what differs between the shots, over its expectation under
+/// noise of unit variance.
+Eigen::MatrixXd between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
                               std::size_t per_shot, std::size_t count) {
   const auto size = static_cast<Eigen::Index>(per_shot);
   const auto shots = static_cast<Eigen::Index>(count);
-  Eigen::VectorXd powers(directions.cols());
+  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(shots, directions.cols());
+  Eigen::MatrixXd weights = pulls;  // what a strength that all shots share pulls at each
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {
-    double q = 0.0;
-    double all = 0.0;
-    double whole = 0.0;
     for (Eigen::Index n = 0; n < shots; ++n) {
       const auto part = directions.col(i).segment(n * size, size);
-      const double pull = part.dot(residual.segment(n * size, size));
-      const double weight = part.squaredNorm();
-      all += pull;
-      whole += weight;
-      q += weight > 0.0 ? pull * pull / weight : 0.0;
+      weights(n, i) = part.norm();
+      if (weights(n, i) > 0.0) {
+        pulls(n, i) = part.dot(residual.segment(n * size, size)) / weights(n, i);
+      }
     }
-    q -= whole > 0.0 ? all * all / whole : 0.0;
-    powers[i] = q / static_cast<double>(shots - 1);
+    const double whole = weights.col(i).squaredNorm();
+    if (whole > 0.0) {
+      pulls.col(i) -= weights.col(i) * (weights.col(i).dot(pulls.col(i)) / whole);
+    }
   }
-  return powers;
+  return pulls.transpose() * pulls / static_cast<double>(shots - 1);
 }
 
-/// As how many directions of equal noise these count: a sum of squares of unequal variances v
-/// spreads as one of (sum v)^2 / sum v^2 (Box 1954).
-/// @param powers   estimates of v, each of so many degrees of freedom, which spreads them too
-double equal_directions(const Eigen::VectorXd& powers, double freedom) {
-  const double squares = powers.squaredNorm() / (1.0 + 2.0 / freedom);
-  const auto all = static_cast<double>(powers.size());
-  return squares > 0.0 ? std::min(all, powers.sum() * powers.sum() / squares) : all;
+/// As how many directions of equal noise these count: a sum of squares of covariance V spreads as
+/// one of (tr V)^2 / tr V^2 (Box 1954); tr V^2 without the bias that its estimate from a few shots
+/// has (Bai and Saranadasa 1996).
+/// @param estimate  of V, of so many degrees of freedom
+double equal_directions(const Eigen::MatrixXd& estimate, double freedom) {
+  const double trace = estimate.trace();
+  const double raw = estimate.squaredNorm();
+  const double squares = freedom > 1.0 ? freedom * freedom / ((freedom - 1.0) * (freedom + 2.0)) *
+                                             (raw - trace * trace / freedom)
+                                       : 0.0;
+  const auto all = static_cast<double>(estimate.cols());
+  return squares > 0.0 ? std::clamp(trace * trace / squares, 1.0, all) : all;
+}
+
+/// What all kinds together tell of the noise: that which whitened the residuals or more. What the
+/// filed numbers leave is not less where the shots agree by chance.
+struct Noise {
+  double power = 1.0;
+  double freedom = 1.0;
+};
+
+/// ln of the chance that noise finds as much along these directions.
+/// @param own  what differs between the shots along them
+double log_chance(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
+                  const Eigen::MatrixXd& own, double further, const Noise& noise) {
+  const auto count = static_cast<double>(directions.cols());
+  const double found = (directions.transpose() * residual).squaredNorm();
+  return log_f_tail(found / count / std::max(noise.power, own.trace() / count),
+                    equal_directions(own, further), noise.freedom);
+}
+
+/// All together weigh as much as every kind by itself does.
+double combined(double log_p, const std::vector<double>& by_kind) {
+  std::vector<double> log_ps{log_p};
+  std::vector<double> weights{0.5};
+  for (const double own : by_kind) {
+    log_ps.push_back(own);
+    weights.push_back(0.5 / static_cast<double>(by_kind.size()));
+  }
+  return combined_log_p(log_ps, weights);
 }
 
 }  // namespace
 
 Unexplained unexplained(Study& study, const Studied& studied) {
-  const Extended extended = clear_columns(study, studied);
-  const Eigen::MatrixXd directions = directions_of(extended.columns);
+  const auto [distortions, residual] = clear_columns(study, studied);
+  const Eigen::MatrixXd directions = directions_of(distortions.columns);
   const std::size_t per_shot = study.residuals().per_shot();
   const std::size_t shots = study.campaign().shots.size();
   const auto freedom = static_cast<double>(directions.cols());
   if (freedom == 0.0) {
     return {};
   }
-  const double found = (directions.transpose() * extended.residual).squaredNorm();
+  const double found = (directions.transpose() * residual).squaredNorm();
   if (shots < 2) {
     // Nothing shows that it would come back: noise is known by one short stretch alone.
     return {log_f_tail(found / freedom, freedom, kOneStretch), std::max(0.0, found - freedom)};
   }
-  const Eigen::VectorXd powers = between_shots(directions, extended.residual, per_shot, shots);
-  const double noise = powers.mean();
+  const Eigen::MatrixXd differs = between_shots(directions, residual, per_shot, shots);
   const auto further = static_cast<double>(shots - 1);
-  const double equal = equal_directions(powers, further);
-  return {log_f_tail(found / freedom / noise, equal, equal * further),
-          std::max(0.0, found / noise - freedom)};
+  const double equal = equal_directions(differs, further);
+  const Noise noise{std::max(1.0, differs.trace() / freedom), equal * further};
+  std::vector<double> by_kind;
+  for (const Kind& kind : distortions.kinds) {
+    const Eigen::MatrixXd own =
+        directions_of(distortions.columns.middleCols(kind.first, kind.count));
+    if (own.cols() > 0) {
+      by_kind.push_back(
+          log_chance(own, residual, between_shots(own, residual, per_shot, shots), further, noise));
+    }
+  }
+  const double log_p = log_f_tail(found / freedom / noise.power, equal, noise.freedom);
+  return {combined(log_p, by_kind), std::max(0.0, found / noise.power - freedom)};
 }
 
 }  // namespace kolsky

@@ -46,7 +46,8 @@ double SpecimenScene::area_m2() const {
 }
 
 bool SpecimenScene::nonlinear() const {
-  return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || lateral_inertia_kg_per_m != 0.0;
+  return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || lateral_inertia_kg_per_m != 0.0 ||
+         !further_strain.empty();
 }
 
 void RecordScene::straighten(std::size_t gauge, std::vector<double>& record) const {

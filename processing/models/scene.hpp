@@ -83,6 +83,8 @@ struct SpecimenScene {
   double friction = 0.0;                  ///< mu of Coulomb friction at its faces
   double gap_m = 0.0;                     ///< closes before it is loaded
   bool gap_reopens = false;               ///< else closed for good once it was
+  /// A strain history beside all this, by step of the specimen's histories; empty for none.
+  std::vector<double> further_strain{};
 
   [[nodiscard]] double area_m2() const;
   /// Whether its answer depends on how hard it is loaded.

@@ -283,6 +283,16 @@ TEST(Diagnosis, CallsUnknownAClockThatWanders) {
   EXPECT_TRUE(diagnosis.effects.empty());
 }
 
+// A lubricant that yields less and less: what its specimen strains further is not a bar's damping,
+// as which it was named.
+TEST(Diagnosis, CallsUnknownASpecimensStrainThatTheLibraryDoesNotHold) {
+  testing::Campaign truth = testing::draw_campaign(split_wishes(6, 6, 1200));
+  testing::hide(truth, testing::parse_effect("x-face-layer=2e-8"));
+  const Diagnosis diagnosis = diagnosed_split(truth);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(diagnosis.effects.empty());
+}
+
 /// What an amplifier that rings makes of a record: y'' + (w/q) y' + w^2 y = w^2 x, in small steps.
 void ring(std::vector<double>& record, double frequency_Hz, double period_s) {
   constexpr int kSteps = 50;

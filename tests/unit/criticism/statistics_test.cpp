@@ -29,6 +29,33 @@ TEST(EquivalentSquare, UndoesTheTailOfOneDegreeOfFreedom) {
   }
 }
 
+TEST(CombinedChance, OfOneThatStandsOutIsItsOwnOverItsWeight) {
+  const std::vector<double> weights{0.5, 0.3, 0.2};
+  for (const double log_p : {-12.0, -29.0, -31.0, -400.0}) {
+    EXPECT_NEAR(combined_log_p(std::vector<double>{-0.7, log_p, -0.2}, weights),
+                log_p - std::log(0.3), 1e-4);
+  }
+  EXPECT_NEAR(combined_log_p(std::vector<double>{-2.0, -2.0, -2.0}, weights), -2.0, 1e-12);
+}
+
+// Independent or all one test, chances of noise stay what they say.
+TEST(CombinedChance, IsAsUniformAsTheChancesThatItCombines) {
+  constexpr std::size_t kDraws = 20000;
+  const std::vector<double> weights{0.5, 0.25, 0.25};
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (const double limit : {0.3, 0.01}) {
+    std::size_t below = 0;
+    for (std::size_t n = 0; n < kDraws; ++n) {
+      const double first = std::log(uniform(engine));
+      const std::vector<double> log_ps{first, first, std::log(uniform(engine))};
+      below += combined_log_p(log_ps, weights) < std::log(limit) ? 1 : 0;
+    }
+    const double expected = limit * kDraws;
+    EXPECT_NEAR(static_cast<double>(below), expected, 4.0 * std::sqrt(expected)) << limit;
+  }
+}
+
 TEST(DiscoveryLimit, StepsUpToTheLastThatCounts) {
   // Of four, at 0.5 %: limits of 1.25, 2.5, 3.75 and 5 in a thousand by rank.
   const auto limit = [](std::vector<double> ps) {
