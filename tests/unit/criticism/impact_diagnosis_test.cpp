@@ -84,5 +84,26 @@ TEST_F(StiffeningCore, ForetellsASpeedThatWasHeldOut) {
   EXPECT_LT(rms_at_51({"core-nonlinearity"}), 0.8);
 }
 
+/// A core whose stress falls with strain somewhere is outside of what its law allows: the numbers
+/// that such a model gives are not to be taken without that word.
+TEST(ImpactDiagnosis, SofteningBeyondWhatTheLawAllowsIsNoted) {
+  testing::ImpactWishes own = two_speeds(13, 2);
+  own.speeds_m_per_s = {51.0};
+  own.core_b = -1.0;
+  own.across = 5;
+  ThrownBalls balls(testing::impact_shots(own), {240, 512, 512});
+  const auto noted = [&](double b) {
+    Model model = paper_with({"core-nonlinearity"});
+    model.effects.back().values[0].value = b;
+    model.effects.back().values[0].free = false;
+    const Diagnosis diagnosis = diagnose_impacts(balls.study, model, {});
+    return std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const std::string& note) {
+      return note.find("outside of what the law allows") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(noted(-1.1));
+  EXPECT_FALSE(noted(-0.9));
+}
+
 }  // namespace
 }  // namespace kolsky
