@@ -296,7 +296,8 @@ class Diagnostician {
     diagnosis_.notes.push_back(fmt::format(
         "judged up to {:.3g} kHz{}; the calculation may be off by {:.2g} % of the force slowly and "
         "by as much from sample to sample ({}the mesh of {} elements differs from {} by {:.2g} % "
-        "rms), and a square of a deviate counts over {:.2g}: `detectable` says what that leaves",
+        "rms once shifted to fit), and a square of a deviate counts over {:.2g}: `detectable` says "
+        "what that leaves",
         1e-3 * window.cutoff_Hz,
         window.to_far_end_only ? ", until the far end's reflection is back" : "",
         100.0 * residuals.solver_sd(),

@@ -25,6 +25,14 @@ double filed_rebound_sd(const ImpactRecords& records) {
   return std::max(kFinestRebound, std::sqrt(squares / std::max(1.0, count)));
 }
 
+/// What an error of a reading leaves in residuals: a shift in time is taken up as the reading is
+/// moved to where it fits best.
+Eigen::VectorXd not_of_arrival(const Eigen::VectorXd& error, const Eigen::VectorXd& by_time,
+                               const Eigen::MatrixXd& noise_inverse) {
+  const Eigen::VectorXd weighted = noise_inverse * by_time;
+  return error - by_time * (weighted.dot(error) / weighted.dot(by_time));
+}
+
 }  // namespace
 
 Eigen::MatrixXd ImpactResiduals::noise_matrix() const {
@@ -92,11 +100,10 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
                                     const std::vector<double>& theta) {
   BallScene ball;
   const auto transfer = transfers(composition, theta, 0, ball);
-  // Twice what the mesh is seen to do, over all groups.
+  const Eigen::MatrixXd noise = noise_matrix();
+  noise_inverse_ = symmetric_power(noise, -1.0);
   std::vector<ImpactShape> shapes;
-  const double judged_s =
-      kFineGridLead_s + records_.window.period_s * static_cast<double>(records_.window.samples);
-  const auto last = static_cast<std::size_t>(judged_s / kRunStep_s);
+  const auto gauges = static_cast<Eigen::Index>(of_gauges());
   const auto size = static_cast<Eigen::Index>(per_shot());
   mesh_ = Eigen::VectorXd::Zero(size * static_cast<Eigen::Index>(records_.groups.size()));
   double mesh_square = 0.0;
@@ -108,26 +115,23 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
     const auto low = recorded(read(slower, transfer, executor_.first), 0.0);
     const auto high = recorded(read(faster, transfer, executor_.first), 0.0);
     const auto mesh = recorded(read(anchors_[g][0].mesh, transfer, executor_.first), 0.0);
-    auto judged = mesh_.segment(static_cast<Eigen::Index>(g) * size, size);
-    judged = at_judged(g, foretold, mesh);
-    judged[size - 1] = anchors_[g][0].mesh.rebound_m_per_s / records_.wave_speed_m_per_s;
     shapes.push_back(shape_of(g, foretold, low, high));
     shapes.back().by_speed.tail(1).setConstant((faster.rebound_m_per_s - slower.rebound_m_per_s) /
                                                records_.wave_speed_m_per_s * group.speed_m_per_s /
                                                (group.high_m_per_s - group.low_m_per_s));
-    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-      for (std::size_t i = 0; i < std::min(last, low[j].size()); ++i) {
-        mesh_square += mesh[j][i] * mesh[j][i];
-        reading_square += low[j][i] * low[j][i];
-      }
-    }
+    auto judged = mesh_.segment(static_cast<Eigen::Index>(g) * size, size);
+    judged = at_judged(g, foretold, mesh);
+    judged.head(gauges) =
+        not_of_arrival(judged.head(gauges), shapes.back().by_time.head(gauges), noise_inverse_);
+    judged[size - 1] = anchors_[g][0].mesh.rebound_m_per_s / records_.wave_speed_m_per_s;
+    mesh_square += judged.head(gauges).squaredNorm();
+    reading_square += shapes.back().reading.head(gauges).squaredNorm();
   }
   mesh_difference_ = std::sqrt(mesh_square / reading_square);
+  // Twice what the mesh is seen to do, over all groups.
   solver_sd_ = std::max(solver_share_ * kSolverFloor, 2.0 * mesh_difference_);
   speed_sd_ = std::max(speed_sd_, records_.own_speed_sd);
   rebound_sd_ = std::max(rebound_sd_, filed_rebound_sd(records_));
-  const Eigen::MatrixXd noise = noise_matrix();
-  noise_inverse_ = symmetric_power(noise, -1.0);
   whitening_ = std::make_unique<ImpactWhitening>(
       records_, shapes, ImpactDoubts{noise, speed_sd_, rebound_sd_, solver_sd_});
   signal_energy_ = 0.0;

@@ -118,7 +118,8 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] double noise_scale() const { return noise_scale_; }
   /// Relative size of what the calculation may be off by.
   [[nodiscard]] double solver_sd() const { return solver_sd_; }
-  /// Rms of the middle mesh's difference from the fine one over the rms of the record.
+  /// Rms of the middle mesh's difference from the fine one as residuals hold it, at the judged
+  /// samples and shifted to fit, over the rms of the record.
   [[nodiscard]] double mesh_difference() const { return mesh_difference_; }
   /// What the calculation may be off by moves the numbers of a fit by so much: a covariance, in
   /// scales. kSolverDoubt times what is allowed for it less the once that the fit counts already,
@@ -193,7 +194,7 @@ class ImpactResiduals : public ShotResiduals {
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
   std::vector<double> anchored_at_;
   std::unique_ptr<ImpactWhitening> whitening_;
-  Eigen::VectorXd mesh_;  ///< fine less middle, as residuals of the groups' means
+  Eigen::VectorXd mesh_;  ///< fine less middle, as the groups' mean residuals hold it
   Eigen::MatrixXd noise_inverse_;
   std::vector<Complex> path_;
   std::vector<double> touch_s_;  ///< by shot: where the search for the arrival begins

@@ -31,6 +31,7 @@ struct Settings {
   int nulls = 3;
   int jobs = 1;
   std::vector<std::size_t> across{7, 10};  ///< least and most of the generator's mesh
+  std::vector<double> speeds_m_per_s;      ///< none: three, drawn for every case
   double size = 1.0;                       ///< of every strength, over the usual
   bool held = false;                       ///< materials
   bool quick = false;
@@ -89,6 +90,9 @@ ImpactWishes drawn_wishes(std::uint64_t seed, const Settings& settings) {
   const double slowest = between(20.0, 33.0);
   const double fastest = between(44.0, 52.0);
   wishes.speeds_m_per_s = {slowest, std::sqrt(slowest * fastest), fastest};
+  if (!settings.speeds_m_per_s.empty()) {
+    wishes.speeds_m_per_s = settings.speeds_m_per_s;
+  }
   wishes.shots = std::uniform_int_distribution<std::size_t>(3, 5)(random);
   wishes.speed_error = 1e-3;
   wishes.rebound_error = between(1e-3, 2e-3);
@@ -284,6 +288,7 @@ int main(int argc, char** argv) {
                  "cells of the generator's mesh, or least and most of them, else 7 to 10: 24 take "
                  "minutes a case and leave no error of its own that noise does not hide")
       ->expected(1, 2);
+  app.add_option("--speeds", settings.speeds_m_per_s, "m/s, of every case, else three are drawn");
   app.add_option("--size", settings.size, "of every hidden strength, over the usual");
   app.add_flag("--held", settings.held, "materials as filed, and not fitted");
   app.add_flag("--quick", settings.quick, "do not ask what the model found leaves");

@@ -167,6 +167,25 @@ std::vector<Shot> a_few() {
   return testing::impact_shots(own);
 }
 
+/// What two meshes differ by is told as residuals hold it: each shot's own arrival takes a shift in
+/// time up, which is most of what the meshes differ by.
+TEST(ImpactResiduals, MeshesDifferByWhatTheyDoToResiduals) {
+  const Campaign campaign = read_campaign(a_few());
+  const Composition paper(paper_with({}), campaign);
+  ImpactResiduals middle(campaign, false, 0.0, Workers{}, {240, 2048, 2048});
+  ImpactResiduals fine(campaign, false, 0.0, Workers{}, {240, 2048, 8192});
+  middle.prepare(paper, paper.start());
+  fine.prepare(paper, paper.start());
+  const auto reading = [&](ImpactResiduals& residuals) -> Eigen::VectorXd {
+    const auto foretold = residuals.foretell(paper, paper.start(), 0);
+    return foretold.reading[0].head(static_cast<Eigen::Index>(residuals.of_gauges()));
+  };
+  const Eigen::VectorXd own = reading(fine);
+  const double moved = (own - reading(middle)).norm() / own.norm();
+  EXPECT_NEAR(fine.mesh_difference(), moved, 0.2 * moved);
+  EXPECT_EQ(middle.mesh_difference(), 0.0);
+}
+
 /// What damps a ball moves its rebound: a rebound that is off by more than codes differ is misfit.
 TEST(ImpactResiduals, ReboundSpeedsAreData) {
   const std::vector<Shot> shots = a_few();
