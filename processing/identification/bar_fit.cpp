@@ -67,13 +67,18 @@ struct Place {
   Eigen::MatrixXd information;
 };
 
-Place look(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& at,
-           std::size_t shots) {
-  const std::span<const double> parameters(at.data(), static_cast<std::size_t>(at.size()));
-  Place place{at, likelihood.evaluate(parameters, shots), prior.chi2(at),
-              prior.weight.cwiseProduct(at - prior.centre), prior.weight.asDiagonal()};
+double objective_at(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& at,
+                    BarLikelihood::Shots shots) {
+  return likelihood.chi2_at({at.data(), static_cast<std::size_t>(at.size())}, shots) +
+         prior.chi2(at);
+}
+
+/// The place whose objective was asked for last.
+Place place_at(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& at,
+               double objective) {
+  Place place{at, likelihood.terms(), objective, prior.weight.cwiseProduct(at - prior.centre),
+              prior.weight.asDiagonal()};
   for (const ShotTerms& shot : place.shots) {
-    place.objective += shot.chi2;
     place.gradient += shot.gradient;
     place.information += shot.information;
   }
@@ -96,14 +101,15 @@ InputError not_converged() {
           "try another family of solids, another --dispersion or a narrower band"};
 }
 
-/// Levenberg's and Marquardt's search over the first so many shots, undamped as long as it goes
-/// downhill.
+/// Levenberg's and Marquardt's search, undamped as long as it goes downhill.
 Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::VectorXd& start,
-               std::size_t shots, double negligible_gain) {
+               BarLikelihood::Shots shots, double negligible_gain) {
   const std::size_t logs = likelihood.model().solid_parameters();
-  const double judged = static_cast<double>(likelihood.residuals()) * static_cast<double>(shots) /
-                        static_cast<double>(likelihood.data().shots());
-  Place place = look(likelihood, prior, start, shots);
+  const double judged =
+      static_cast<double>(likelihood.residuals()) /
+      (shots == BarLikelihood::Shots::each ? 1.0 : static_cast<double>(likelihood.data().shots()));
+  Place place =
+      place_at(likelihood, prior, start, objective_at(likelihood, prior, start, shots));
   double damping = 0.0;
   for (int i = 0; i < kMostSteps; ++i) {
     const Eigen::VectorXd step = step_from(place, damping, logs);
@@ -116,9 +122,10 @@ Place minimise(BarLikelihood& likelihood, const Prior& prior, const Eigen::Vecto
     if (gain < negligible_gain * widened) {
       return place;
     }
-    Place next = look(likelihood, prior, place.at + step, shots);
-    if (next.objective < place.objective + 1e-9 * std::abs(place.objective)) {
-      place = std::move(next);
+    const Eigen::VectorXd next = place.at + step;
+    const double objective = objective_at(likelihood, prior, next, shots);
+    if (objective < place.objective + 1e-9 * std::abs(place.objective)) {
+      place = place_at(likelihood, prior, next, objective);
       damping = damping > 1e-6 ? damping / 10.0 : 0.0;
     } else if (gain < kDoubtfulGain * widened) {
       return place;
@@ -220,15 +227,18 @@ BarFit search(BarData& data, const BarTheory& theory, const std::vector<double>&
   const auto weigh = [&](bool exact) {
     likelihood.weigh({at.data(), static_cast<std::size_t>(at.size())}, exact);
   };
+  const auto find = [&](BarLikelihood::Shots shots, double negligible_gain) {
+    return minimise(likelihood, prior, at, shots, negligible_gain);
+  };
   // Most of the way at the price of one shot; weights turn with the waves' phases, so that those of
   // where it began do not do for where it ends.
   for (int round = 0; round < 2; ++round) {
     weigh(false);
-    at = minimise(likelihood, prior, at, 1, kNearEnough).at;
+    at = find(BarLikelihood::Shots::as_one, kNearEnough).at;
   }
   weigh(true);
-  return describe(likelihood, prior,
-                  minimise(likelihood, prior, at, data.shots(), kNegligibleGain));
+  at = find(BarLikelihood::Shots::as_one, kNegligibleGain).at;
+  return describe(likelihood, prior, find(BarLikelihood::Shots::each, kNegligibleGain));
 }
 
 }  // namespace

@@ -48,39 +48,58 @@ class BarLikelihood {
   /// may keep them. @param exact  the lowest bins together taken together, else bin by bin
   void weigh(std::span<const double> at, bool exact);
 
-  /// One per shot, of the first so many: near `at`, half of chi2 moves by
+  /// Which shots are looked at: all of them, or what they have in common as one (see BarData).
+  enum class Shots { each, as_one };
+
+  /// What the shots' chi2 add up to at a place in the parameters.
+  [[nodiscard]] double chi2_at(std::span<const double> at, Shots which);
+  /// One per shot, at the place looked at last: near it, half of chi2 moves by
   /// gradient . step + step . information . step / 2.
-  [[nodiscard]] std::vector<ShotTerms> evaluate(std::span<const double> at, std::size_t shots);
+  [[nodiscard]] std::vector<ShotTerms> terms();
 
  private:
   using Spectrum = BarData::Spectrum;
 
   /// Whitening of the residuals, and what estimates gauge 0's noise from them, by bin.
   struct Whitening {
-    Eigen::MatrixXcd lower_inverse;
-    Eigen::RowVectorXcd noise_of_first;  ///< p_0 g^H C^-1
+    std::vector<Complex> lower_inverse;   ///< triangles, row by row: rows of unit variance each
+    std::vector<Complex> noise_of_first;  ///< p_0 g^H C^-1, gauge by gauge
   };
-  struct Columns;
+  /// A place in the parameters, and what is common to the shots there.
+  struct Place {
+    std::vector<BarModel::Transfer> transfers;  ///< on the damped path
+    std::vector<BarModel::Transfer> passages;   ///< on the imaginary axis
+    std::vector<std::size_t> shots;
+    std::vector<std::vector<Spectrum>> residuals;  ///< by shot and gauge
+    std::vector<double> chi2;                      ///< by shot
+    EightColumns white_residuals{0, 0};            ///< a column a shot
+    EightColumns nuisances{0, 0};                  ///< white
+  };
 
-  [[nodiscard]] std::vector<Whitening> whitening(std::span<const double> at);
+  [[nodiscard]] Eigen::Index others() const {
+    return static_cast<Eigen::Index>(data_.gauges()) - 1;
+  }
+  /// Real parts of all gauges before imaginary ones, bin after bin.
+  [[nodiscard]] Eigen::Index rows() const;
+  [[nodiscard]] Whitening whitening(std::span<const double> at);
   void couple_lowest_bins(std::span<const double> at);
   [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at,
                                                std::size_t stride) const;
   [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t stride) const;
-  [[nodiscard]] Spectrum judged_product(const Spectrum& filter, const Spectrum& spectrum);
-  [[nodiscard]] std::vector<Spectrum> residuals_of(
-      std::size_t shot, const std::vector<BarModel::Transfer>& transfers);
-  [[nodiscard]] std::vector<Eigen::MatrixXcd> bins_of(std::size_t shot, const Columns& columns);
-  [[nodiscard]] Eigen::MatrixXd white(const std::vector<Eigen::MatrixXcd>& bins) const;
-  [[nodiscard]] ShotTerms terms_of(std::size_t shot, const Columns& columns);
+  void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
+           std::size_t first_bin, EightColumns& columns) const;
+  void whiten(EightColumns& columns) const;
+  void look_at_nuisances();
+  void look_at_residuals();
+  void put_slopes(std::size_t index, EightColumns& columns);
+  [[nodiscard]] ShotTerms terms_of(std::size_t index, EightColumns& columns);
 
   BarData& data_;
   BarModel model_;
-  std::vector<Whitening> whitening_;
-  /// Of the first bins, real parts of all gauges before imaginary ones, bin after bin.
-  LowerTriangle lowest_factor_;
+  Whitening whitening_;
+  LowerTriangle lowest_factor_;  ///< of the rows of the first bins
   std::size_t lowest_bins_ = 0;
-  Spectrum product_;
+  Place place_;
 };
 
 }  // namespace kolsky
