@@ -132,7 +132,7 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
 /// in `white`, columns by the stride. The response from its place to the end of what is judged:
 /// differences of sums over one response. The mean of the quiet strides is taken off, as it is from
 /// the records.
-Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
+Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at, std::size_t bins,
                                               std::size_t stride) const {
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
@@ -140,7 +140,7 @@ Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
   const std::size_t entries = (places.judged_end - begin) / stride;
   const std::size_t judged = places.judged_end - places.judged_begin;
   const auto transfers = model_.transfers(at, data_.path(), false);
-  Eigen::MatrixXd shown(2 * others * static_cast<Eigen::Index>(lowest_bins_),
+  Eigen::MatrixXd shown(2 * others * static_cast<Eigen::Index>(bins),
                         static_cast<Eigen::Index>(entries));
   std::vector<Complex> sums(places.judged_end + 1);
   Spectrum product(data_.path().size());
@@ -149,7 +149,7 @@ Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
       product[k] = transfers[static_cast<std::size_t>(j)].g[k] * data_.unit_impulse()[k];
     }
     const std::span<const double> response = data_.in_time(product);
-    for (std::size_t bin = 0; bin < lowest_bins_; ++bin) {
+    for (std::size_t bin = 0; bin < bins; ++bin) {
       const double angle =
           -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
       const Complex turn = std::polar(1.0, angle);
@@ -182,12 +182,12 @@ Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
 }
 
 /// The same of a gauge's own reading in its own rows, from where the judging begins.
-Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t stride) const {
+Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t bins, std::size_t stride) const {
   const BarData::Places& places = data_.places();
   const std::size_t judged = places.judged_end - places.judged_begin;
-  Eigen::MatrixXd shown(static_cast<Eigen::Index>(2 * lowest_bins_),
+  Eigen::MatrixXd shown(static_cast<Eigen::Index>(2 * bins),
                         static_cast<Eigen::Index>(judged / stride));
-  for (Eigen::Index bin = 0; bin < static_cast<Eigen::Index>(lowest_bins_); ++bin) {
+  for (Eigen::Index bin = 0; bin < static_cast<Eigen::Index>(bins); ++bin) {
     const double angle =
         -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
     for (Eigen::Index e = 0; e < shown.cols(); ++e) {
@@ -200,13 +200,14 @@ Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t stride) const {
   return shown;
 }
 
-void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
+LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
+                                                     std::size_t lowest_bins) {
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
-  const auto bins = static_cast<Eigen::Index>(lowest_bins_);
+  const auto bins = static_cast<Eigen::Index>(lowest_bins);
   const auto judged = static_cast<double>(places.judged_end - places.judged_begin);
   const auto stride = std::max<std::size_t>(
-      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins_));
+      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins));
   const double samples = static_cast<double>(stride) * places.samples_per_place;
   // Power per sample of what is not in the slow parts, which are treated each by itself.
   const auto steady = [&](std::size_t gauge, std::size_t bin) {
@@ -218,7 +219,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     }
     return std::max(power, 0.0);
   };
-  const Eigen::MatrixXd by_first = shown_by_first(at, stride);
+  const Eigen::MatrixXd by_first = shown_by_first(at, lowest_bins, stride);
   Eigen::MatrixXd scaled = by_first;
   for (Eigen::Index bin = 0; bin < bins; ++bin) {
     scaled.middleRows(2 * others * bin, 2 * others) *=
@@ -233,7 +234,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     const auto gauge = static_cast<std::size_t>(j) + 1;
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(2 * bins, 2 * bins);
     if (!data_.slow_noise(gauge).empty()) {
-      const Eigen::MatrixXd by_own = shown_by_own(stride);
+      const Eigen::MatrixXd by_own = shown_by_own(lowest_bins, stride);
       for (const auto& part : data_.slow_noise(gauge)) {
         add_square(driven(by_own, part, samples), own);
       }
@@ -252,15 +253,16 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     }
   }
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(covariance);
-  lowest_factor_ = LowerTriangle(factor.matrixLLT());
+  return LowerTriangle(factor.matrixLLT());
 }
 
-void BarLikelihood::weigh(std::span<const double> at, bool exact) {
-  whitening_ = whitening(at);
-  lowest_bins_ = exact ? std::min(kLowestBins, data_.judged_path().size()) : 0;
-  if (exact) {
-    couple_lowest_bins(at);
+BarLikelihood::Weights BarLikelihood::weights_at(std::span<const double> at, bool together) {
+  Whitening weights = whitening(at);
+  if (together) {
+    weights.lowest_bins = std::min(kLowestBins, data_.judged_path().size());
+    weights.lowest_factor = coupling_of_lowest_bins(at, weights.lowest_bins);
   }
+  return std::make_shared<const Whitening>(std::move(weights));
 }
 
 Eigen::Index BarLikelihood::rows() const {
@@ -280,11 +282,11 @@ void BarLikelihood::put(std::span<const Complex> spectrum, Eigen::Index gauge, E
 /// To rows of unit variance each.
 void BarLikelihood::whiten(EightColumns& columns) const {
   const Eigen::Index others = this->others();
-  if (lowest_bins_ > 0) {
-    lowest_factor_.solve_in_place(columns);
+  if (weights_->lowest_bins > 0) {
+    weights_->lowest_factor.solve_in_place(columns);
   }
-  const auto coupled = static_cast<Eigen::Index>(lowest_bins_);
-  const std::span<const Complex> triangles(whitening_.lower_inverse);
+  const auto coupled = static_cast<Eigen::Index>(weights_->lowest_bins);
+  const std::span<const Complex> triangles(weights_->lower_inverse);
   multiply_in_place(
       triangles.subspan(static_cast<std::size_t>(coupled * others * (others + 1) / 2)), others,
       2 * others * coupled, columns);
@@ -301,8 +303,8 @@ void BarLikelihood::look_at_nuisances() {
     for (Complex& value : offset) {
       value *= data_.baseline_sd(0, 0);
     }
-    put(offset, j, 0, lowest_bins_, place_.nuisances);
-    put(jump[i], j, 1 + j, lowest_bins_, place_.nuisances);
+    put(offset, j, 0, weights_->lowest_bins, place_.nuisances);
+    put(jump[i], j, 1 + j, weights_->lowest_bins, place_.nuisances);
   }
   whiten(place_.nuisances);
 }
@@ -369,7 +371,7 @@ void BarLikelihood::put_slopes(std::size_t index, EightColumns& columns) {
   Spectrum noise_of_first(bins);
   for (std::size_t k = 0; k < bins; ++k) {
     for (std::size_t l = 0; l < residual.size(); ++l) {
-      noise_of_first[k] += whitening_.noise_of_first[k * residual.size() + l] * residual[l][k];
+      noise_of_first[k] += weights_->noise_of_first[k * residual.size() + l] * residual[l][k];
     }
   }
   columns.clear();

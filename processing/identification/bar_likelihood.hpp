@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,9 +45,13 @@ class BarLikelihood {
   /// Real numbers that are judged.
   [[nodiscard]] std::size_t residuals() const;
 
-  /// Sets the weights as they are at a place in the parameters. They follow it slowly, so a search
-  /// may keep them. @param exact  the lowest bins together taken together, else bin by bin
-  void weigh(std::span<const double> at, bool exact);
+  /// The noise's weights as they are at a place in the parameters. They follow it slowly, so a
+  /// search may keep them. @param together  the lowest bins by their common covariance, else bin by
+  /// bin
+  struct Whitening;
+  using Weights = std::shared_ptr<const Whitening>;
+  [[nodiscard]] Weights weights_at(std::span<const double> at, bool together);
+  void use(Weights weights) { weights_ = std::move(weights); }
 
   /// Which shots are looked at: all of them, or what they have in common as one (see BarData).
   enum class Shots { each, as_one };
@@ -60,11 +65,6 @@ class BarLikelihood {
  private:
   using Spectrum = BarData::Spectrum;
 
-  /// Whitening of the residuals, and what estimates gauge 0's noise from them, by bin.
-  struct Whitening {
-    std::vector<Complex> lower_inverse;   ///< triangles, row by row: rows of unit variance each
-    std::vector<Complex> noise_of_first;  ///< p_0 g^H C^-1, gauge by gauge
-  };
   /// A place in the parameters, and what is common to the shots there.
   struct Place {
     std::vector<BarModel::Transfer> transfers;  ///< on the damped path
@@ -82,10 +82,10 @@ class BarLikelihood {
   /// Real parts of all gauges before imaginary ones, bin after bin.
   [[nodiscard]] Eigen::Index rows() const;
   [[nodiscard]] Whitening whitening(std::span<const double> at);
-  void couple_lowest_bins(std::span<const double> at);
+  [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at, std::size_t bins);
   [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at,
-                                               std::size_t stride) const;
-  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t stride) const;
+                                               std::size_t bins, std::size_t stride) const;
+  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t bins, std::size_t stride) const;
   void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
            std::size_t first_bin, EightColumns& columns) const;
   void whiten(EightColumns& columns) const;
@@ -96,10 +96,16 @@ class BarLikelihood {
 
   BarData& data_;
   BarModel model_;
-  Whitening whitening_;
-  LowerTriangle lowest_factor_;  ///< of the rows of the first bins
-  std::size_t lowest_bins_ = 0;
+  Weights weights_;
   Place place_;
+};
+
+/// What whitens the residuals, and what estimates gauge 0's noise from them, by bin.
+struct BarLikelihood::Whitening {
+  std::vector<Complex> lower_inverse;   ///< triangles, row by row: rows of unit variance each
+  std::vector<Complex> noise_of_first;  ///< p_0 g^H C^-1, gauge by gauge
+  std::size_t lowest_bins = 0;          ///< which are taken together
+  LowerTriangle lowest_factor;          ///< of their rows
 };
 
 }  // namespace kolsky
