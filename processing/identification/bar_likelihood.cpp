@@ -341,9 +341,8 @@ double BarLikelihood::chi2_at(std::span<const double> at, Shots which) {
   look_at_residuals();
   const Eigen::Index nuisances = 1 + others();
   const auto shots = static_cast<Eigen::Index>(place_.shots.size());
-  const Eigen::MatrixXd among =
-      square_of(place_.nuisances).topLeftCorner(nuisances, nuisances) +
-      Eigen::MatrixXd::Identity(nuisances, nuisances);
+  const Eigen::MatrixXd among = square_of(place_.nuisances).topLeftCorner(nuisances, nuisances) +
+                                Eigen::MatrixXd::Identity(nuisances, nuisances);
   const Eigen::LLT<Eigen::MatrixXd> known(among);
   double sum = 0.0;
   place_.chi2.clear();
@@ -406,8 +405,7 @@ ShotTerms BarLikelihood::terms_of(std::size_t index, EightColumns& columns) {
   put_slopes(index, columns);
   whiten(columns);
   for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-    columns(row, parameters) =
-        place_.white_residuals(row, static_cast<Eigen::Index>(index));
+    columns(row, parameters) = place_.white_residuals(row, static_cast<Eigen::Index>(index));
     for (Eigen::Index n = 0; n < nuisances; ++n) {
       columns(row, parameters + 1 + n) = place_.nuisances(row, n);
     }
@@ -421,8 +419,8 @@ ShotTerms BarLikelihood::terms_of(std::size_t index, EightColumns& columns) {
   terms.chi2 = place_.chi2[index];
   terms.gradient = square.col(parameters).head(parameters) -
                    in_slopes.transpose() * known.solve(of_nuisances.col(parameters));
-  terms.information = square.topLeftCorner(parameters, parameters) -
-                      in_slopes.transpose() * known.solve(in_slopes);
+  terms.information =
+      square.topLeftCorner(parameters, parameters) - in_slopes.transpose() * known.solve(in_slopes);
   return terms;
 }
 

@@ -83,8 +83,8 @@ class BarLikelihood {
   [[nodiscard]] Eigen::Index rows() const;
   [[nodiscard]] Whitening whitening(std::span<const double> at);
   [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at, std::size_t bins);
-  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at,
-                                               std::size_t bins, std::size_t stride) const;
+  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at, std::size_t bins,
+                                               std::size_t stride) const;
   [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t bins, std::size_t stride) const;
   void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
            std::size_t first_bin, EightColumns& columns) const;

@@ -18,10 +18,12 @@ constexpr double kPriorOfReflection = 2.0;
 constexpr int kMostSteps = 60;
 /// A step is not worth taking when it gains less in chi2: a hundredth of a standard deviation.
 constexpr double kNegligibleGain = 1e-4;
-/// Of a search whose end is only where another one begins: a third of a deviation of one shot.
+/// Of a search whose end is only where another one begins, or compared with others: a third of a
+/// deviation, a twentieth of what odds are counted in.
 constexpr double kNearEnough = 0.1;
 /// Nor does it matter that a step foretold to gain less than this does not: the gradient leaves out
-/// what the parameters do to the weights in second order.
+/// what the parameters do to the weights in second order. Damped steps that gain less go along a
+/// valley that the data leave open.
 constexpr double kDoubtfulGain = 1e-2;
 constexpr double kLongestLogStep = 1.0;
 
@@ -117,8 +119,8 @@ double BarSearch::objective_at(const Eigen::VectorXd& at, BarLikelihood::Shots s
 
 /// @param objective  which must have been asked for last
 BarPlace BarSearch::looked_at(const Eigen::VectorXd& at, double objective) {
-  BarPlace place{at, likelihood_.terms(), objective,
-                 prior_.weight.cwiseProduct(at - prior_.centre), prior_.weight.asDiagonal()};
+  BarPlace place{at, likelihood_.terms(), objective, prior_.weight.cwiseProduct(at - prior_.centre),
+                 prior_.weight.asDiagonal()};
   for (const ShotTerms& shot : place.shots) {
     place.gradient += shot.gradient;
     place.information += shot.information;
@@ -148,7 +150,12 @@ void BarSearch::minimise(BarLikelihood::Shots shots, double negligible_gain) {
     const Eigen::VectorXd next = place_.at + step;
     const double objective = objective_at(next, shots);
     if (objective < place_.objective + 1e-9 * std::abs(place_.objective)) {
+      const bool in_a_valley =
+          damping > 0.0 && place_.objective - objective < kDoubtfulGain * widened;
       place_ = looked_at(next, objective);
+      if (in_a_valley) {
+        return;
+      }
       damping = damping > 1e-6 ? damping / 10.0 : 0.0;
     } else if (gain < kDoubtfulGain * widened) {
       return;
@@ -183,7 +190,7 @@ void BarSearch::closely(const BarLikelihood::Weights& weights, const std::vector
   if (!start.empty()) {
     go_to(start);
   }
-  minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
+  minimise(BarLikelihood::Shots::as_one, kNearEnough);
 }
 
 BarFit BarSearch::so_far() {
@@ -191,6 +198,7 @@ BarFit BarSearch::so_far() {
 }
 
 BarFit BarSearch::finished() {
+  minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
   minimise(BarLikelihood::Shots::each, kNegligibleGain);
   BarFit fit = describe(place_.objective);
   for (const ShotTerms& shot : place_.shots) {
@@ -210,11 +218,13 @@ BarFit BarSearch::describe(double objective) const {
   fit.lossless = model.theory().lossless;
   fit.band_limit_Hz = likelihood_.data().band_limit_Hz();
   fit.degrees_of_freedom = likelihood_.residuals() - model.first_unknown();
-  fit.chi2_reduced = (objective - prior_.chi2(place_.at)) / static_cast<double>(fit.degrees_of_freedom);
+  fit.chi2_reduced =
+      (objective - prior_.chi2(place_.at)) / static_cast<double>(fit.degrees_of_freedom);
   fit.log_evidence =
       -0.5 * (objective + static_cast<double>(model.first_unknown()) *
-                                    std::log(static_cast<double>(likelihood_.residuals())));
-  const Eigen::MatrixXd posterior = inverse_of(place_.information) * std::max(1.0, fit.chi2_reduced);
+                              std::log(static_cast<double>(likelihood_.residuals())));
+  const Eigen::MatrixXd posterior =
+      inverse_of(place_.information) * std::max(1.0, fit.chi2_reduced);
   fit.at.assign(place_.at.data(), place_.at.data() + place_.at.size());
   fit.posterior = rows_of(posterior);
   fit.parameters = numbers_of(model.theory().solid, place_.at, posterior);
@@ -235,6 +245,25 @@ BarFit BarSearch::describe(double objective) const {
         {unknown.name, fit.at[at] * unknown.sd, std::sqrt(fit.posterior[at][at]) * unknown.sd});
   }
   return fit;
+}
+
+std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
+                                        const std::vector<double>& start) {
+  auto search = std::make_unique<BarSearch>(data, theory);
+  try {
+    search->roughly(start);
+    return search;
+  } catch (const InputError&) {
+    if (theory.solid != SolidKind::three_element || theory.lossless) {
+      throw;
+    }
+  }
+  BarTheory elastic_theory = theory;
+  elastic_theory.lossless = true;
+  BarSearch elastic(data, elastic_theory);
+  elastic.roughly({});
+  search->roughly(elastic.at());
+  return search;
 }
 
 }  // namespace kolsky

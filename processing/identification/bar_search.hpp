@@ -38,7 +38,8 @@ class BarSearch {
   BarSearch(BarData& data, const BarTheory& theory);
 
   /// With all shots as one and the noise bin by bin, twice: weights turn with the phase of the
-  /// waves, so that those of where it began do not do for where it ends. @param start  in BarModel's
+  /// waves, so that those of where it began do not do for where it ends. @param start  in
+  /// BarModel's
   ///   parameters; empty: from the pulses' speed and decay
   void roughly(const std::vector<double>& start);
   /// chi2 of all shots as one where that ended.
@@ -46,12 +47,13 @@ class BarSearch {
 
   /// Sets the noise's weights as they are here, the lowest bins together.
   [[nodiscard]] BarLikelihood::Weights weights_here();
-  /// To the end by these weights, all shots still as one. @param start  empty: from here
+  /// By these weights, all shots still as one, as near as a comparison needs. @param start  empty:
+  ///   from here
   void closely(const BarLikelihood::Weights& weights, const std::vector<double>& start = {});
 
   /// What the search has come to, without the shots' own estimates.
   [[nodiscard]] BarFit so_far();
-  /// The same after a last search on every shot by itself.
+  /// The same after a search to the end, the last steps on every shot by itself.
   [[nodiscard]] BarFit finished();
 
   [[nodiscard]] std::vector<double> at() const;
@@ -67,5 +69,11 @@ class BarSearch {
   BarPrior prior_;
   BarPlace place_;
 };
+
+/// A rough search. Where a bar shows no loss, its retardation can be anything and a search may not
+/// end; it does from the elastic bar.
+/// @throws InputError where it does not even then
+[[nodiscard]] std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
+                                                      const std::vector<double>& start);
 
 }  // namespace kolsky

@@ -124,9 +124,8 @@ EightColumns::EightColumns(Eigen::Index rows, Eigen::Index columns)
 
 Eigen::MatrixXd square_of(const EightColumns& columns) {
   Eigen::MatrixXd all(columns.panels() * kEight, columns.panels() * kEight);
-  square(columns, [&](Eigen::Index a, Eigen::Index b, double product) {
-    all(a, b) = all(b, a) = product;
-  });
+  square(columns,
+         [&](Eigen::Index a, Eigen::Index b, double product) { all(a, b) = all(b, a) = product; });
   return all;
 }
 

@@ -82,8 +82,8 @@ TEST(WideProducts, StretchesOfRowsAreMultipliedEachByItsComplexTriangle) {
         }
       }
       const Eigen::Index row = kFirst + 2 * size * stretch;
-      const Eigen::MatrixXcd numbers = given.middleRows(row, size) +
-                                       Complex(0.0, 1.0) * given.middleRows(row + size, size);
+      const Eigen::MatrixXcd numbers =
+          given.middleRows(row, size) + Complex(0.0, 1.0) * given.middleRows(row + size, size);
       const Eigen::MatrixXcd product = triangle * numbers;
       expected.middleRows(row, size) = product.real();
       expected.middleRows(row + size, size) = product.imag();
