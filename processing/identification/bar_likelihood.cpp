@@ -281,10 +281,14 @@ void BarLikelihood::put(std::span<const Complex> spectrum, Eigen::Index gauge, E
 
 /// To rows of unit variance each.
 void BarLikelihood::whiten(EightColumns& columns) const {
-  const Eigen::Index others = this->others();
   if (weights_->lowest_bins > 0) {
     weights_->lowest_factor.solve_in_place(columns);
   }
+  whiten_above_lowest(columns);
+}
+
+void BarLikelihood::whiten_above_lowest(EightColumns& columns) const {
+  const Eigen::Index others = this->others();
   const auto coupled = static_cast<Eigen::Index>(weights_->lowest_bins);
   const std::span<const Complex> triangles(weights_->lower_inverse);
   multiply_in_place(
@@ -306,7 +310,7 @@ void BarLikelihood::look_at_nuisances() {
     put(offset, j, 0, weights_->lowest_bins, place_.nuisances);
     put(jump[i], j, 1 + j, weights_->lowest_bins, place_.nuisances);
   }
-  whiten(place_.nuisances);
+  whiten_above_lowest(place_.nuisances);
 }
 
 void BarLikelihood::look_at_residuals() {

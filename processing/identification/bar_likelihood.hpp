@@ -89,6 +89,7 @@ class BarLikelihood {
   void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
            std::size_t first_bin, EightColumns& columns) const;
   void whiten(EightColumns& columns) const;
+  void whiten_above_lowest(EightColumns& columns) const;
   void look_at_nuisances();
   void look_at_residuals();
   void put_slopes(std::size_t index, EightColumns& columns);

@@ -176,8 +176,12 @@ void BarSearch::roughly(const std::vector<double>& start) {
     go_to(start);
   }
   for (int round = 0; round < 2; ++round) {
+    const Eigen::VectorXd before = place_.at;
     likelihood_.use(likelihood_.weights_at(at(), false));
     minimise(BarLikelihood::Shots::as_one, kNearEnough);
+    if (place_.at == before) {
+      return;  // as the other round would
+    }
   }
 }
 
