@@ -256,16 +256,25 @@ std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
   auto search = std::make_unique<BarSearch>(data, theory);
   try {
     search->roughly(start);
-    return search;
   } catch (const InputError&) {
-    if (theory.solid != SolidKind::three_element || theory.lossless) {
+    if (!may_be_elastic(theory)) {
       throw;
     }
+    return search_from_elastic(data, theory);
   }
+  return search;
+}
+
+bool may_be_elastic(const BarTheory& theory) {
+  return theory.solid == SolidKind::three_element && !theory.lossless;
+}
+
+std::unique_ptr<BarSearch> search_from_elastic(BarData& data, const BarTheory& theory) {
   BarTheory elastic_theory = theory;
   elastic_theory.lossless = true;
   BarSearch elastic(data, elastic_theory);
   elastic.roughly({});
+  auto search = std::make_unique<BarSearch>(data, theory);
   search->roughly(elastic.at());
   return search;
 }

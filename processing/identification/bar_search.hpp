@@ -70,10 +70,15 @@ class BarSearch {
   BarPlace place_;
 };
 
-/// A rough search. Where a bar shows no loss, its retardation can be anything and a search may not
-/// end; it does from the elastic bar.
-/// @throws InputError where it does not even then
+/// A rough search; where it does not end, from the elastic bar.
+/// @throws InputError where it does not end even then
 [[nodiscard]] std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
                                                       const std::vector<double>& start);
+
+/// Where a bar shows no loss, its retardation can be anything and a search of three elements may
+/// not end; it does from the elastic bar.
+[[nodiscard]] bool may_be_elastic(const BarTheory& theory);
+[[nodiscard]] std::unique_ptr<BarSearch> search_from_elastic(BarData& data,
+                                                             const BarTheory& theory);
 
 }  // namespace kolsky

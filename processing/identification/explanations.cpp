@@ -125,6 +125,9 @@ const BarFit* Explanations::at(const BarTheory& theory) {
       entry.fit = entry.search->so_far();
     } else {
       compare(entry, {});
+      if (!entry.fit && may_be_elastic(theory)) {
+        try_from(entry, search_from_elastic);
+      }
     }
   }
   return entry.fit ? &*entry.fit : nullptr;
@@ -143,17 +146,19 @@ const BarFit* Explanations::at(const BarTheory& theory, const BarFit& three_elem
     compare(*entry, start);
     // It holds three elements within it, so that it cannot be worse: but its search can.
     if (!entry->fit || chi2_of(*entry->fit) > chi2_of(three_element) + kNoWorse) {
-      try_from_pulses(*entry);
+      try_from(*entry,
+               [](BarData& data, const BarTheory& other) { return rough_search(data, other, {}); });
     }
   }
   return entry->fit ? &*entry->fit : nullptr;
 }
 
-void Explanations::try_from_pulses(Entry& entry) {
+void Explanations::try_from(Entry& entry, const Start& start) {
   Entry other;
   other.theory = entry.theory;
+  other.rough_chi2 = entry.rough_chi2;
   try {
-    other.search = rough_search(data_, entry.theory, {});
+    other.search = start(data_, entry.theory);
     compare(other, {});
   } catch (const InputError& error) {
     other.failed = error.problem();
@@ -165,10 +170,20 @@ void Explanations::try_from_pulses(Entry& entry) {
 
 BarFit Explanations::finished(const BarTheory& theory) {
   Entry& entry = *find(theory);
-  if (&entry != leader_) {
+  BarFit fit;
+  try {
+    if (&entry != leader_) {
+      entry.search->closely(entry.search->weights_here());
+    }
+    fit = entry.search->finished();
+  } catch (const InputError&) {
+    if (!may_be_elastic(theory)) {
+      throw;
+    }
+    entry.search = search_from_elastic(data_, theory);
     entry.search->closely(entry.search->weights_here());
+    fit = entry.search->finished();
   }
-  BarFit fit = entry.search->finished();
   fit.log_evidence = entry.fit->log_evidence;
   return fit;
 }

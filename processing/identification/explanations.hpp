@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,7 +52,9 @@ class Explanations {
   Entry& add(const BarTheory& theory);
   Entry& rough(const BarTheory& theory);
   void compare(Entry& entry, const std::vector<double>& start);
-  void try_from_pulses(Entry& entry);
+  /// By another search, where that ends better.
+  using Start = std::function<std::unique_ptr<BarSearch>(BarData&, const BarTheory&)>;
+  void try_from(Entry& entry, const Start& start);
   [[nodiscard]] bool far_behind(const Entry& entry) const;
   [[nodiscard]] std::vector<double> start_for(const BarTheory& theory) const;
 

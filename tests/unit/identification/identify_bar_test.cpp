@@ -166,6 +166,31 @@ TEST(IdentifyBar, AnElasticBarHasNoLossToFind) {
   EXPECT_TRUE(said);
 }
 
+/// Nothing but noise tells E2 and eta2 then: searches run along valleys, which must not end in no
+/// answer, nor in a far end that would not be free.
+TEST(IdentifyBar, ElasticBarsInLoudNoiseHaveFreeEndsAndTheirModulus) {
+  BarShots::Recording recording;
+  recording.gain_sd = 0.01;
+  recording.position_sd_m = 0.2e-3;
+  recording.noise_rms = 20e-6;
+  for (const std::size_t row : {std::size_t{0}, std::size_t{2}}) {
+    BarShots::Setup setup;
+    setup.material = kTable4[row].material;
+    setup.poisson_ratio = kTable4[row].poisson_ratio;
+    setup.material.E2_Pa *= 1000.0;
+    setup.material.eta2_Pa_s *= 1000.0;
+    const BarShots bar(setup);
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      SCOPED_TRACE(std::to_string(row) + " " + std::to_string(seed));
+      const auto result =
+          identify_bar(draw(bar, 3, 500 + 10 * static_cast<unsigned>(row) + seed, recording), {});
+      EXPECT_EQ(result.three_element.far_end, FarEndReturn::free);
+      const FittedNumber& E1 = result.three_element.parameters[0];
+      EXPECT_NEAR(E1.value, setup.material.E1_Pa, 4.0 * E1.sd);
+    }
+  }
+}
+
 TEST(IdentifyBar, GrowingWavesAreFlagged) {
   auto shots = draw(paper_bar(), 2, 7);
   for (Shot& shot : shots) {
