@@ -62,6 +62,7 @@ JsonList describe(const std::vector<Alternative>& alternatives) {
     if (a.failed.empty()) {
       entry.push_back({"log_evidence", a.log_evidence});
       entry.push_back({"chi2_reduced", a.chi2_reduced});
+      entry.push_back({"left_behind", a.left_behind});
     } else {
       entry.push_back({"failed", a.failed});
     }

@@ -44,9 +44,9 @@ std::string alternatives_text(const BarIdentification& result) {
     text += fmt::format("    {:<11}{:<20}far end {:<8}", name_of(a.theory.waves),
                         a.theory.lossless ? "elastic" : name_of(a.theory.solid),
                         name_of(a.theory.far_end));
-    text += a.failed.empty()
-                ? fmt::format("{:>12.1f}{:>11.4f}\n", a.log_evidence - best, a.chi2_reduced)
-                : " " + a.failed + "\n";
+    text += a.failed.empty() ? fmt::format("{:>12.1f}{:>11.4f}{}\n", a.log_evidence - best,
+                                           a.chi2_reduced, a.left_behind ? "  roughly" : "")
+                             : " " + a.failed + "\n";
   }
   return text;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "processing/criticism/carried_noise.hpp"
+#include "processing/criticism/response_end.hpp"
 #include "processing/criticism/small_factor.hpp"
 #include "processing/criticism/specimen_response.hpp"
 #include "processing/reduction/pulse.hpp"
@@ -246,29 +247,6 @@ WhiteResiduals::Ratios WhiteResiduals::ratios_of(const Scene& scene) const {
   }
   return ratios;
 }
-
-namespace {
-
-/// Ends a response where it falls below what the damped transform tells of it: the spectrum's own
-/// end leaves ripples of this share of the peak, which undamping raises.
-/// @param growth  of undamping, per sample
-void end_where_unresolved(std::vector<double>& response, double growth, std::size_t first) {
-  constexpr double kUnresolved = 3e-10;
-  double peak = 0.0;
-  for (const double value : response) {
-    peak = std::max(peak, std::abs(value));
-  }
-  for (std::size_t n = response.size(); n > 0; --n) {
-    const double ripple =
-        kUnresolved * peak * std::exp(growth * static_cast<double>(first + n - 1));
-    if (std::abs(response[n - 1]) > ripple) {
-      return;
-    }
-    response[n - 1] = 0.0;
-  }
-}
-
-}  // namespace
 
 /// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins; last,
 /// what the mean over a long reference gauge would hold of it, and all of it.

@@ -1,9 +1,11 @@
 #include "processing/identification/bar_data.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/waves/band_limit.hpp"
@@ -230,28 +232,80 @@ void BarData::prepare_spectra() {
       judge(of_shot.back(), judged_of_shot.emplace_back(judged_path_.size()));
     }
   }
+  combine_shots();
   unit_offset_ = filtered(std::vector<double>(records_.front().strain.front().size(), 1.0));
   unit_impulse_ = filtered(std::vector<double>{1.0});
 }
 
-std::span<const double> BarData::in_time(std::span<const Complex> damped) {
-  const double scale = 1.0 / places_.samples_per_place;
-  const std::size_t carried = std::min(damped.size(), slow_spectrum_.size());
-  for (std::size_t k = 0; k < carried; ++k) {
-    slow_spectrum_[k] = damped[k] * scale;
+/// Weights are the shots' shares in the strongest common part of gauge 0's records.
+void BarData::combine_shots() {
+  const auto count = static_cast<Eigen::Index>(shots());
+  Eigen::MatrixXd common(count, count);
+  for (Eigen::Index a = 0; a < count; ++a) {
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < judged_path_.size(); ++k) {
+        sum += (judged_[static_cast<std::size_t>(a)][0][k] *
+                std::conj(judged_[static_cast<std::size_t>(b)][0][k]))
+                   .real() /
+               noise_power_[0][k];
+      }
+      common(a, b) = common(b, a) = sum;
+    }
   }
-  std::fill(slow_spectrum_.begin() + static_cast<std::ptrdiff_t>(carried), slow_spectrum_.end(),
-            0.0);
+  const Eigen::VectorXd weights = SymmetricEigen(common).eigenvectors().rightCols(1);
+  const auto combined = [&](const std::vector<std::vector<Spectrum>>& of_shots) {
+    std::vector<Spectrum> sums(gauges(), Spectrum(of_shots.front().front().size()));
+    for (std::size_t shot = 0; shot < shots(); ++shot) {
+      for (std::size_t j = 0; j < gauges(); ++j) {
+        for (std::size_t k = 0; k < sums[j].size(); ++k) {
+          sums[j][k] += weights[static_cast<Eigen::Index>(shot)] * of_shots[shot][j][k];
+        }
+      }
+    }
+    return sums;
+  };
+  spectra_.push_back(combined(spectra_));
+  judged_.push_back(combined(judged_));
+}
+
+std::size_t BarData::carried() const {
+  return std::min(path_.size(), slow_spectrum_.size());
+}
+
+std::span<const double> BarData::slow_in_time() {
   const std::span<double> record(slow_record_.data(), places_.judged_end);
-  slow_->inverse(slow_spectrum_, record);
+  slow_->inverse({slow_spectrum_.data(), carried()}, record);
   return record;
 }
 
-void BarData::judge(std::span<const Complex> damped, std::span<Complex> judged) {
-  plain_->forward(in_time(damped).subspan(places_.judged_begin), plain_spectrum_);
+void BarData::judge(std::span<const double> in_time, std::span<Complex> judged) {
+  const std::span<Complex> spectrum(plain_spectrum_.data(), judged.size() + 1);
+  plain_->forward(in_time.subspan(places_.judged_begin), spectrum);
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    judged[k] = plain_spectrum_[k + 1] * undo_filter_[k];
+    judged[k] = spectrum[k + 1] * undo_filter_[k];
   }
+}
+
+std::span<const double> BarData::in_time(std::span<const Complex> damped) {
+  const double scale = 1.0 / places_.samples_per_place;
+  for (std::size_t k = 0; k < carried(); ++k) {
+    slow_spectrum_[k] = damped[k] * scale;
+  }
+  return slow_in_time();
+}
+
+void BarData::judge(std::span<const Complex> damped, std::span<Complex> judged) {
+  judge(in_time(damped), judged);
+}
+
+void BarData::judge_product(std::span<const Complex> a, std::span<const Complex> b,
+                            std::span<Complex> judged) {
+  const double scale = 1.0 / places_.samples_per_place;
+  for (std::size_t k = 0; k < carried(); ++k) {
+    slow_spectrum_[k] = a[k] * b[k] * scale;
+  }
+  judge(slow_in_time(), judged);
 }
 
 }  // namespace kolsky

@@ -49,6 +49,9 @@ class BarData {
   [[nodiscard]] const Spectrum& spectrum(std::size_t shot, std::size_t gauge) const {
     return spectra_[shot][gauge];
   }
+  /// Stands for a shot: the sum of all, weighted (by squares that add up to 1, so that its noise is
+  /// a shot's) to hold what they have in common.
+  [[nodiscard]] std::size_t all_as_one() const { return shots(); }
   /// The same of a record that is 1 throughout.
   [[nodiscard]] const Spectrum& unit_offset() const { return unit_offset_; }
   /// The same of a record that is 1 in its first sample and 0 after it.
@@ -71,6 +74,9 @@ class BarData {
 
   /// The judged part of a damped spectrum, on the imaginary axis, the low-pass undone.
   void judge(std::span<const Complex> damped, std::span<Complex> judged);
+  /// The same of the product of two.
+  void judge_product(std::span<const Complex> a, std::span<const Complex> b,
+                     std::span<Complex> judged);
   [[nodiscard]] const Spectrum& judged(std::size_t shot, std::size_t gauge) const {
     return judged_[shot][gauge];
   }
@@ -91,6 +97,10 @@ class BarData {
   [[nodiscard]] double quiet_to_skip(double edge) const;
   void prepare_noise();
   void prepare_spectra();
+  void combine_shots();
+  [[nodiscard]] std::size_t carried() const;
+  [[nodiscard]] std::span<const double> slow_in_time();
+  void judge(std::span<const double> in_time, std::span<Complex> judged);
 
   Bench bench_;
   std::vector<BarRecords> records_;
@@ -104,8 +114,8 @@ class BarData {
   std::vector<Complex> path_;
   std::vector<Complex> judged_path_;
   std::vector<double> undo_filter_;
-  std::vector<std::vector<Spectrum>> spectra_;
-  std::vector<std::vector<Spectrum>> judged_;
+  std::vector<std::vector<Spectrum>> spectra_;  ///< by shot, that of all as one last, and gauge
+  std::vector<std::vector<Spectrum>> judged_;   ///< likewise
   Spectrum unit_offset_;
   Spectrum unit_impulse_;
   std::vector<std::vector<double>> noise_power_;

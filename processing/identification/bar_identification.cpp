@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/identification/explanations.hpp"
 
 namespace kolsky {
 
@@ -17,55 +17,6 @@ constexpr double kPaperBand_Hz = 15e3;
 /// A loss that stands out by so many of its deviations leaves an elastic bar behind by a log
 /// evidence of half their square, a hundred times what its two numbers less can gain.
 constexpr double kLossInDeviations = 50.0;
-
-/// Fits made so far, so that none is made twice.
-class Explanations {
- public:
-  explicit Explanations(BarData& data) : data_(data) {}
-
-  /// Null where it cannot be fitted.
-  const BarFit* at(const BarTheory& theory, const BarFit* near = nullptr) {
-    for (const auto& known : fits_) {
-      if (known->alternative.theory == theory) {
-        return known->fit ? &*known->fit : nullptr;
-      }
-    }
-    Entry entry;
-    entry.alternative.theory = theory;
-    try {
-      const bool same_parameters = near != nullptr && near->solid == theory.solid &&
-                                   theory.far_end != FarEndReturn::partial &&
-                                   near->far_end != FarEndReturn::partial;
-      entry.fit = fit_bar(data_, theory, same_parameters ? near->at : std::vector<double>{});
-      entry.alternative.log_evidence = entry.fit->log_evidence;
-      entry.alternative.chi2_reduced = entry.fit->chi2_reduced;
-    } catch (const InputError& error) {
-      entry.alternative.failed = error.problem();
-    }
-    fits_.push_back(std::make_unique<Entry>(std::move(entry)));
-    return fits_.back()->fit ? &*fits_.back()->fit : nullptr;
-  }
-
-  [[nodiscard]] std::vector<Alternative> alternatives() const {
-    std::vector<Alternative> list;
-    for (const auto& entry : fits_) {
-      list.push_back(entry->alternative);
-    }
-    std::stable_sort(list.begin(), list.end(), [](const Alternative& a, const Alternative& b) {
-      return a.failed.empty() != b.failed.empty() ? a.failed.empty()
-                                                  : a.log_evidence > b.log_evidence;
-    });
-    return list;
-  }
-
- private:
-  struct Entry {
-    Alternative alternative;
-    std::optional<BarFit> fit;
-  };
-  BarData& data_;
-  std::vector<std::unique_ptr<Entry>> fits_;
-};
 
 /// The best of some fits, and by how much it is ahead of the next.
 struct Best {
@@ -138,6 +89,10 @@ std::vector<FittedNumber> over_shots(const BarFit& fit) {
     numbers[m].sd = count > 1.0 ? std::sqrt(squares / (count - 1.0)) : numbers[m].sd;
   }
   return numbers;
+}
+
+BarTheory theory_of(const BarFit& fit) {
+  return {fit.theory, fit.solid, fit.far_end, fit.lossless};
 }
 
 /// Whether the loss is so clear that to fit a bar without any would be a waste.
@@ -279,31 +234,32 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
       options.theory ? std::vector{*options.theory}
                      : std::vector{WaveTheory::exact, WaveTheory::love, WaveTheory::elementary};
 
-  const auto over_ends = [&](WaveTheory waves, const BarFit* near) {
-    std::vector<const BarFit*> fits;
-    for (const FarEndReturn end : ends) {
-      fits.push_back(explanations.at({waves, three, end}, near));
-    }
-    Best best = best_of(fits);
-    if (fits.size() > 1 && best.fit == fits.back() && ends.back() == FarEndReturn::partial &&
-        fits.front() != nullptr && best.choice.ahead < kPartialAhead) {
-      best.fit = fits.front();
-    }
-    return best;
-  };
-  Best end = over_ends(theories.front(), nullptr);
+  for (const WaveTheory waves : theories) {
+    explanations.look({waves, three, ends.front()});
+  }
+  if (const BarTheory* leading = explanations.leading(); leading != nullptr && ends.size() > 1) {
+    explanations.look({leading->waves, three, ends.back()});
+  }
+  const FarEndReturn likely =
+      explanations.leading() != nullptr ? explanations.leading()->far_end : ends.front();
   std::vector<const BarFit*> over_theories;
   for (const WaveTheory waves : theories) {
-    const FarEndReturn likely = end.fit != nullptr ? end.fit->far_end : ends.front();
-    over_theories.push_back(explanations.at({waves, three, likely}, end.fit));
+    over_theories.push_back(explanations.at({waves, three, likely}));
   }
-  Best theory = best_of(over_theories);
+  const Best theory = best_of(over_theories);
   if (theory.fit == nullptr) {
     // Says why.
     (void)fit_bar(data, {theories.front(), three, ends.front()});
   }
-  // What comes back, again, under the theory that was chosen.
-  end = over_ends(theory.fit->theory, theory.fit);
+  std::vector<const BarFit*> over_ends;
+  for (const FarEndReturn far_end : ends) {
+    over_ends.push_back(explanations.at({theory.fit->theory, three, far_end}));
+  }
+  Best end = best_of(over_ends);
+  if (over_ends.front() != nullptr && ends.back() == FarEndReturn::partial &&
+      end.choice.ahead < kPartialAhead) {
+    end.fit = over_ends.front();
+  }
   const BarFit* three_element = end.fit;
   if (!options.far_end && !data.two_passes() && end.choice.told_apart) {
     const BarFit* partial = explanations.at({three_element->theory, three, FarEndReturn::partial});
@@ -321,7 +277,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   }
 
   BarIdentification result;
-  result.three_element = *three_element;
+  result.three_element = explanations.finished(theory_of(*three_element));
   result.two_passes = data.two_passes();
   if (three_element->lossless) {
     for (std::size_t i = 1; i < result.three_element.parameters.size(); ++i) {
@@ -334,7 +290,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   result.far_end.asked = options.far_end.has_value();
   const BarFit* chosen = three_element;
   const auto with_solid = [&](SolidKind solid) {
-    return explanations.at({three_element->theory, solid, three_element->far_end}, three_element);
+    return explanations.at({three_element->theory, solid, three_element->far_end}, *three_element);
   };
   if (options.solid && *options.solid != three) {
     chosen = with_solid(*options.solid);
@@ -357,7 +313,8 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
       chosen = solid.fit;
     }
   }
-  result.fit = *chosen;
+  result.fit =
+      chosen == three_element ? result.three_element : explanations.finished(theory_of(*chosen));
   result.alternatives = explanations.alternatives();
   result.over_shots = over_shots(result.three_element);
   result.spectrum = likely_spectrum(data, result.fit);

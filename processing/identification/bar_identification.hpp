@@ -23,7 +23,8 @@ struct Alternative {
   BarTheory theory;
   double log_evidence = 0.0;
   double chi2_reduced = 0.0;
-  std::string failed;  ///< why there is no fit; empty where there is one
+  bool left_behind = false;  ///< so far that its search was left: more or less so much
+  std::string failed;        ///< why there is no fit; empty where there is one
 };
 
 /// What the records say of the choice between explanations that differ in one respect.
@@ -39,7 +40,7 @@ struct BarIdentification {
   Choice wave_theory, far_end, solid;
   bool two_passes =
       false;  ///< one gauge stood for two (see split_passes); the far end counts as free
-  std::vector<Alternative> alternatives;  ///< every fit made, best first
+  std::vector<Alternative> alternatives;  ///< all that were compared, best first
   std::vector<FittedNumber> over_shots;   ///< three-element: mean of the shots' own, sd over them
   BarSpectrum spectrum;
   BarSpectrum straight_lines;       ///< the paper's analysis, where it applies

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace kolsky {
 
@@ -66,7 +67,7 @@ double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
 }  // namespace
 
 BarLikelihood::BarLikelihood(BarData& data, BarModel model)
-    : data_(data), model_(std::move(model)), product_(data.path().size()) {}
+    : data_(data), model_(std::move(model)) {}
 
 std::size_t BarLikelihood::residuals() const {
   return 2 * data_.judged_path().size() * (data_.gauges() - 1) * data_.shots();
@@ -74,16 +75,15 @@ std::size_t BarLikelihood::residuals() const {
 
 /// g after n returns is its first passage times
 ///   sum_{i <= n} (-R q_0)^i + R q_j sum_{i < n} (-R q_0)^i.
-std::vector<BarLikelihood::Whitening> BarLikelihood::whitening(std::span<const double> at) {
+BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
   const auto passages = model_.first_passages(at, data_.judged_path(), false);
-  const auto others = static_cast<Eigen::Index>(passages.size());
+  const Eigen::Index others = this->others();
   const double R = model_.reflection(at);
   const auto returns =
       R != 0.0 ? model_.returns(at, data_.judged_path()) : std::vector<BarModel::Spectrum>{};
   const double turn_s = travel_there_and_back_s(data_, model_.moved(at), *model_.solid(at));
   const double turns = data_.judged_s() / turn_s;
-  std::vector<Whitening> list;
-  list.reserve(data_.judged_path().size());
+  Whitening whitening;
   Eigen::MatrixXcd covariance(others, others);
   Eigen::VectorXcd g(others);
   Eigen::VectorXcd mean_g(others);
@@ -114,19 +114,25 @@ std::vector<BarLikelihood::Whitening> BarLikelihood::whitening(std::span<const d
       covariance(j, j) += data_.noise_power(static_cast<std::size_t>(j) + 1)[k];
     }
     const Eigen::LLT<Eigen::MatrixXcd> factor(covariance);
-    Whitening whitening;
-    whitening.lower_inverse = factor.matrixL().solve(Eigen::MatrixXcd::Identity(others, others));
-    whitening.noise_of_first = data_.noise_power(0)[k] * factor.solve(mean_g).adjoint();
-    list.push_back(std::move(whitening));
+    // Real and imaginary part of a bin carry half of its power each.
+    const Eigen::MatrixXcd inverse = factor.matrixL().solve(
+        Eigen::MatrixXcd(Eigen::MatrixXcd::Identity(others, others) * std::numbers::sqrt2));
+    const Eigen::RowVectorXcd of_first = data_.noise_power(0)[k] * factor.solve(mean_g).adjoint();
+    for (Eigen::Index j = 0; j < others; ++j) {
+      whitening.noise_of_first.push_back(of_first[j]);
+      for (Eigen::Index l = 0; l <= j; ++l) {
+        whitening.lower_inverse.push_back(inverse(j, l));
+      }
+    }
   }
-  return list;
+  return whitening;
 }
 
 /// What a unit of gauge 0's reading over one stride shows at the others in the lowest bins. Rows as
 /// in `white`, columns by the stride. The response from its place to the end of what is judged:
 /// differences of sums over one response. The mean of the quiet strides is taken off, as it is from
 /// the records.
-Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
+Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at, std::size_t bins,
                                               std::size_t stride) const {
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
@@ -134,7 +140,7 @@ Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
   const std::size_t entries = (places.judged_end - begin) / stride;
   const std::size_t judged = places.judged_end - places.judged_begin;
   const auto transfers = model_.transfers(at, data_.path(), false);
-  Eigen::MatrixXd shown(2 * others * static_cast<Eigen::Index>(lowest_bins_),
+  Eigen::MatrixXd shown(2 * others * static_cast<Eigen::Index>(bins),
                         static_cast<Eigen::Index>(entries));
   std::vector<Complex> sums(places.judged_end + 1);
   Spectrum product(data_.path().size());
@@ -143,7 +149,7 @@ Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
       product[k] = transfers[static_cast<std::size_t>(j)].g[k] * data_.unit_impulse()[k];
     }
     const std::span<const double> response = data_.in_time(product);
-    for (std::size_t bin = 0; bin < lowest_bins_; ++bin) {
+    for (std::size_t bin = 0; bin < bins; ++bin) {
       const double angle =
           -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
       const Complex turn = std::polar(1.0, angle);
@@ -176,12 +182,12 @@ Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at,
 }
 
 /// The same of a gauge's own reading in its own rows, from where the judging begins.
-Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t stride) const {
+Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t bins, std::size_t stride) const {
   const BarData::Places& places = data_.places();
   const std::size_t judged = places.judged_end - places.judged_begin;
-  Eigen::MatrixXd shown(static_cast<Eigen::Index>(2 * lowest_bins_),
+  Eigen::MatrixXd shown(static_cast<Eigen::Index>(2 * bins),
                         static_cast<Eigen::Index>(judged / stride));
-  for (Eigen::Index bin = 0; bin < static_cast<Eigen::Index>(lowest_bins_); ++bin) {
+  for (Eigen::Index bin = 0; bin < static_cast<Eigen::Index>(bins); ++bin) {
     const double angle =
         -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
     for (Eigen::Index e = 0; e < shown.cols(); ++e) {
@@ -194,13 +200,14 @@ Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t stride) const {
   return shown;
 }
 
-void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
+LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
+                                                     std::size_t lowest_bins) {
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
-  const auto bins = static_cast<Eigen::Index>(lowest_bins_);
+  const auto bins = static_cast<Eigen::Index>(lowest_bins);
   const auto judged = static_cast<double>(places.judged_end - places.judged_begin);
   const auto stride = std::max<std::size_t>(
-      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins_));
+      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins));
   const double samples = static_cast<double>(stride) * places.samples_per_place;
   // Power per sample of what is not in the slow parts, which are treated each by itself.
   const auto steady = [&](std::size_t gauge, std::size_t bin) {
@@ -212,7 +219,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     }
     return std::max(power, 0.0);
   };
-  const Eigen::MatrixXd by_first = shown_by_first(at, stride);
+  const Eigen::MatrixXd by_first = shown_by_first(at, lowest_bins, stride);
   Eigen::MatrixXd scaled = by_first;
   for (Eigen::Index bin = 0; bin < bins; ++bin) {
     scaled.middleRows(2 * others * bin, 2 * others) *=
@@ -227,7 +234,7 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     const auto gauge = static_cast<std::size_t>(j) + 1;
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(2 * bins, 2 * bins);
     if (!data_.slow_noise(gauge).empty()) {
-      const Eigen::MatrixXd by_own = shown_by_own(stride);
+      const Eigen::MatrixXd by_own = shown_by_own(lowest_bins, stride);
       for (const auto& part : data_.slow_noise(gauge)) {
         add_square(driven(by_own, part, samples), own);
       }
@@ -246,159 +253,188 @@ void BarLikelihood::couple_lowest_bins(std::span<const double> at) {
     }
   }
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(covariance);
-  lowest_factor_ = LowerTriangle(factor.matrixLLT());
+  return LowerTriangle(factor.matrixLLT());
 }
 
-void BarLikelihood::weigh(std::span<const double> at, bool exact) {
-  whitening_ = whitening(at);
-  lowest_bins_ = exact ? std::min(kLowestBins, data_.judged_path().size()) : 0;
-  if (exact) {
-    couple_lowest_bins(at);
+BarLikelihood::Weights BarLikelihood::weights_at(std::span<const double> at, bool together) {
+  Whitening weights = whitening(at);
+  if (together) {
+    weights.lowest_bins = std::min(kLowestBins, data_.judged_path().size());
+    weights.lowest_factor = coupling_of_lowest_bins(at, weights.lowest_bins);
+  }
+  return std::make_shared<const Whitening>(std::move(weights));
+}
+
+Eigen::Index BarLikelihood::rows() const {
+  return 2 * others() * static_cast<Eigen::Index>(data_.judged_path().size());
+}
+
+void BarLikelihood::put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
+                        std::size_t first_bin, EightColumns& columns) const {
+  const Eigen::Index others = this->others();
+  for (std::size_t k = first_bin; k < spectrum.size(); ++k) {
+    const Eigen::Index row = 2 * others * static_cast<Eigen::Index>(k) + gauge;
+    columns(row, column) = spectrum[k].real();
+    columns(row + others, column) = spectrum[k].imag();
   }
 }
 
-BarLikelihood::Spectrum BarLikelihood::judged_product(const Spectrum& filter,
-                                                      const Spectrum& spectrum) {
-  for (std::size_t k = 0; k < product_.size(); ++k) {
-    product_[k] = filter[k] * spectrum[k];
+/// To rows of unit variance each.
+void BarLikelihood::whiten(EightColumns& columns) const {
+  if (weights_->lowest_bins > 0) {
+    weights_->lowest_factor.solve_in_place(columns);
   }
-  Spectrum judged(data_.judged_path().size());
-  data_.judge(product_, judged);
-  return judged;
+  whiten_above_lowest(columns);
 }
 
-std::vector<BarLikelihood::Spectrum> BarLikelihood::residuals_of(
-    std::size_t shot, const std::vector<BarModel::Transfer>& transfers) {
-  std::vector<Spectrum> list;
-  for (std::size_t j = 0; j < transfers.size(); ++j) {
-    Spectrum r = judged_product(transfers[j].g, data_.spectrum(shot, 0));
-    const Spectrum& own = data_.judged(shot, j + 1);
-    for (std::size_t k = 0; k < r.size(); ++k) {
-      r[k] = own[k] - r[k];
-    }
-    list.push_back(std::move(r));
-  }
-  return list;
+void BarLikelihood::whiten_above_lowest(EightColumns& columns) const {
+  const Eigen::Index others = this->others();
+  const auto coupled = static_cast<Eigen::Index>(weights_->lowest_bins);
+  const std::span<const Complex> triangles(weights_->lower_inverse);
+  multiply_in_place(
+      triangles.subspan(static_cast<std::size_t>(coupled * others * (others + 1) / 2)), others,
+      2 * others * coupled, columns);
 }
 
-/// What is common to the shots at one place in the parameters.
-struct BarLikelihood::Columns {
-  std::vector<BarModel::Transfer> transfers;  ///< on the damped path
-  std::vector<BarModel::Transfer> passages;   ///< on the imaginary axis
-  std::vector<Spectrum> offset;               ///< what the baseline's error makes of each r_j
-  std::vector<Spectrum> jump;                 ///< and noise that ends elsewhere than it began
-};
-
-/// By bin, gauges by columns: one per parameter, the residual, the baseline, the gauges' jumps.
-std::vector<Eigen::MatrixXcd> BarLikelihood::bins_of(std::size_t shot, const Columns& columns) {
-  const std::size_t bins = data_.judged_path().size();
-  const auto others = static_cast<Eigen::Index>(columns.transfers.size());
-  const auto parameters = static_cast<Eigen::Index>(model_.parameters());
-  const std::vector<Spectrum> residual = residuals_of(shot, columns.transfers);
-  const Eigen::Index wide = parameters + 2 + others;
-  std::vector<Eigen::MatrixXcd> bin(bins, Eigen::MatrixXcd::Zero(others, wide));
-  for (Eigen::Index j = 0; j < others; ++j) {
+/// The baseline of gauge 0 and the gauges' jumps: in the lowest bins they lie in the covariance.
+void BarLikelihood::look_at_nuisances() {
+  place_.nuisances = EightColumns(rows(), 1 + others());
+  const std::vector<Spectrum> jump = jumps(data_);
+  Spectrum offset(data_.judged_path().size());
+  for (Eigen::Index j = 0; j < others(); ++j) {
     const auto i = static_cast<std::size_t>(j);
-    for (std::size_t k = 0; k < bins; ++k) {
-      bin[k](j, parameters) = residual[i][k];
-      if (k >= lowest_bins_) {
-        bin[k](j, parameters + 1) = columns.offset[i][k];
-        bin[k](j, parameters + 2 + j) = columns.jump[i][k];
+    data_.judge_product(place_.transfers[i].g, data_.unit_offset(), offset);
+    for (Complex& value : offset) {
+      value *= data_.baseline_sd(0, 0);
+    }
+    put(offset, j, 0, weights_->lowest_bins, place_.nuisances);
+    put(jump[i], j, 1 + j, weights_->lowest_bins, place_.nuisances);
+  }
+  whiten_above_lowest(place_.nuisances);
+}
+
+void BarLikelihood::look_at_residuals() {
+  const std::size_t shots = place_.shots.size();
+  place_.white_residuals = EightColumns(rows(), static_cast<Eigen::Index>(shots));
+  place_.residuals.assign(shots, {});
+  for (std::size_t index = 0; index < shots; ++index) {
+    for (Eigen::Index j = 0; j < others(); ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      Spectrum r(data_.judged_path().size());
+      data_.judge_product(place_.transfers[i].g, data_.spectrum(place_.shots[index], 0), r);
+      const Spectrum& own = data_.judged(place_.shots[index], i + 1);
+      for (std::size_t k = 0; k < r.size(); ++k) {
+        r[k] = own[k] - r[k];
+      }
+      put(r, j, static_cast<Eigen::Index>(index), 0, place_.white_residuals);
+      place_.residuals[index].push_back(std::move(r));
+    }
+  }
+  whiten(place_.white_residuals);
+}
+
+double BarLikelihood::chi2_at(std::span<const double> at, Shots which) {
+  place_.transfers = model_.transfers(at, data_.path(), true);
+  place_.passages = model_.first_passages(at, data_.judged_path(), true);
+  place_.shots = {data_.all_as_one()};
+  if (which == Shots::each) {
+    place_.shots.resize(data_.shots());
+    std::iota(place_.shots.begin(), place_.shots.end(), std::size_t{0});
+  }
+  look_at_nuisances();
+  look_at_residuals();
+  const Eigen::Index nuisances = 1 + others();
+  const auto shots = static_cast<Eigen::Index>(place_.shots.size());
+  const Eigen::MatrixXd among = square_of(place_.nuisances).topLeftCorner(nuisances, nuisances) +
+                                Eigen::MatrixXd::Identity(nuisances, nuisances);
+  const Eigen::LLT<Eigen::MatrixXd> known(among);
+  double sum = 0.0;
+  place_.chi2.clear();
+  for (Eigen::Index shot = 0; shot < shots; ++shot) {
+    double squares = 0.0;
+    Eigen::VectorXd shared = Eigen::VectorXd::Zero(nuisances);
+    for (Eigen::Index row = 0; row < rows(); ++row) {
+      const double residual = place_.white_residuals(row, shot);
+      squares += residual * residual;
+      for (Eigen::Index n = 0; n < nuisances; ++n) {
+        shared[n] += place_.nuisances(row, n) * residual;
       }
     }
+    place_.chi2.push_back(squares - shared.dot(known.solve(shared)));
+    sum += place_.chi2.back();
   }
-  for (Eigen::Index j = 0; j < others; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    const auto& derivatives = columns.transfers[i].derivatives;
+  return sum;
+}
+
+/// What the parameters do to a shot's residuals.
+void BarLikelihood::put_slopes(std::size_t index, EightColumns& columns) {
+  const std::size_t bins = data_.judged_path().size();
+  const std::size_t shot = place_.shots[index];
+  const std::vector<Spectrum>& residual = place_.residuals[index];
+  Spectrum noise_of_first(bins);
+  for (std::size_t k = 0; k < bins; ++k) {
+    for (std::size_t l = 0; l < residual.size(); ++l) {
+      noise_of_first[k] += weights_->noise_of_first[k * residual.size() + l] * residual[l][k];
+    }
+  }
+  columns.clear();
+  Spectrum moved(bins);
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    const auto& derivatives = place_.transfers[i].derivatives;
+    const BarModel::Transfer& passages = place_.passages[i];
     for (std::size_t d = 0; d < derivatives.size(); ++d) {
       const auto& derivative = derivatives[d];
-      const auto& passage = columns.passages[i].derivatives[d];
-      const auto m = static_cast<Eigen::Index>(derivative.parameter);
-      Spectrum moved;
+      const auto& passage = passages.derivatives[d];
       if (derivative.proportion) {
-        moved.resize(bins);
         for (std::size_t k = 0; k < bins; ++k) {
           moved[k] = *derivative.proportion * (data_.judged(shot, i + 1)[k] - residual[i][k]);
         }
       } else {
-        moved = judged_product(derivative.of_g, data_.spectrum(shot, 0));
+        data_.judge_product(derivative.of_g, data_.spectrum(shot, 0), moved);
       }
       for (std::size_t k = 0; k < bins; ++k) {
-        Complex noise_of_first = 0.0;
-        for (Eigen::Index l = 0; l < others; ++l) {
-          noise_of_first +=
-              whitening_[k].noise_of_first[l] * residual[static_cast<std::size_t>(l)][k];
-        }
         const Complex slope =
-            passage.proportion ? *passage.proportion * columns.passages[i].g[k] : passage.of_g[k];
-        bin[k](j, m) = -moved[k] - slope * noise_of_first;
+            passage.proportion ? *passage.proportion * passages.g[k] : passage.of_g[k];
+        moved[k] = -moved[k] - slope * noise_of_first[k];
       }
+      put(moved, static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(derivative.parameter), 0,
+          columns);
     }
   }
-  return bin;
 }
 
-/// Rows of unit variance each. Real and imaginary part of a bin carry half of its power each.
-Eigen::MatrixXd BarLikelihood::white(const std::vector<Eigen::MatrixXcd>& bins) const {
-  const Eigen::Index others = bins.front().rows();
-  const Eigen::Index wide = bins.front().cols();
-  Eigen::MatrixXd rows(2 * others * static_cast<Eigen::Index>(bins.size()), wide);
-  for (std::size_t k = 0; k < bins.size(); ++k) {
-    const Eigen::Index at = 2 * others * static_cast<Eigen::Index>(k);
-    if (k < lowest_bins_) {
-      rows.middleRows(at, others) = bins[k].real();
-      rows.middleRows(at + others, others) = bins[k].imag();
-      continue;
-    }
-    const Eigen::MatrixXcd whitened = std::numbers::sqrt2 * (whitening_[k].lower_inverse * bins[k]);
-    rows.middleRows(at, others) = whitened.real();
-    rows.middleRows(at + others, others) = whitened.imag();
-  }
-  if (lowest_bins_ > 0) {
-    const Eigen::Index coupled = 2 * others * static_cast<Eigen::Index>(lowest_bins_);
-    // What else is eliminated lies in that covariance: its columns are empty there.
-    const auto judged = static_cast<Eigen::Index>(model_.parameters()) + 1;
-    lowest_factor_.solve_in_place(rows.topLeftCorner(coupled, judged));
-  }
-  return rows;
-}
-
-ShotTerms BarLikelihood::terms_of(std::size_t shot, const Columns& columns) {
+ShotTerms BarLikelihood::terms_of(std::size_t index, EightColumns& columns) {
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
-  const Eigen::MatrixXd rows = white(bins_of(shot, columns));
-  const auto residuals = rows.col(parameters);
-  const auto slopes = rows.leftCols(parameters);
-  const auto nuisances = rows.rightCols(rows.cols() - parameters - 1);
-  const Eigen::LLT<Eigen::MatrixXd> known(
-      Eigen::MatrixXd::Identity(nuisances.cols(), nuisances.cols()) +
-      nuisances.transpose() * nuisances);
-  const Eigen::VectorXd in_residuals = nuisances.transpose() * residuals;
-  const Eigen::MatrixXd in_slopes = nuisances.transpose() * slopes;
-  const Eigen::VectorXd explained = known.solve(in_residuals);
+  const Eigen::Index nuisances = 1 + others();
+  put_slopes(index, columns);
+  whiten(columns);
+  for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+    columns(row, parameters) = place_.white_residuals(row, static_cast<Eigen::Index>(index));
+    for (Eigen::Index n = 0; n < nuisances; ++n) {
+      columns(row, parameters + 1 + n) = place_.nuisances(row, n);
+    }
+  }
+  const Eigen::MatrixXd square = square_of(columns);
+  const auto of_nuisances = square.middleRows(parameters + 1, nuisances);
+  const Eigen::LLT<Eigen::MatrixXd> known(Eigen::MatrixXd::Identity(nuisances, nuisances) +
+                                          of_nuisances.middleCols(parameters + 1, nuisances));
+  const Eigen::MatrixXd in_slopes = of_nuisances.leftCols(parameters);
   ShotTerms terms;
-  terms.chi2 = residuals.squaredNorm() - in_residuals.dot(explained);
-  terms.gradient = slopes.transpose() * residuals - in_slopes.transpose() * explained;
-  terms.information = slopes.transpose() * slopes;
-  terms.information -= in_slopes.transpose() * known.solve(in_slopes);
+  terms.chi2 = place_.chi2[index];
+  terms.gradient = square.col(parameters).head(parameters) -
+                   in_slopes.transpose() * known.solve(of_nuisances.col(parameters));
+  terms.information =
+      square.topLeftCorner(parameters, parameters) - in_slopes.transpose() * known.solve(in_slopes);
   return terms;
 }
 
-std::vector<ShotTerms> BarLikelihood::evaluate(std::span<const double> at, std::size_t shots) {
-  Columns columns;
-  columns.transfers = model_.transfers(at, data_.path(), true);
-  columns.passages = model_.first_passages(at, data_.judged_path(), true);
-  columns.jump = jumps(data_);
-  for (const auto& transfer : columns.transfers) {
-    columns.offset.push_back(judged_product(transfer.g, data_.unit_offset()));
-    for (Complex& value : columns.offset.back()) {
-      value *= data_.baseline_sd(0, 0);
-    }
+std::vector<ShotTerms> BarLikelihood::terms() {
+  EightColumns columns(rows(), static_cast<Eigen::Index>(model_.parameters()) + 2 + others());
+  std::vector<ShotTerms> list;
+  for (std::size_t index = 0; index < place_.shots.size(); ++index) {
+    list.push_back(terms_of(index, columns));
   }
-  std::vector<ShotTerms> terms;
-  for (std::size_t shot = 0; shot < std::min(shots, data_.shots()); ++shot) {
-    terms.push_back(terms_of(shot, columns));
-  }
-  return terms;
+  return list;
 }
 
 }  // namespace kolsky

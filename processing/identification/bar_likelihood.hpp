@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,43 +45,68 @@ class BarLikelihood {
   /// Real numbers that are judged.
   [[nodiscard]] std::size_t residuals() const;
 
-  /// Sets the weights as they are at a place in the parameters. They follow it slowly, so a search
-  /// may keep them. @param exact  the lowest bins together taken together, else bin by bin
-  void weigh(std::span<const double> at, bool exact);
+  /// The noise's weights as they are at a place in the parameters. They follow it slowly, so a
+  /// search may keep them. @param together  the lowest bins by their common covariance, else bin by
+  /// bin
+  struct Whitening;
+  using Weights = std::shared_ptr<const Whitening>;
+  [[nodiscard]] Weights weights_at(std::span<const double> at, bool together);
+  void use(Weights weights) { weights_ = std::move(weights); }
 
-  /// One per shot, of the first so many: near `at`, half of chi2 moves by
+  /// Which shots are looked at: all of them, or what they have in common as one (see BarData).
+  enum class Shots { each, as_one };
+
+  /// What the shots' chi2 add up to at a place in the parameters.
+  [[nodiscard]] double chi2_at(std::span<const double> at, Shots which);
+  /// One per shot, at the place looked at last: near it, half of chi2 moves by
   /// gradient . step + step . information . step / 2.
-  [[nodiscard]] std::vector<ShotTerms> evaluate(std::span<const double> at, std::size_t shots);
+  [[nodiscard]] std::vector<ShotTerms> terms();
 
  private:
   using Spectrum = BarData::Spectrum;
 
-  /// Whitening of the residuals, and what estimates gauge 0's noise from them, by bin.
-  struct Whitening {
-    Eigen::MatrixXcd lower_inverse;
-    Eigen::RowVectorXcd noise_of_first;  ///< p_0 g^H C^-1
+  /// A place in the parameters, and what is common to the shots there.
+  struct Place {
+    std::vector<BarModel::Transfer> transfers;  ///< on the damped path
+    std::vector<BarModel::Transfer> passages;   ///< on the imaginary axis
+    std::vector<std::size_t> shots;
+    std::vector<std::vector<Spectrum>> residuals;  ///< by shot and gauge
+    std::vector<double> chi2;                      ///< by shot
+    EightColumns white_residuals{0, 0};            ///< a column a shot
+    EightColumns nuisances{0, 0};                  ///< white
   };
-  struct Columns;
 
-  [[nodiscard]] std::vector<Whitening> whitening(std::span<const double> at);
-  void couple_lowest_bins(std::span<const double> at);
-  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at,
+  [[nodiscard]] Eigen::Index others() const {
+    return static_cast<Eigen::Index>(data_.gauges()) - 1;
+  }
+  /// Real parts of all gauges before imaginary ones, bin after bin.
+  [[nodiscard]] Eigen::Index rows() const;
+  [[nodiscard]] Whitening whitening(std::span<const double> at);
+  [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at, std::size_t bins);
+  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at, std::size_t bins,
                                                std::size_t stride) const;
-  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t stride) const;
-  [[nodiscard]] Spectrum judged_product(const Spectrum& filter, const Spectrum& spectrum);
-  [[nodiscard]] std::vector<Spectrum> residuals_of(
-      std::size_t shot, const std::vector<BarModel::Transfer>& transfers);
-  [[nodiscard]] std::vector<Eigen::MatrixXcd> bins_of(std::size_t shot, const Columns& columns);
-  [[nodiscard]] Eigen::MatrixXd white(const std::vector<Eigen::MatrixXcd>& bins) const;
-  [[nodiscard]] ShotTerms terms_of(std::size_t shot, const Columns& columns);
+  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t bins, std::size_t stride) const;
+  void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
+           std::size_t first_bin, EightColumns& columns) const;
+  void whiten(EightColumns& columns) const;
+  void whiten_above_lowest(EightColumns& columns) const;
+  void look_at_nuisances();
+  void look_at_residuals();
+  void put_slopes(std::size_t index, EightColumns& columns);
+  [[nodiscard]] ShotTerms terms_of(std::size_t index, EightColumns& columns);
 
   BarData& data_;
   BarModel model_;
-  std::vector<Whitening> whitening_;
-  /// Of the first bins, real parts of all gauges before imaginary ones, bin after bin.
-  LowerTriangle lowest_factor_;
-  std::size_t lowest_bins_ = 0;
-  Spectrum product_;
+  Weights weights_;
+  Place place_;
+};
+
+/// What whitens the residuals, and what estimates gauge 0's noise from them, by bin.
+struct BarLikelihood::Whitening {
+  std::vector<Complex> lower_inverse;   ///< triangles, row by row: rows of unit variance each
+  std::vector<Complex> noise_of_first;  ///< p_0 g^H C^-1, gauge by gauge
+  std::size_t lowest_bins = 0;          ///< which are taken together
+  LowerTriangle lowest_factor;          ///< of their rows
 };
 
 }  // namespace kolsky

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 #include "processing/base/wide.hpp"
 
@@ -10,41 +9,38 @@ namespace kolsky {
 
 namespace {
 
-constexpr Eigen::Index kEight = 8;
-constexpr Eigen::Index kAtOnce = 4;
+constexpr Eigen::Index kEight = EightColumns::kEight;
 
 /// Four doubles anywhere in memory: one register, or several of what the machine has.
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-/// Eight rows of `columns` after each other, column by column; what is beyond the last row is 0.
-std::vector<double> panels_of(const Eigen::MatrixXd& columns) {
-  const Eigen::Index panels = (columns.rows() + kEight - 1) / kEight;
-  std::vector<double> packed(static_cast<std::size_t>(panels * kEight * columns.cols()));
+/// The rows of `columns` as columns.
+EightColumns turned(const Eigen::MatrixXd& columns) {
+  EightColumns packed(columns.cols(), columns.rows());
   for (Eigen::Index e = 0; e < columns.cols(); ++e) {
     for (Eigen::Index i = 0; i < columns.rows(); ++i) {
-      packed[static_cast<std::size_t>((i / kEight * columns.cols() + e) * kEight + i % kEight)] =
-          columns(i, e);
+      packed(e, i) = columns(i, e);
     }
   }
   return packed;
 }
 
-/// Products of eight rows with each of four others, over all columns.
-KOLSKY_WIDE void multiply(const double* rows, const double* others, Eigen::Index columns,
+/// Products of eight columns with each of four others, over all rows.
+KOLSKY_WIDE void multiply(const double* columns, const double* others, Eigen::Index rows,
                           double* products) {
   Four upper0{}, upper1{}, upper2{}, upper3{};
   Four lower0{}, lower1{}, lower2{}, lower3{};
-  for (Eigen::Index e = 0; e < columns; ++e) {
-    const auto* const row = reinterpret_cast<const Four*>(rows + kEight * e);
+  for (Eigen::Index e = 0; e < rows; ++e) {
+    const auto* const own = reinterpret_cast<const Four*>(columns + kEight * e);
     const double* const other = others + kEight * e;
-    upper0 += row[0] * other[0];
-    lower0 += row[1] * other[0];
-    upper1 += row[0] * other[1];
-    lower1 += row[1] * other[1];
-    upper2 += row[0] * other[2];
-    lower2 += row[1] * other[2];
-    upper3 += row[0] * other[3];
-    lower3 += row[1] * other[3];
+    upper0 += own[0] * other[0];
+    lower0 += own[1] * other[0];
+    upper1 += own[0] * other[1];
+    lower1 += own[1] * other[1];
+    upper2 += own[0] * other[2];
+    lower2 += own[1] * other[2];
+    upper3 += own[0] * other[3];
+    lower3 += own[1] * other[3];
   }
   auto* const out = reinterpret_cast<Four*>(products);
   out[0] = upper0;
@@ -57,7 +53,7 @@ KOLSKY_WIDE void multiply(const double* rows, const double* others, Eigen::Index
   out[7] = lower3;
 }
 
-/// Solves for eight columns, given and returned row by row.
+/// Solves for eight columns.
 KOLSKY_WIDE void solve(const double* lower, Eigen::Index size, double* columns) {
   auto* const x = reinterpret_cast<Four*>(columns);
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -80,37 +76,86 @@ KOLSKY_WIDE void solve(const double* lower, Eigen::Index size, double* columns) 
   }
 }
 
-}  // namespace
+/// @param parts  real and imaginary parts of a triangle, row by row
+KOLSKY_WIDE void multiply_one(const double* parts, Eigen::Index size, double* columns) {
+  for (Eigen::Index half = 0; half < 2; ++half) {
+    Four* const re = reinterpret_cast<Four*>(columns) + half;
+    Four* const im = re + 2 * size;
+    // From the last row up: a row needs those above it as they were.
+    for (Eigen::Index j = size; j-- > 0;) {
+      const double* const row = parts + j * (j + 1);
+      Four sum_re{}, sum_im{};
+      for (Eigen::Index l = 0; l <= j; ++l) {
+        sum_re += re[2 * l] * row[2 * l] - im[2 * l] * row[2 * l + 1];
+        sum_im += re[2 * l] * row[2 * l + 1] + im[2 * l] * row[2 * l];
+      }
+      re[2 * j] = sum_re;
+      im[2 * j] = sum_im;
+    }
+  }
+}
 
-void add_square(const Eigen::MatrixXd& columns, Eigen::MatrixXd& lower) {
-  const std::vector<double> packed = panels_of(columns);
-  const Eigen::Index rows = columns.rows();
-  const Eigen::Index panel = kEight * columns.cols();
+/// Puts products of all columns with all from the one that is meant on, eight by four.
+template <typename Put>
+void square(const EightColumns& columns, const Put& put) {
+  constexpr Eigen::Index kAtOnce = 4;
   std::array<double, kAtOnce * kEight> products;
-  for (Eigen::Index j = 0; j < rows; j += kAtOnce) {
-    for (Eigen::Index i = j / kEight * kEight; i < rows; i += kEight) {
-      multiply(packed.data() + i / kEight * panel, packed.data() + j / kEight * panel + j % kEight,
-               columns.cols(), products.data());
-      for (Eigen::Index b = 0; b < std::min(kAtOnce, rows - j); ++b) {
-        for (Eigen::Index a = std::max<Eigen::Index>(0, j + b - i); a < std::min(kEight, rows - i);
-             ++a) {
-          lower(i + a, j + b) += products[static_cast<std::size_t>(b * kEight + a)];
+  for (Eigen::Index q = 0; q < columns.panels(); ++q) {
+    for (Eigen::Index half = 0; half < kEight; half += kAtOnce) {
+      for (Eigen::Index p = q; p < columns.panels(); ++p) {
+        multiply(columns.panel(p), columns.panel(q) + half, columns.rows(), products.data());
+        for (Eigen::Index b = 0; b < kAtOnce; ++b) {
+          for (Eigen::Index a = 0; a < kEight; ++a) {
+            put(p * kEight + a, q * kEight + half + b,
+                products[static_cast<std::size_t>(b * kEight + a)]);
+          }
         }
       }
     }
   }
 }
 
+}  // namespace
+
+EightColumns::EightColumns(Eigen::Index rows, Eigen::Index columns)
+    : rows_(rows),
+      panels_((columns + kEight - 1) / kEight),
+      numbers_(static_cast<std::size_t>(rows_ * panels_ * kEight)) {}
+
+Eigen::MatrixXd square_of(const EightColumns& columns) {
+  Eigen::MatrixXd all(columns.panels() * kEight, columns.panels() * kEight);
+  square(columns,
+         [&](Eigen::Index a, Eigen::Index b, double product) { all(a, b) = all(b, a) = product; });
+  return all;
+}
+
+void add_square(const Eigen::MatrixXd& columns, Eigen::MatrixXd& lower) {
+  square(turned(columns), [&](Eigen::Index a, Eigen::Index b, double product) {
+    if (a >= b && a < lower.rows()) {
+      lower(a, b) += product;
+    }
+  });
+}
+
 LowerTriangle::LowerTriangle(const Eigen::MatrixXd& lower) : rows_(lower) {}
 
-void LowerTriangle::solve_in_place(Eigen::Ref<Eigen::MatrixXd> columns) const {
-  Eigen::Matrix<double, Eigen::Dynamic, kEight, Eigen::RowMajor> eight(rows_.rows(), kEight);
-  for (Eigen::Index first = 0; first < columns.cols(); first += kEight) {
-    const Eigen::Index count = std::min(kEight, columns.cols() - first);
-    eight.setZero();
-    eight.leftCols(count) = columns.middleCols(first, count);
-    solve(rows_.data(), rows_.rows(), eight.data());
-    columns.middleCols(first, count) = eight.leftCols(count);
+void LowerTriangle::solve_in_place(EightColumns& columns) const {
+  for (Eigen::Index p = 0; p < columns.panels(); ++p) {
+    solve(rows_.data(), rows_.rows(), columns.panel(p));
+  }
+}
+
+void multiply_in_place(std::span<const Complex> triangles, Eigen::Index size, Eigen::Index first,
+                       EightColumns& columns) {
+  const auto entries = static_cast<std::size_t>(size * (size + 1) / 2);
+  // Complex numbers are laid out as pairs of real ones.
+  const auto* const parts = reinterpret_cast<const double*>(triangles.data());
+  for (Eigen::Index p = 0; p < columns.panels(); ++p) {
+    Eigen::Index row = first;
+    for (std::size_t at = 0; at < triangles.size(); at += entries) {
+      multiply_one(parts + 2 * at, size, columns.panel(p) + kEight * row);
+      row += 2 * size;
+    }
   }
 }
 

@@ -105,6 +105,52 @@ TEST(IdentifyBar, WhatTheRecordsDoNotShowIsSaid) {
   expect_truth(result, setup.material);
 }
 
+/// What holds three elements within it can cost no more than its further numbers do: about 4.7
+/// each.
+TEST(IdentifyBar, WhatHoldsThreeElementsIsNotBehindByMoreThanItsNumbers) {
+  constexpr double kPerNumber = 5.0;
+  BarShots::Recording recording;
+  recording.gain_sd = 0.01;
+  recording.position_sd_m = 0.2e-3;
+  recording.noise_correlation = 0.95;
+  for (const std::size_t row : {std::size_t{0}, std::size_t{3}}) {
+    BarShots::Setup setup;
+    setup.material = kTable4[row].material;
+    setup.poisson_ratio = kTable4[row].poisson_ratio;
+    const BarShots bar(setup);
+    for (const unsigned seed : {1U, 2U, 3U}) {
+      SCOPED_TRACE(std::to_string(row) + " " + std::to_string(seed));
+      const auto result = identify_bar(draw(bar, 10, seed, recording), {});
+      const BarFit& three = result.three_element;
+      std::size_t holding = 0;
+      for (const Alternative& other : result.alternatives) {
+        if (other.theory.waves != three.theory || !other.failed.empty() || other.left_behind) {
+          continue;
+        }
+        const double more = static_cast<double>(parameters_of(other.theory.solid).size()) - 3.0 +
+                            (other.theory.far_end == FarEndReturn::partial ? 1.0 : 0.0);
+        EXPECT_GT(other.log_evidence, three.log_evidence - kPerNumber * more - 0.1)
+            << name_of(other.theory.solid) << " " << name_of(other.theory.far_end);
+        holding += more > 0.0 ? 1 : 0;
+      }
+      EXPECT_EQ(holding, 4U);
+    }
+  }
+}
+
+TEST(IdentifyBar, TheoriesThatAreFarBehindAreLeftThere) {
+  const auto result = identify_bar(draw(paper_bar(), 10, 5), {});
+  std::size_t left = 0;
+  for (const Alternative& other : result.alternatives) {
+    const bool wrong =
+        other.theory.waves != WaveTheory::elementary || other.theory.far_end == FarEndReturn::none;
+    EXPECT_EQ(other.left_behind, wrong) << name_of(other.theory.waves);
+    EXPECT_EQ(other.log_evidence < result.fit.log_evidence - 1000.0, wrong);
+    left += other.left_behind ? 1 : 0;
+  }
+  EXPECT_EQ(left, 3U);
+}
+
 TEST(IdentifyBar, AnElasticBarHasNoLossToFind) {
   BarShots::Setup setup;
   setup.material = {.density_kg_m3 = 2700.0, .E1_Pa = 70e9, .E2_Pa = 0.0, .eta2_Pa_s = 0.0};
@@ -118,6 +164,31 @@ TEST(IdentifyBar, AnElasticBarHasNoLossToFind) {
     said = said || warning.find("elastic") != std::string::npos;
   }
   EXPECT_TRUE(said);
+}
+
+/// Nothing but noise tells E2 and eta2 then: searches run along valleys, which must not end in no
+/// answer, nor in a far end that would not be free.
+TEST(IdentifyBar, ElasticBarsInLoudNoiseHaveFreeEndsAndTheirModulus) {
+  BarShots::Recording recording;
+  recording.gain_sd = 0.01;
+  recording.position_sd_m = 0.2e-3;
+  recording.noise_rms = 20e-6;
+  for (const std::size_t row : {std::size_t{0}, std::size_t{2}}) {
+    BarShots::Setup setup;
+    setup.material = kTable4[row].material;
+    setup.poisson_ratio = kTable4[row].poisson_ratio;
+    setup.material.E2_Pa *= 1000.0;
+    setup.material.eta2_Pa_s *= 1000.0;
+    const BarShots bar(setup);
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      SCOPED_TRACE(std::to_string(row) + " " + std::to_string(seed));
+      const auto result =
+          identify_bar(draw(bar, 3, 500 + 10 * static_cast<unsigned>(row) + seed, recording), {});
+      EXPECT_EQ(result.three_element.far_end, FarEndReturn::free);
+      const FittedNumber& E1 = result.three_element.parameters[0];
+      EXPECT_NEAR(E1.value, setup.material.E1_Pa, 4.0 * E1.sd);
+    }
+  }
 }
 
 TEST(IdentifyBar, GrowingWavesAreFlagged) {
