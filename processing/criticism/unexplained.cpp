@@ -99,42 +99,38 @@ Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns) {
          values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
-/// Covariance, between directions, of what differs between the shots, over its expectation under
-/// noise of unit variance.
-Eigen::MatrixXd between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
+/// Power of what differs between the shots in each direction, over its expectation under noise of
+/// unit variance.
+Eigen::VectorXd between_shots(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
                               std::size_t per_shot, std::size_t count) {
   const auto size = static_cast<Eigen::Index>(per_shot);
   const auto shots = static_cast<Eigen::Index>(count);
-  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(shots, directions.cols());
-  Eigen::MatrixXd weights = pulls;  // what a strength that all shots share pulls at each
+  Eigen::VectorXd powers(directions.cols());
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    double q = 0.0;
+    double all = 0.0;
+    double whole = 0.0;
     for (Eigen::Index n = 0; n < shots; ++n) {
       const auto part = directions.col(i).segment(n * size, size);
-      weights(n, i) = part.norm();
-      if (weights(n, i) > 0.0) {
-        pulls(n, i) = part.dot(residual.segment(n * size, size)) / weights(n, i);
-      }
+      const double pull = part.dot(residual.segment(n * size, size));
+      const double weight = part.squaredNorm();
+      all += pull;
+      whole += weight;
+      q += weight > 0.0 ? pull * pull / weight : 0.0;
     }
-    const double whole = weights.col(i).squaredNorm();
-    if (whole > 0.0) {
-      pulls.col(i) -= weights.col(i) * (weights.col(i).dot(pulls.col(i)) / whole);
-    }
+    q -= whole > 0.0 ? all * all / whole : 0.0;
+    powers[i] = q / static_cast<double>(shots - 1);
   }
-  return pulls.transpose() * pulls / static_cast<double>(shots - 1);
+  return powers;
 }
 
-/// As how many directions of equal noise these count: a sum of squares of covariance V spreads as
-/// one of (tr V)^2 / tr V^2 (Box 1954); tr V^2 without the bias that its estimate from a few shots
-/// has (Bai and Saranadasa 1996).
-/// @param estimate  of V, of so many degrees of freedom
-double equal_directions(const Eigen::MatrixXd& estimate, double freedom) {
-  const double trace = estimate.trace();
-  const double raw = estimate.squaredNorm();
-  const double squares = freedom > 1.0 ? freedom * freedom / ((freedom - 1.0) * (freedom + 2.0)) *
-                                             (raw - trace * trace / freedom)
-                                       : 0.0;
-  const auto all = static_cast<double>(estimate.cols());
-  return squares > 0.0 ? std::clamp(trace * trace / squares, 1.0, all) : all;
+/// As how many directions of equal noise these count: a sum of squares of unequal variances v
+/// spreads as one of (sum v)^2 / sum v^2 (Box 1954).
+/// @param powers   estimates of v, each of so many degrees of freedom, which spreads them too
+double equal_directions(const Eigen::VectorXd& powers, double freedom) {
+  const double squares = powers.squaredNorm() / (1.0 + 2.0 / freedom);
+  const auto all = static_cast<double>(powers.size());
+  return squares > 0.0 ? std::min(all, powers.sum() * powers.sum() / squares) : all;
 }
 
 /// What all kinds together tell of the noise: that which whitened the residuals or more. What the
@@ -145,13 +141,11 @@ struct Noise {
 };
 
 /// ln of the chance that noise finds as much along these directions.
-/// @param own  what differs between the shots along them
 double log_chance(const Eigen::MatrixXd& directions, const Eigen::VectorXd& residual,
-                  const Eigen::MatrixXd& own, double further, const Noise& noise) {
+                  double own_power, const Noise& noise) {
   const auto count = static_cast<double>(directions.cols());
   const double found = (directions.transpose() * residual).squaredNorm();
-  return log_f_tail(found / count / std::max(noise.power, own.trace() / count),
-                    equal_directions(own, further), noise.freedom);
+  return log_f_tail(found / count / std::max(noise.power, own_power), count, noise.freedom);
 }
 
 /// All together weigh as much as every kind by itself does.
@@ -181,17 +175,17 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     // Nothing shows that it would come back: noise is known by one short stretch alone.
     return {log_f_tail(found / freedom, freedom, kOneStretch), std::max(0.0, found - freedom)};
   }
-  const Eigen::MatrixXd differs = between_shots(directions, residual, per_shot, shots);
+  const Eigen::VectorXd powers = between_shots(directions, residual, per_shot, shots);
   const auto further = static_cast<double>(shots - 1);
-  const double equal = equal_directions(differs, further);
-  const Noise noise{std::max(1.0, differs.trace() / freedom), equal * further};
+  const double equal = equal_directions(powers, further);
+  const Noise noise{std::max(1.0, powers.mean()), equal * further};
   std::vector<double> by_kind;
   for (const Kind& kind : distortions.kinds) {
     const Eigen::MatrixXd own =
         directions_of(distortions.columns.middleCols(kind.first, kind.count));
     if (own.cols() > 0) {
-      by_kind.push_back(
-          log_chance(own, residual, between_shots(own, residual, per_shot, shots), further, noise));
+      const double power = between_shots(own, residual, per_shot, shots).mean();
+      by_kind.push_back(log_chance(own, residual, power, noise));
     }
   }
   const double log_p = log_f_tail(found / freedom / noise.power, equal, noise.freedom);

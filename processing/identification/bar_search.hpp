@@ -38,17 +38,16 @@ class BarSearch {
   BarSearch(BarData& data, const BarTheory& theory);
 
   /// With all shots as one and the noise bin by bin, twice: weights turn with the phase of the
-  /// waves, so that those of where it began do not do for where it ends. @param start  in
-  /// BarModel's
-  ///   parameters; empty: from the pulses' speed and decay
+  /// waves, so that those of where it began do not do for where it ends.
+  /// @param start  in BarModel's parameters; empty: from the pulses' speed and decay
   void roughly(const std::vector<double>& start);
   /// chi2 of all shots as one where that ended.
   [[nodiscard]] double rough_chi2() const { return place_.objective; }
 
   /// Sets the noise's weights as they are here, the lowest bins together.
   [[nodiscard]] BarLikelihood::Weights weights_here();
-  /// By these weights, all shots still as one, as near as a comparison needs. @param start  empty:
-  ///   from here
+  /// By these weights, all shots still as one, as near as a comparison needs.
+  /// @param start  empty: from here
   void closely(const BarLikelihood::Weights& weights, const std::vector<double>& start = {});
 
   /// What the search has come to, without the shots' own estimates.
