@@ -39,7 +39,9 @@ std::string alternatives_text(const BarIdentification& result) {
     return "";
   }
   const double best = result.alternatives.front().log_evidence;
-  std::string text = "  tried, best first (log evidence under the best's, reduced chi2)\n";
+  std::string text =
+      "  tried, best first (log evidence under the best's, reduced chi2; roughly: far behind, not "
+      "searched further)\n";
   for (const Alternative& a : result.alternatives) {
     text += fmt::format("    {:<11}{:<20}far end {:<8}", name_of(a.theory.waves),
                         a.theory.lossless ? "elastic" : name_of(a.theory.solid),

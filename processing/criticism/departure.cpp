@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "processing/models/scene.hpp"
 
@@ -57,8 +58,8 @@ Departure::Departure(Study& study, const Studied& studied)
           .base = true,
       }) {
   std::vector<SpecimenHistories> shots;
-  double most_strain = 0.0;
-  double most_stress_Pa = 0.0;
+  double most_strain = std::numeric_limits<double>::min();
+  double most_stress_Pa = std::numeric_limits<double>::min();
   for (std::size_t n = 0; n < study.campaign().shots.size(); ++n) {
     shots.push_back(
         study.residuals().specimen_histories(studied.composition, studied.fit.theta, n));

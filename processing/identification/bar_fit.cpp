@@ -14,7 +14,7 @@ namespace {
 BarFit search(BarData& data, const BarTheory& theory, const std::vector<double>& start) {
   BarSearch search(data, theory);
   search.roughly(start);
-  search.closely(search.weights_here());
+  search.closely();
   return search.finished();
 }
 

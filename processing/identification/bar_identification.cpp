@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kToldApart = 5.0;  // odds of 150 to 1
 constexpr double kPartialAhead = 10.0;
+constexpr double kMoreThanNoise = 1.3;
 constexpr double kPaperBand_Hz = 15e3;
 /// A loss that stands out by so many of its deviations leaves an elastic bar behind by a log
 /// evidence of half their square, a hundred times what its two numbers less can gain.
@@ -115,7 +116,7 @@ std::string rounded(double value) {
 
 void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warnings) {
   const BarFit& three = result.three_element;
-  if (three.chi2_reduced > 1.3) {
+  if (three.chi2_reduced > kMoreThanNoise) {
     warnings.push_back("the three-element solid leaves more than noise: reduced chi2 " +
                        rounded(three.chi2_reduced) +
                        "; deviations are widened by its root, which does not cover what the model "
@@ -238,7 +239,13 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     explanations.look({waves, three, ends.front()});
   }
   if (const BarTheory* leading = explanations.leading(); leading != nullptr && ends.size() > 1) {
-    explanations.look({leading->waves, three, ends.back()});
+    const WaveTheory waves = leading->waves;
+    explanations.look({waves, three, ends.back()});
+    for (const FarEndReturn far_end : ends) {
+      if (explanations.left_over_noise() > kMoreThanNoise) {
+        explanations.look_afresh({waves, three, far_end});
+      }
+    }
   }
   const FarEndReturn likely =
       explanations.leading() != nullptr ? explanations.leading()->far_end : ends.front();
@@ -250,6 +257,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   if (theory.fit == nullptr) {
     // Says why.
     (void)fit_bar(data, {theories.front(), three, ends.front()});
+    throw InputError("fit", "does not converge", "try another --dispersion or a narrower band");
   }
   std::vector<const BarFit*> over_ends;
   for (const FarEndReturn far_end : ends) {
@@ -264,7 +272,14 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   if (!options.far_end && !data.two_passes() && end.choice.told_apart) {
     const BarFit* partial = explanations.at({three_element->theory, three, FarEndReturn::partial});
     if (partial != nullptr && partial->log_evidence > three_element->log_evidence + kPartialAhead) {
-      three_element = partial;
+      std::vector<const BarFit*> again;
+      for (const FarEndReturn far_end : ends) {
+        again.push_back(explanations.again({theory.fit->theory, three, far_end}, *partial));
+      }
+      three_element = best_of(again).fit;
+      if (partial->log_evidence > three_element->log_evidence + kPartialAhead) {
+        three_element = partial;
+      }
     }
   }
 
@@ -296,6 +311,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
     chosen = with_solid(*options.solid);
     if (chosen == nullptr) {
       (void)fit_bar(data, {three_element->theory, *options.solid, three_element->far_end});
+      throw InputError("fit", "does not converge", "try another family of solids");
     }
     result.solid.asked = true;
   }
@@ -315,21 +331,21 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   }
   result.fit =
       chosen == three_element ? result.three_element : explanations.finished(theory_of(*chosen));
-  result.alternatives = explanations.alternatives();
-  result.over_shots = over_shots(result.three_element);
-  result.spectrum = likely_spectrum(data, result.fit);
-  result.straight_lines = straight_line_spectrum(data, result.fit);
-  result.paper = three_elements_through(result.straight_lines, kPaperBand_Hz);
   if (!options.theory && !result.wave_theory.told_apart) {
     std::vector<const BarFit*> others;
-    for (const BarFit* other : over_theories) {
-      if (other != nullptr && other->theory != result.three_element.theory &&
-          other->far_end == result.three_element.far_end) {
+    for (const WaveTheory waves : theories) {
+      const BarFit* other = explanations.at({waves, three, result.three_element.far_end});
+      if (other != nullptr && waves != result.three_element.theory) {
         others.push_back(other);
       }
     }
     take_in(others, result.three_element);
   }
+  result.alternatives = explanations.alternatives();
+  result.over_shots = over_shots(result.three_element);
+  result.spectrum = likely_spectrum(data, result.fit);
+  result.straight_lines = straight_line_spectrum(data, result.fit);
+  result.paper = three_elements_through(result.straight_lines, kPaperBand_Hz);
   for (const Shot& shot : shots) {
     result.shot_ids.push_back(shot.id);
   }

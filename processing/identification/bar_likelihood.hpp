@@ -52,6 +52,7 @@ class BarLikelihood {
   using Weights = std::shared_ptr<const Whitening>;
   [[nodiscard]] Weights weights_at(std::span<const double> at, bool together);
   void use(Weights weights) { weights_ = std::move(weights); }
+  [[nodiscard]] const Weights& weights() const { return weights_; }
 
   /// Which shots are looked at: all of them, or what they have in common as one (see BarData).
   enum class Shots { each, as_one };

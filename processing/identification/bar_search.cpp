@@ -185,15 +185,13 @@ void BarSearch::roughly(const std::vector<double>& start) {
   }
 }
 
-BarLikelihood::Weights BarSearch::weights_here() {
-  return likelihood_.weights_at(at(), true);
+void BarSearch::closely() {
+  closely(at(), likelihood_.weights_at(at(), true));
 }
 
-void BarSearch::closely(const BarLikelihood::Weights& weights, const std::vector<double>& start) {
+void BarSearch::closely(const std::vector<double>& start, const BarLikelihood::Weights& weights) {
+  go_to(start);
   likelihood_.use(weights);
-  if (!start.empty()) {
-    go_to(start);
-  }
   minimise(BarLikelihood::Shots::as_one, kNearEnough);
 }
 

@@ -44,11 +44,12 @@ class BarSearch {
   /// chi2 of all shots as one where that ended.
   [[nodiscard]] double rough_chi2() const { return place_.objective; }
 
-  /// Sets the noise's weights as they are here, the lowest bins together.
-  [[nodiscard]] BarLikelihood::Weights weights_here();
-  /// By these weights, all shots still as one, as near as a comparison needs.
-  /// @param start  empty: from here
-  void closely(const BarLikelihood::Weights& weights, const std::vector<double>& start = {});
+  /// By the noise's weights as they are here, the lowest bins together; all shots still as one, as
+  /// near as a comparison needs.
+  void closely();
+  /// From another place, by the weights of another search.
+  void closely(const std::vector<double>& start, const BarLikelihood::Weights& weights);
+  [[nodiscard]] const BarLikelihood::Weights& weights() const { return likelihood_.weights(); }
 
   /// What the search has come to, without the shots' own estimates.
   [[nodiscard]] BarFit so_far();

@@ -35,6 +35,10 @@ std::vector<double> near_three_elements(SolidKind solid, const std::vector<doubl
   return logs;
 }
 
+void by_own_weights(BarSearch& search) {
+  search.closely();
+}
+
 double chi2_of(const BarFit& fit) {
   return fit.chi2_reduced * static_cast<double>(fit.degrees_of_freedom);
 }
@@ -56,8 +60,8 @@ Explanations::Entry& Explanations::add(const BarTheory& theory) {
   return *entries_.back();
 }
 
-/// Where the best of those with the same parameters is.
-std::vector<double> Explanations::start_for(const BarTheory& theory) const {
+/// The best of those with the same parameters.
+const Explanations::Entry* Explanations::nearest(const BarTheory& theory) const {
   const Entry* near = nullptr;
   for (const auto& entry : entries_) {
     const bool same = entry->search && entry->theory.solid == theory.solid &&
@@ -68,29 +72,59 @@ std::vector<double> Explanations::start_for(const BarTheory& theory) const {
       near = entry.get();
     }
   }
-  return near != nullptr ? near->search->at() : std::vector<double>{};
+  return near;
 }
 
 Explanations::Entry& Explanations::rough(const BarTheory& theory) {
   if (Entry* known = find(theory)) {
     return *known;
   }
-  const std::vector<double> start = start_for(theory);
+  const Entry* near = nearest(theory);
   Entry& entry = add(theory);
-  try {
-    entry.search = rough_search(data_, theory, start);
-    entry.rough_chi2 = entry.search->rough_chi2();
-  } catch (const InputError& error) {
-    entry.failed = error.problem();
+  if (near != nullptr) {
+    search_roughly(entry, near->search->at());
+  }
+  if (!entry.search) {
+    search_roughly(entry, {});
   }
   return entry;
 }
 
+void Explanations::search_roughly(Entry& entry, const std::vector<double>& start) {
+  try {
+    auto search = rough_search(data_, entry.theory, start);
+    if (!entry.search || search->rough_chi2() < entry.rough_chi2) {
+      entry.rough_chi2 = search->rough_chi2();
+      entry.search = std::move(search);
+      entry.failed.clear();
+    }
+  } catch (const InputError& error) {
+    if (!entry.search) {
+      entry.failed = error.problem();
+    }
+  }
+}
+
 void Explanations::look(const BarTheory& theory) {
+  lead_with(rough(theory));
+}
+
+void Explanations::look_afresh(const BarTheory& theory) {
   Entry& entry = rough(theory);
+  search_roughly(entry, {});
+  lead_with(entry);
+}
+
+void Explanations::lead_with(Entry& entry) {
   if (entry.search && (leader_ == nullptr || entry.rough_chi2 < leader_->rough_chi2)) {
     leader_ = &entry;
   }
+}
+
+double Explanations::left_over_noise() const {
+  const double expected = static_cast<double>(data_.judged_path().size()) * 2.0 *
+                          static_cast<double>(data_.gauges() - 1);
+  return leader_->rough_chi2 / expected;
 }
 
 const BarTheory* Explanations::leading() const {
@@ -98,18 +132,12 @@ const BarTheory* Explanations::leading() const {
 }
 
 bool Explanations::far_behind(const Entry& entry) const {
-  const double expected = static_cast<double>(data_.judged_path().size()) * 2.0 *
-                          static_cast<double>(data_.gauges() - 1);
-  const double noise = std::max(1.0, leader_->rough_chi2 / expected);
-  return entry.rough_chi2 > leader_->rough_chi2 + kFarBehind * noise;
+  return entry.rough_chi2 > leader_->rough_chi2 + kFarBehind * std::max(1.0, left_over_noise());
 }
 
-void Explanations::compare(Entry& entry, const std::vector<double>& start) {
-  if (!weights_) {
-    weights_ = leader_->search->weights_here();
-  }
+void Explanations::compare(Entry& entry, const std::function<void(BarSearch&)>& closely) {
   try {
-    entry.search->closely(weights_, start);
+    closely(*entry.search);
     entry.fit = entry.search->so_far();
   } catch (const InputError& error) {
     entry.failed = error.problem();
@@ -124,7 +152,7 @@ const BarFit* Explanations::at(const BarTheory& theory) {
     if (entry.left_behind) {
       entry.fit = entry.search->so_far();
     } else {
-      compare(entry, {});
+      compare(entry, by_own_weights);
       if (!entry.fit && may_be_elastic(theory)) {
         try_from(entry, search_from_elastic);
       }
@@ -143,7 +171,10 @@ const BarFit* Explanations::at(const BarTheory& theory, const BarFit& three_elem
     std::vector<double> start =
         near_three_elements(theory.solid, {three_element.at.begin(), solid});
     start.insert(start.end(), solid, three_element.at.end());
-    compare(*entry, start);
+    // By the same weights: what holds three elements must not look worse for where it was weighed.
+    const BarTheory held{three_element.theory, three_element.solid, three_element.far_end};
+    const auto weights = find(held)->search->weights();
+    compare(*entry, [&](BarSearch& search) { search.closely(start, weights); });
     // It holds three elements within it, so that it cannot be worse: but its search can.
     if (!entry->fit || chi2_of(*entry->fit) > chi2_of(three_element) + kNoWorse) {
       try_from(*entry,
@@ -153,17 +184,26 @@ const BarFit* Explanations::at(const BarTheory& theory, const BarFit& three_elem
   return entry->fit ? &*entry->fit : nullptr;
 }
 
+const BarFit* Explanations::again(const BarTheory& theory, const BarFit& partial) {
+  Entry& entry = *find(theory);
+  std::vector<double> start = partial.at;
+  start.erase(start.begin() + static_cast<std::ptrdiff_t>(parameters_of(theory.solid).size()));
+  try_from(entry,
+           [&](BarData& data, const BarTheory& other) { return rough_search(data, other, start); });
+  return entry.fit ? &*entry.fit : nullptr;
+}
+
 void Explanations::try_from(Entry& entry, const Start& start) {
   Entry other;
   other.theory = entry.theory;
   other.rough_chi2 = entry.rough_chi2;
   try {
     other.search = start(data_, entry.theory);
-    compare(other, {});
+    compare(other, by_own_weights);
   } catch (const InputError& error) {
     other.failed = error.problem();
   }
-  if (!entry.fit || (other.fit && chi2_of(*other.fit) < chi2_of(*entry.fit))) {
+  if (!entry.fit || (other.fit && other.fit->log_evidence > entry.fit->log_evidence)) {
     entry = std::move(other);
   }
 }
@@ -172,16 +212,13 @@ BarFit Explanations::finished(const BarTheory& theory) {
   Entry& entry = *find(theory);
   BarFit fit;
   try {
-    if (&entry != leader_) {
-      entry.search->closely(entry.search->weights_here());
-    }
     fit = entry.search->finished();
   } catch (const InputError&) {
     if (!may_be_elastic(theory)) {
       throw;
     }
     entry.search = search_from_elastic(data_, theory);
-    entry.search->closely(entry.search->weights_here());
+    entry.search->closely();
     fit = entry.search->finished();
   }
   fit.log_evidence = entry.fit->log_evidence;

@@ -14,9 +14,10 @@ namespace kolsky {
 /// Theories of one bar's records, each searched as far as the choice between them needs.
 ///
 /// All are searched roughly, with the shots as one. Those that the best of these leaves behind by
-/// far more than a closer search could make up stay at that. The others are searched to the end by
-/// the same weights, those of the best: so a theory that holds another one within it never looks
-/// worse than that because of where it happened to be weighed.
+/// far more than a closer search could make up stay at that. The others are searched nearly to the
+/// end, each by the weights of the noise that it foretells itself: residuals hold the source's
+/// noise as the theory carries it, so that by another's weights what carries less would look
+/// better.
 class Explanations {
  public:
   /// @param data outlives this
@@ -24,6 +25,11 @@ class Explanations {
 
   /// Searches roughly. All that may lead are looked at before the first is compared.
   void look(const BarTheory& theory);
+  /// Also from the pulses' own speed and decay: another end leads astray, from where nothing leads
+  /// back.
+  void look_afresh(const BarTheory& theory);
+  /// What the leading one leaves, over what noise would.
+  [[nodiscard]] double left_over_noise() const;
   /// The one with the least that is left by a rough search; none where none was found.
   [[nodiscard]] const BarTheory* leading() const;
 
@@ -32,7 +38,11 @@ class Explanations {
   /// Of another family of solids, from three elements at their best.
   [[nodiscard]] const BarFit* at(const BarTheory& theory, const BarFit& three_element);
 
-  /// The fit of one that was compared, by its own weights, with the shots' own estimates.
+  /// An end that returns all or nothing once more, from where one that may return anything is best:
+  /// it holds the others within it.
+  [[nodiscard]] const BarFit* again(const BarTheory& theory, const BarFit& partial);
+
+  /// The fit of one that was compared, searched to the end, with the shots' own estimates.
   [[nodiscard]] BarFit finished(const BarTheory& theory);
 
   /// All that were compared, best first.
@@ -51,17 +61,18 @@ class Explanations {
   Entry* find(const BarTheory& theory);
   Entry& add(const BarTheory& theory);
   Entry& rough(const BarTheory& theory);
-  void compare(Entry& entry, const std::vector<double>& start);
+  void lead_with(Entry& entry);
+  void compare(Entry& entry, const std::function<void(BarSearch&)>& closely);
   /// By another search, where that ends better.
   using Start = std::function<std::unique_ptr<BarSearch>(BarData&, const BarTheory&)>;
   void try_from(Entry& entry, const Start& start);
   [[nodiscard]] bool far_behind(const Entry& entry) const;
-  [[nodiscard]] std::vector<double> start_for(const BarTheory& theory) const;
+  [[nodiscard]] const Entry* nearest(const BarTheory& theory) const;
+  void search_roughly(Entry& entry, const std::vector<double>& start);
 
   BarData& data_;
   std::vector<std::unique_ptr<Entry>> entries_;
   Entry* leader_ = nullptr;
-  BarLikelihood::Weights weights_;
 };
 
 }  // namespace kolsky
