@@ -5,6 +5,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/identification/bar_judge.hpp"
 #include "processing/identification/explanations.hpp"
 
 namespace kolsky {
@@ -358,7 +359,8 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
 
 std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit) {
   const auto solid = make_solid(fit.solid, values_of(fit.parameters));
-  BarData data(shots, fit.band_limit_Hz, {.solid = solid.get()});
+  const BarData data(shots, fit.band_limit_Hz, {.solid = solid.get()});
+  BarJudge judge(data);
   const BarModel model(data.bench(), data.records().front(), {fit.theory, fit.solid, fit.far_end});
   const auto transfers = model.transfers(fit.at, data.path(), false);
   const BarData::Places& places = data.places();
@@ -366,7 +368,7 @@ std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit&
   std::vector<ForetoldShot> list;
   BarData::Spectrum product(data.path().size());
   const auto judged = [&](const BarData::Spectrum& spectrum) {
-    const auto record = data.in_time(spectrum).subspan(places.judged_begin);
+    const auto record = judge.in_time(spectrum).subspan(places.judged_begin);
     return std::vector<double>(record.begin(), record.end());
   };
   for (std::size_t i = 0; i < data.shots(); ++i) {
@@ -377,7 +379,7 @@ std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit&
     }
     for (std::size_t j = 1; j < data.gauges(); ++j) {
       for (std::size_t k = 0; k < product.size(); ++k) {
-        product[k] = transfers[j - 1].g[k] * data.spectrum(i, 0)[k];
+        product[k] = transfers.g[j - 1][k] * data.spectrum(i, 0)[k];
       }
       shot.gauges.push_back({data.bench().gauges[data.records()[i].channel[j]].name,
                              judged(data.spectrum(i, j)), judged(product)});

@@ -104,7 +104,7 @@ ShotEstimate estimate_of(const ShotTerms& shot, const BarPlace& common, const Ba
 
 }  // namespace
 
-BarSearch::BarSearch(BarData& data, const BarTheory& theory)
+BarSearch::BarSearch(const BarData& data, const BarTheory& theory)
     : likelihood_(data, BarModel(data.bench(), data.records().front(), theory)),
       prior_(prior_of(data, likelihood_.model())) {}
 
@@ -249,7 +249,7 @@ BarFit BarSearch::describe(double objective) const {
   return fit;
 }
 
-std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
+std::unique_ptr<BarSearch> rough_search(const BarData& data, const BarTheory& theory,
                                         const std::vector<double>& start) {
   auto search = std::make_unique<BarSearch>(data, theory);
   try {
@@ -267,7 +267,7 @@ bool may_be_elastic(const BarTheory& theory) {
   return theory.solid == SolidKind::three_element && !theory.lossless;
 }
 
-std::unique_ptr<BarSearch> search_from_elastic(BarData& data, const BarTheory& theory) {
+std::unique_ptr<BarSearch> search_from_elastic(const BarData& data, const BarTheory& theory) {
   BarTheory elastic_theory = theory;
   elastic_theory.lossless = true;
   BarSearch elastic(data, elastic_theory);

@@ -177,8 +177,9 @@ const BarFit* Explanations::at(const BarTheory& theory, const BarFit& three_elem
     compare(*entry, [&](BarSearch& search) { search.closely(start, weights); });
     // It holds three elements within it, so that it cannot be worse: but its search can.
     if (!entry->fit || chi2_of(*entry->fit) > chi2_of(three_element) + kNoWorse) {
-      try_from(*entry,
-               [](BarData& data, const BarTheory& other) { return rough_search(data, other, {}); });
+      try_from(*entry, [](const BarData& data, const BarTheory& other) {
+        return rough_search(data, other, {});
+      });
     }
   }
   return entry->fit ? &*entry->fit : nullptr;
@@ -188,8 +189,9 @@ const BarFit* Explanations::again(const BarTheory& theory, const BarFit& partial
   Entry& entry = *find(theory);
   std::vector<double> start = partial.at;
   start.erase(start.begin() + static_cast<std::ptrdiff_t>(parameters_of(theory.solid).size()));
-  try_from(entry,
-           [&](BarData& data, const BarTheory& other) { return rough_search(data, other, start); });
+  try_from(entry, [&](const BarData& data, const BarTheory& other) {
+    return rough_search(data, other, start);
+  });
   return entry.fit ? &*entry.fit : nullptr;
 }
 

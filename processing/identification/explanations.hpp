@@ -21,7 +21,7 @@ namespace kolsky {
 class Explanations {
  public:
   /// @param data outlives this
-  explicit Explanations(BarData& data) : data_(data) {}
+  explicit Explanations(const BarData& data) : data_(data) {}
 
   /// Searches roughly. All that may lead are looked at before the first is compared.
   void look(const BarTheory& theory);
@@ -64,13 +64,13 @@ class Explanations {
   void lead_with(Entry& entry);
   void compare(Entry& entry, const std::function<void(BarSearch&)>& closely);
   /// By another search, where that ends better.
-  using Start = std::function<std::unique_ptr<BarSearch>(BarData&, const BarTheory&)>;
+  using Start = std::function<std::unique_ptr<BarSearch>(const BarData&, const BarTheory&)>;
   void try_from(Entry& entry, const Start& start);
   [[nodiscard]] bool far_behind(const Entry& entry) const;
   [[nodiscard]] const Entry* nearest(const BarTheory& theory) const;
   void search_roughly(Entry& entry, const std::vector<double>& start);
 
-  BarData& data_;
+  const BarData& data_;
   std::vector<std::unique_ptr<Entry>> entries_;
   Entry* leader_ = nullptr;
 };
