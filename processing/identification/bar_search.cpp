@@ -15,7 +15,7 @@ constexpr double kPriorOfLogs = 5.0;
 constexpr double kUnseen = 1e6;
 constexpr double kHeld = 1e-3;
 constexpr double kPriorOfReflection = 2.0;
-constexpr int kMostSteps = 60;
+constexpr int kMostSteps = 100;
 /// A step is not worth taking when it gains less in chi2: a hundredth of a standard deviation.
 constexpr double kNegligibleGain = 1e-4;
 /// Of a search whose end is only where another one begins, or compared with others: a third of a
