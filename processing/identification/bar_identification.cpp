@@ -283,6 +283,20 @@ const BarFit* or_lossless(const BarFit* best, Explanations& explanations) {
   return lossless != nullptr && lossless->log_evidence > best->log_evidence ? lossless : best;
 }
 
+/// Where the records show what the far end returns, it is asked next whether that is a share.
+std::vector<BarTheory> likely_next(const Open& open, const Explanations& explanations) {
+  const BarTheory* leading = explanations.leading();
+  if (leading == nullptr || open.ends.size() == 1 || open.two_passes) {
+    return {};
+  }
+  for (const BarTheory& theory : open.with_waves(leading->waves)) {
+    if (explanations.behind(theory) > 2.0 * kToldApart) {
+      return {{leading->waves, leading->solid, FarEndReturn::partial}};
+    }
+  }
+  return {};
+}
+
 /// Three elements as the records are evidence for, and what they say of the choice.
 const BarFit* choose_three_elements(const BarIdentificationOptions& options, const BarData& data,
                                     Explanations& explanations, BarIdentification& result) {
@@ -290,7 +304,8 @@ const BarFit* choose_three_elements(const BarIdentificationOptions& options, con
   look_at_all(open, explanations);
   const FarEndReturn likely =
       explanations.leading() != nullptr ? explanations.leading()->far_end : open.ends.front();
-  const Best theory = best_of(explanations.at(open.with_end(likely)));
+  const Best theory =
+      best_of(explanations.at(open.with_end(likely), likely_next(open, explanations)));
   if (theory.fit == nullptr) {
     // Says why.
     (void)fit_bar(data, open.with_end(open.ends.front()).front());

@@ -16,8 +16,9 @@ constexpr std::size_t kMostReturns = 12;
 /// Bins whose noise is taken together: to 15 kHz in records of 4 ms. Where losses show in them, an
 /// average over returns states deviations that are 4 to 8 % small.
 constexpr std::size_t kLowestBins = 60;
-/// Places at which noise enters, per bin: what moves faster is not in them.
-constexpr std::size_t kPlacesPerBin = 12;
+/// Places at which noise enters, per bin: what moves faster is not in them. With six times as many
+/// deviations differ by less than 0.1 %.
+constexpr std::size_t kPlacesPerBin = 8;
 
 /// What first-order noise does, by independent causes: `shown` is by strides of so many samples,
 /// over which the noise is taken by its mean.
@@ -43,12 +44,12 @@ double angle_per_place(const BarData::Places& places, std::size_t bin) {
          static_cast<double>(places.judged());
 }
 
-void turn_on(double angle, std::span<Complex> phases) {
+/// From a first one on, each turned by an angle from the one before it.
+void turn_on(Complex first, double angle, std::span<Complex> phases) {
   const Complex turn = std::polar(1.0, angle);
-  Complex phase = 1.0;
-  for (Complex& value : phases) {
-    value = phase;
-    phase *= turn;
+  for (Complex& phase : phases) {
+    phase = first;
+    first *= turn;
   }
 }
 
@@ -186,25 +187,25 @@ EightColumns BarLikelihood::shown_by_first(std::span<const double> at, std::size
   EightColumns shown(static_cast<Eigen::Index>(entries),
                      static_cast<Eigen::Index>(2 * others * bins));
   std::vector<Complex> phases(places.judged_end);
+  std::vector<Complex> shifts(entries);
   std::vector<Complex> sums(places.judged_end + 1);
   for (std::size_t bin = 0; bin < bins; ++bin) {
     const double angle = angle_per_place(places, bin);
-    turn_on(angle, phases);
+    turn_on(1.0, angle, phases);
+    turn_on(samples * data_.undo_filter(bin) *
+                std::polar(1.0, -angle * static_cast<double>(places.judged_begin)),
+            angle * static_cast<double>(stride), shifts);
     for (std::size_t j = 0; j < others; ++j) {
       for (std::size_t n = 0; n < phases.size(); ++n) {
         sums[n + 1] = sums[n] + responses[j][n] * phases[n];
       }
-      Complex shift = samples * data_.undo_filter(bin) *
-                      std::polar(1.0, -angle * static_cast<double>(places.judged_begin));
-      const Complex shift_per_entry = std::polar(1.0, angle * static_cast<double>(stride));
       const auto column = static_cast<Eigen::Index>(2 * others * bin + j);
       for (std::size_t e = 0; e < entries; ++e) {
         const std::size_t late = e * stride;
         const std::size_t first = places.judged_begin > late ? places.judged_begin - late : 0;
-        const Complex seen = shift * (sums[places.judged_end - late] - sums[first]);
+        const Complex seen = shifts[e] * (sums[places.judged_end - late] - sums[first]);
         shown(static_cast<Eigen::Index>(e), column) = seen.real();
         shown(static_cast<Eigen::Index>(e), column + this->others()) = seen.imag();
-        shift *= shift_per_entry;
       }
     }
   }

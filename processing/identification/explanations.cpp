@@ -113,16 +113,20 @@ void Explanations::search_roughly(Entry& entry, const std::vector<double>& start
   }
 }
 
-void Explanations::look(const std::vector<BarTheory>& theories) {
-  const std::size_t before = entries_.size();
+std::vector<Explanations::Entry*> Explanations::add_new(const std::vector<BarTheory>& theories) {
+  std::vector<Entry*> added;
   for (const BarTheory& theory : theories) {
     if (find(theory) == nullptr) {
-      add(theory);
+      added.push_back(&add(theory));
     }
   }
-  workers_.run(entries_.size() - before, [&](std::size_t index, std::size_t /*worker*/) {
-    start_roughly(*entries_[before + index]);
-  });
+  return added;
+}
+
+void Explanations::look(const std::vector<BarTheory>& theories) {
+  const std::vector<Entry*> added = add_new(theories);
+  workers_.run(added.size(),
+               [&](std::size_t index, std::size_t /*worker*/) { start_roughly(*added[index]); });
   for (const BarTheory& theory : theories) {
     lead_with(*find(theory));
   }
@@ -144,6 +148,15 @@ double Explanations::left_over_noise() const {
   const double expected = static_cast<double>(data_.judged_path().size()) * 2.0 *
                           static_cast<double>(data_.gauges() - 1);
   return leader_->rough_chi2 / expected;
+}
+
+double Explanations::behind(const BarTheory& theory) const {
+  for (const auto& entry : entries_) {
+    if (entry->theory == theory && entry->search && leader_ != nullptr) {
+      return entry->rough_chi2 - leader_->rough_chi2;
+    }
+  }
+  return 0.0;
 }
 
 const BarTheory* Explanations::leading() const {
@@ -179,13 +192,21 @@ void Explanations::compare(Entry& entry) {
   }
 }
 
-std::vector<const BarFit*> Explanations::at(const std::vector<BarTheory>& theories) {
+std::vector<const BarFit*> Explanations::at(const std::vector<BarTheory>& theories,
+                                            const std::vector<BarTheory>& next) {
   std::vector<Entry*> entries;
   for (const BarTheory& theory : theories) {
     entries.push_back(&rough(theory));
   }
-  workers_.run(entries.size(),
-               [&](std::size_t index, std::size_t /*worker*/) { compare(*entries[index]); });
+  const std::vector<Entry*> added = add_new(next);
+  const std::size_t compared = entries.size();
+  workers_.run(compared + added.size(), [&](std::size_t index, std::size_t /*worker*/) {
+    if (index < compared) {
+      compare(*entries[index]);
+    } else {
+      start_roughly(*added[index - compared]);
+    }
+  });
   std::vector<const BarFit*> fits;
   for (const Entry* entry : entries) {
     fits.push_back(entry->fit ? &*entry->fit : nullptr);

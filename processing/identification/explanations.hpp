@@ -33,11 +33,15 @@ class Explanations {
   void look_afresh(const BarTheory& theory);
   /// What the leading one leaves, over what noise would.
   [[nodiscard]] double left_over_noise() const;
+  /// By how much chi2 a theory that was looked at is behind the leading one; 0 where it was not.
+  [[nodiscard]] double behind(const BarTheory& theory) const;
   /// The one with the least that is left by a rough search; none where none was found.
   [[nodiscard]] const BarTheory* leading() const;
 
   /// What is compared: without the shots' own estimates. Null where it cannot be fitted.
-  [[nodiscard]] std::vector<const BarFit*> at(const std::vector<BarTheory>& theories);
+  /// @param next  searched roughly beside them: what is likely to be asked for then
+  [[nodiscard]] std::vector<const BarFit*> at(const std::vector<BarTheory>& theories,
+                                              const std::vector<BarTheory>& next = {});
   [[nodiscard]] const BarFit* at(const BarTheory& theory) { return at(std::vector{theory})[0]; }
   /// The same of one with a number more than the leading one: null, too, where a rough search finds
   /// it no better.
@@ -74,6 +78,7 @@ class Explanations {
 
   Entry* find(const BarTheory& theory);
   Entry& add(const BarTheory& theory);
+  std::vector<Entry*> add_new(const std::vector<BarTheory>& theories);
   Entry& rough(const BarTheory& theory);
   void start_roughly(Entry& entry);
   void lead_with(Entry& entry);
