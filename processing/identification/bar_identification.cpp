@@ -297,15 +297,30 @@ std::vector<BarTheory> likely_next(const Open& open, const Explanations& explana
   return {};
 }
 
+/// Every theory with the likely end, and the likely one with every end.
+std::vector<BarTheory> likely_first(const Open& open, const Explanations& explanations) {
+  const BarTheory* leading = explanations.leading();
+  if (leading == nullptr) {
+    return open.with_end(open.ends.front());
+  }
+  std::vector<BarTheory> theories = open.with_end(leading->far_end);
+  for (const BarTheory& theory : open.with_waves(leading->waves)) {
+    if (theory.far_end != leading->far_end) {
+      theories.push_back(theory);
+    }
+  }
+  return theories;
+}
+
 /// Three elements as the records are evidence for, and what they say of the choice.
 const BarFit* choose_three_elements(const BarIdentificationOptions& options, const BarData& data,
                                     Explanations& explanations, BarIdentification& result) {
   const Open open(options, data);
   look_at_all(open, explanations);
-  const FarEndReturn likely =
-      explanations.leading() != nullptr ? explanations.leading()->far_end : open.ends.front();
-  const Best theory =
-      best_of(explanations.at(open.with_end(likely), likely_next(open, explanations)));
+  std::vector<const BarFit*> over_theories =
+      explanations.at(likely_first(open, explanations), likely_next(open, explanations));
+  over_theories.resize(open.waves.size());
+  const Best theory = best_of(over_theories);
   if (theory.fit == nullptr) {
     // Says why.
     (void)fit_bar(data, open.with_end(open.ends.front()).front());
