@@ -8,6 +8,7 @@
 #include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/identification/bar_judge.hpp"
 #include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
@@ -74,6 +75,7 @@ BarData::BarData(const std::vector<Shot>& shots, double band_limit_Hz, const Fir
       transform_(longest(records_) + 2 * lead_, shots.front().rate.period_s()) {
   choose_band(band_limit_Hz);
   choose_judged_part();
+  choose_judged_bins();
   prepare_noise();
   prepare_spectra();
 }
@@ -112,9 +114,6 @@ void BarData::choose_judged_part() {
   const double duration_s = static_cast<double>(transform_.length()) * period_s;
   const std::size_t slow_length =
       std::min(good_transform_length(2 * path_.size()), transform_.length());
-  slow_.emplace(slow_length, duration_s / static_cast<double>(slow_length));
-  slow_spectrum_.resize(slow_->bins());
-  slow_record_.resize(slow_->length());
   std::size_t shortest = transform_.length();
   for (const BarRecords& records : records_) {
     shortest = std::min(shortest, records.strain.front().size());
@@ -123,6 +122,8 @@ void BarData::choose_judged_part() {
                             static_cast<double>(transform_.length());  // of the lower rate
   const double edge = kEdge / 2.0 * BandLimit::smear_s(filter_limit_Hz_) / period_s;
   const auto lead = static_cast<double>(lead_);
+  places_.samples = slow_length;
+  places_.period_s = duration_s / static_cast<double>(slow_length);
   places_.samples_per_place = 1.0 / per_sample;
   places_.records_begin = lead * per_sample;
   places_.quiet_end = (lead + static_cast<double>(records_.front().quiet_samples)) * per_sample;
@@ -140,16 +141,22 @@ void BarData::choose_judged_part() {
     judged -= 2;
   }
   places_.judged_end = places_.judged_begin + judged;
-  plain_.emplace(judged, duration_s / static_cast<double>(slow_length), 1.0);
-  plain_spectrum_.resize(plain_->bins());
-  const auto bins = std::min(plain_->bins() - 1,
-                             static_cast<std::size_t>(band_limit_Hz_ / plain_->bin_width_Hz()));
+}
+
+void BarData::choose_judged_bins() {
+  const DampedTransform plain(places_.judged(), places_.period_s, 1.0);
+  const auto bins =
+      std::min(plain.bins() - 1, static_cast<std::size_t>(band_limit_Hz_ / plain.bin_width_Hz()));
   if (bins < 2) {
     throw InputError("band limit", "of " + in_words(band_limit_Hz_, "Hz") + " leaves no frequency",
                      "give a wider band or a longer record");
   }
+  BandLimit band(plain, 16);
+  Spectrum filter(plain.bins(), 1.0);
+  band.apply(filter_limit_Hz_, filter);
   for (std::size_t k = 1; k <= bins; ++k) {
-    judged_path_.push_back(plain_->s(k));
+    judged_path_.push_back(plain.s(k));
+    undo_filter_.push_back(1.0 / filter[k].real());
   }
 }
 
@@ -165,15 +172,11 @@ double BarData::quiet_to_skip(double edge) const {
   return skip;
 }
 
-double BarData::judged_s() const {
-  return 1.0 / plain_->bin_width_Hz();
-}
-
 /// Each gauge's noise from the quiet part of all shots together; never less than that of its codes.
 void BarData::prepare_noise() {
   const double period_s = records_.front().period_s;
   const double rate_share =
-      static_cast<double>(slow_->length()) / static_cast<double>(transform_.length());
+      static_cast<double>(places_.samples) / static_cast<double>(transform_.length());
   for (std::size_t j = 0; j < gauges(); ++j) {
     std::vector<std::span<const double>> quiet;
     double floor = 0.0;
@@ -185,7 +188,7 @@ void BarData::prepare_noise() {
     std::vector<double> power;
     for (const Complex s : judged_path_) {
       const double cycles = s.imag() / (2.0 * std::numbers::pi) * period_s;
-      power.push_back(std::max(noise.power(cycles), floor) * static_cast<double>(plain_->length()) *
+      power.push_back(std::max(noise.power(cycles), floor) * static_cast<double>(places_.judged()) *
                       rate_share);
     }
     noise_power_.push_back(std::move(power));
@@ -218,18 +221,13 @@ void BarData::prepare_spectra() {
     }
     return spectrum;
   };
-  BandLimit plain_band(*plain_, 16);
-  Spectrum ones(plain_->bins(), 1.0);
-  plain_band.apply(filter_limit_Hz_, ones);
-  for (std::size_t k = 0; k < judged_path_.size(); ++k) {
-    undo_filter_.push_back(1.0 / ones[k + 1].real());
-  }
+  BarJudge judge(*this);
   for (const BarRecords& records : records_) {
     auto& of_shot = spectra_.emplace_back();
     auto& judged_of_shot = judged_.emplace_back();
     for (const auto& strain : records.strain) {
       of_shot.push_back(filtered(strain));
-      judge(of_shot.back(), judged_of_shot.emplace_back(judged_path_.size()));
+      judge.judge(of_shot.back(), judged_of_shot.emplace_back(judged_path_.size()));
     }
   }
   combine_shots();
@@ -267,45 +265,6 @@ void BarData::combine_shots() {
   };
   spectra_.push_back(combined(spectra_));
   judged_.push_back(combined(judged_));
-}
-
-std::size_t BarData::carried() const {
-  return std::min(path_.size(), slow_spectrum_.size());
-}
-
-std::span<const double> BarData::slow_in_time() {
-  const std::span<double> record(slow_record_.data(), places_.judged_end);
-  slow_->inverse({slow_spectrum_.data(), carried()}, record);
-  return record;
-}
-
-void BarData::judge(std::span<const double> in_time, std::span<Complex> judged) {
-  const std::span<Complex> spectrum(plain_spectrum_.data(), judged.size() + 1);
-  plain_->forward(in_time.subspan(places_.judged_begin), spectrum);
-  for (std::size_t k = 0; k < judged.size(); ++k) {
-    judged[k] = spectrum[k + 1] * undo_filter_[k];
-  }
-}
-
-std::span<const double> BarData::in_time(std::span<const Complex> damped) {
-  const double scale = 1.0 / places_.samples_per_place;
-  for (std::size_t k = 0; k < carried(); ++k) {
-    slow_spectrum_[k] = damped[k] * scale;
-  }
-  return slow_in_time();
-}
-
-void BarData::judge(std::span<const Complex> damped, std::span<Complex> judged) {
-  judge(in_time(damped), judged);
-}
-
-void BarData::judge_product(std::span<const Complex> a, std::span<const Complex> b,
-                            std::span<Complex> judged) {
-  const double scale = 1.0 / places_.samples_per_place;
-  for (std::size_t k = 0; k < carried(); ++k) {
-    slow_spectrum_[k] = a[k] * b[k] * scale;
-  }
-  judge(slow_in_time(), judged);
 }
 
 }  // namespace kolsky

@@ -19,8 +19,6 @@ namespace kolsky {
 /// at in time at a lower rate, its ends (where the low-pass smears the record's cut ends) are left
 /// away, and the rest goes to the imaginary axis: so a record that ends while waves ring costs
 /// nothing. Offsets live in the bin at zero, which is left out.
-///
-/// Holds work space: one thread at a time.
 class BarData {
  public:
   using Spectrum = std::vector<Complex>;
@@ -40,7 +38,9 @@ class BarData {
   [[nodiscard]] bool two_passes() const { return records_.front().returned; }
   [[nodiscard]] double band_limit_Hz() const { return band_limit_Hz_; }
   /// What is judged of each record, from the first judged sample to the last.
-  [[nodiscard]] double judged_s() const;
+  [[nodiscard]] double judged_s() const {
+    return static_cast<double>(places_.judged()) * places_.period_s;
+  }
 
   /// Where the damped spectra are, and those on the imaginary axis.
   [[nodiscard]] const std::vector<Complex>& path() const { return path_; }
@@ -56,31 +56,27 @@ class BarData {
   [[nodiscard]] const Spectrum& unit_offset() const { return unit_offset_; }
   /// The same of a record that is 1 in its first sample and 0 after it.
   [[nodiscard]] const Spectrum& unit_impulse() const { return unit_impulse_; }
-  /// A damped spectrum in time, at the lower rate, from the first sample before which it is zero.
-  [[nodiscard]] std::span<const double> in_time(std::span<const Complex> damped);
   /// Places at the lower rate: where records begin, are no longer quiet and end, and
   /// what is judged of them.
   struct Places {
+    std::size_t samples = 0;  ///< of the transform at that rate
+    double period_s = 0.0;
     double records_begin = 0.0;
     double quiet_end = 0.0;
     double records_end = 0.0;
     std::size_t judged_begin = 0;
     std::size_t judged_end = 0;
     double samples_per_place = 1.0;  ///< of the records
+    [[nodiscard]] std::size_t judged() const { return judged_end - judged_begin; }
   };
   [[nodiscard]] const Places& places() const { return places_; }
   /// Standard deviation of a shot's baseline at a gauge.
   [[nodiscard]] double baseline_sd(std::size_t shot, std::size_t gauge) const;
 
-  /// The judged part of a damped spectrum, on the imaginary axis, the low-pass undone.
-  void judge(std::span<const Complex> damped, std::span<Complex> judged);
-  /// The same of the product of two.
-  void judge_product(std::span<const Complex> a, std::span<const Complex> b,
-                     std::span<Complex> judged);
   [[nodiscard]] const Spectrum& judged(std::size_t shot, std::size_t gauge) const {
     return judged_[shot][gauge];
   }
-  /// What `judge` multiplies a bin of the transform by.
+  /// What judging multiplies a bin of the transform by.
   [[nodiscard]] double undo_filter(std::size_t bin) const { return undo_filter_[bin]; }
   /// The parts of a gauge's noise that are slower than a sample, in its samples.
   [[nodiscard]] const std::vector<NoiseSpectrum::SlowPart>& slow_noise(std::size_t gauge) const {
@@ -94,20 +90,16 @@ class BarData {
  private:
   void choose_band(double asked_Hz);
   void choose_judged_part();
+  void choose_judged_bins();
   [[nodiscard]] double quiet_to_skip(double edge) const;
   void prepare_noise();
   void prepare_spectra();
   void combine_shots();
-  [[nodiscard]] std::size_t carried() const;
-  [[nodiscard]] std::span<const double> slow_in_time();
-  void judge(std::span<const double> in_time, std::span<Complex> judged);
 
   Bench bench_;
   std::vector<BarRecords> records_;
   std::size_t lead_;  ///< zeros before and after each record
   DampedTransform transform_;
-  std::optional<DampedTransform> slow_;   ///< the same stretch of time at the lower rate
-  std::optional<DampedTransform> plain_;  ///< of what is judged, undamped
   double band_limit_Hz_ = 0.0;
   double filter_limit_Hz_ = 0.0;
   Places places_;
@@ -121,9 +113,6 @@ class BarData {
   std::vector<std::vector<double>> noise_power_;
   std::vector<std::vector<double>> variance_of_baseline_;  ///< by gauge and shot
   std::vector<std::vector<NoiseSpectrum::SlowPart>> slow_noise_;
-  Spectrum slow_spectrum_;
-  Spectrum plain_spectrum_;
-  std::vector<double> slow_record_;
 };
 
 }  // namespace kolsky

@@ -11,7 +11,7 @@ namespace kolsky {
 
 namespace {
 
-BarFit search(BarData& data, const BarTheory& theory, const std::vector<double>& start) {
+BarFit search(const BarData& data, const BarTheory& theory, const std::vector<double>& start) {
   BarSearch search(data, theory);
   search.roughly(start);
   search.closely();
@@ -66,7 +66,7 @@ std::vector<double> first_guess(const BarData& data, SolidKind solid) {
   return guess;
 }
 
-BarFit fit_bar(BarData& data, const BarTheory& theory, const std::vector<double>& start) {
+BarFit fit_bar(const BarData& data, const BarTheory& theory, const std::vector<double>& start) {
   try {
     return search(data, theory, start);
   } catch (const InputError&) {

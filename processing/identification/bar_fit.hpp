@@ -65,7 +65,7 @@ struct BarFit {
 /// a search may not end; it does from the elastic fit. @param start  in BarModel's parameters;
 /// empty: from the pulses'
 ///   speed and decay
-[[nodiscard]] BarFit fit_bar(BarData& data, const BarTheory& theory,
+[[nodiscard]] BarFit fit_bar(const BarData& data, const BarTheory& theory,
                              const std::vector<double>& start = {});
 
 /// Data of shots on one bar. Of a bar with one gauge: by a first fit of three elements and of what

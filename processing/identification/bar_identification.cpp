@@ -5,6 +5,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/identification/bar_judge.hpp"
 #include "processing/identification/explanations.hpp"
 
 namespace kolsky {
@@ -207,6 +208,186 @@ void warn_of_gain(const BarSpectrum& spectrum, std::vector<std::string>& warning
   }
 }
 
+/// What is open about a bar of three elements.
+struct Open {
+  std::vector<WaveTheory> waves;
+  std::vector<FarEndReturn> ends;
+  bool two_passes = false;
+
+  Open(const BarIdentificationOptions& options, const BarData& data)
+      : waves(options.theory
+                  ? std::vector{*options.theory}
+                  : std::vector{WaveTheory::elementary, WaveTheory::exact, WaveTheory::love}),
+        ends(ends_to_try(options, data.two_passes())),
+        two_passes(data.two_passes()) {}
+
+  [[nodiscard]] std::vector<BarTheory> with_end(FarEndReturn far_end) const {
+    std::vector<BarTheory> theories;
+    for (const WaveTheory theory : waves) {
+      theories.push_back({theory, SolidKind::three_element, far_end});
+    }
+    return theories;
+  }
+  [[nodiscard]] std::vector<BarTheory> with_waves(WaveTheory theory) const {
+    std::vector<BarTheory> theories;
+    for (const FarEndReturn far_end : ends) {
+      theories.push_back({theory, SolidKind::three_element, far_end});
+    }
+    return theories;
+  }
+};
+
+/// The cheapest theory first: the others begin from where it ended.
+void look_at_all(const Open& open, Explanations& explanations) {
+  std::vector<BarTheory> theories = open.with_end(open.ends.front());
+  explanations.look({theories.front()});
+  theories.erase(theories.begin());
+  explanations.look(theories);
+  const BarTheory* leading = explanations.leading();
+  if (leading == nullptr || open.ends.size() == 1) {
+    return;
+  }
+  const WaveTheory waves = leading->waves;
+  explanations.look({{waves, SolidKind::three_element, open.ends.back()}});
+  for (const BarTheory& theory : open.with_waves(waves)) {
+    if (explanations.left_over_noise() > kMoreThanNoise) {
+      explanations.look_afresh(theory);
+    }
+  }
+}
+
+/// Of an end that returns a share nobody knows: believed where it is far ahead, and where it is,
+/// those that return all or nothing are searched once more from there.
+const BarFit* or_of_partial_end(const BarFit* best, const Open& open, Explanations& explanations) {
+  const BarFit* partial =
+      explanations.at_if_better({best->theory, best->solid, FarEndReturn::partial});
+  const auto far_ahead = [&] {
+    return partial != nullptr && partial->log_evidence > best->log_evidence + kPartialAhead;
+  };
+  if (!far_ahead()) {
+    return best;
+  }
+  std::vector<const BarFit*> again;
+  for (const BarTheory& theory : open.with_waves(best->theory)) {
+    again.push_back(explanations.again(theory, *partial));
+  }
+  best = best_of(again).fit;
+  return far_ahead() ? partial : best;
+}
+
+const BarFit* or_lossless(const BarFit* best, Explanations& explanations) {
+  if (loss_stands_out(*best)) {
+    return best;
+  }
+  const BarFit* lossless = explanations.at({best->theory, best->solid, best->far_end, true});
+  return lossless != nullptr && lossless->log_evidence > best->log_evidence ? lossless : best;
+}
+
+/// Where the records show what the far end returns, it is asked next whether that is a share.
+std::vector<BarTheory> likely_next(const Open& open, const Explanations& explanations) {
+  const BarTheory* leading = explanations.leading();
+  if (leading == nullptr || open.ends.size() == 1 || open.two_passes) {
+    return {};
+  }
+  for (const BarTheory& theory : open.with_waves(leading->waves)) {
+    if (explanations.behind(theory) > 2.0 * kToldApart) {
+      return {{leading->waves, leading->solid, FarEndReturn::partial}};
+    }
+  }
+  return {};
+}
+
+/// Every theory with the likely end, and the likely one with every end.
+std::vector<BarTheory> likely_first(const Open& open, const Explanations& explanations) {
+  const BarTheory* leading = explanations.leading();
+  if (leading == nullptr) {
+    return open.with_end(open.ends.front());
+  }
+  std::vector<BarTheory> theories = open.with_end(leading->far_end);
+  for (const BarTheory& theory : open.with_waves(leading->waves)) {
+    if (theory.far_end != leading->far_end) {
+      theories.push_back(theory);
+    }
+  }
+  return theories;
+}
+
+/// Three elements as the records are evidence for, and what they say of the choice.
+const BarFit* choose_three_elements(const BarIdentificationOptions& options, const BarData& data,
+                                    Explanations& explanations, BarIdentification& result) {
+  const Open open(options, data);
+  look_at_all(open, explanations);
+  std::vector<const BarFit*> over_theories =
+      explanations.at(likely_first(open, explanations), likely_next(open, explanations));
+  over_theories.resize(open.waves.size());
+  const Best theory = best_of(over_theories);
+  if (theory.fit == nullptr) {
+    // Says why.
+    (void)fit_bar(data, open.with_end(open.ends.front()).front());
+    throw InputError("fit", "does not converge", "try another --dispersion or a narrower band");
+  }
+  result.wave_theory = theory.choice;
+  result.wave_theory.asked = options.theory.has_value();
+  const std::vector<const BarFit*> over_ends = explanations.at(open.with_waves(theory.fit->theory));
+  Best end = best_of(over_ends);
+  if (over_ends.front() != nullptr && open.ends.back() == FarEndReturn::partial &&
+      end.choice.ahead < kPartialAhead) {
+    end.fit = over_ends.front();
+  }
+  result.far_end = end.choice;
+  result.far_end.asked = options.far_end.has_value();
+  const BarFit* best = end.fit;
+  if (!options.far_end && !open.two_passes && end.choice.told_apart) {
+    best = or_of_partial_end(best, open, explanations);
+  }
+  return or_lossless(best, explanations);
+}
+
+/// Other families than three elements that are to be tried.
+std::vector<SolidKind> solids_to_try(const BarIdentificationOptions& options,
+                                     const BarFit& three_element) {
+  std::vector<SolidKind> solids;
+  for (const SolidKind solid :
+       {SolidKind::two_kelvin, SolidKind::four_element_fluid, SolidKind::fractional}) {
+    const bool asked = options.solid == solid;
+    const bool compared = (options.compare_solids || !options.solid) && !three_element.lossless;
+    if (asked || compared) {
+      solids.push_back(solid);
+    }
+  }
+  return solids;
+}
+
+/// Fills in the fits of three elements and of the solid that is asked for or has the evidence.
+void choose_solid(const BarIdentificationOptions& options, const BarData& data,
+                  const BarFit& three_element, Explanations& explanations,
+                  BarIdentification& result) {
+  const std::vector<SolidKind> kinds = solids_to_try(options, three_element);
+  const Explanations::Solids solids = explanations.solids(three_element, kinds);
+  result.three_element = solids.three_element;
+  result.fit = solids.three_element;
+  result.solid.asked = options.solid.has_value();
+  if (options.solid && *options.solid != SolidKind::three_element) {
+    const auto at = std::find(kinds.begin(), kinds.end(), *options.solid) - kinds.begin();
+    if (solids.others[static_cast<std::size_t>(at)] == nullptr) {
+      (void)fit_bar(data, {three_element.theory, *options.solid, three_element.far_end});
+      throw InputError("fit", "does not converge", "try another family of solids");
+    }
+    result.fit = explanations.finished(theory_of(*solids.others[static_cast<std::size_t>(at)]));
+  }
+  if (!(options.compare_solids || !options.solid) || three_element.lossless) {
+    return;
+  }
+  std::vector<const BarFit*> over_solids = solids.others;
+  over_solids.insert(over_solids.begin(), &three_element);
+  const Best best = best_of(over_solids);
+  result.solid.told_apart = best.choice.told_apart;
+  result.solid.ahead = best.choice.ahead;
+  if (!options.solid && best.fit != &three_element) {
+    result.fit = explanations.finished(theory_of(*best.fit));
+  }
+}
+
 }  // namespace
 
 std::string name_of(WaveTheory theory) {
@@ -222,120 +403,29 @@ std::string name_of(WaveTheory theory) {
 }
 
 BarIdentification identify_bar(const std::vector<Shot>& shots,
-                               const BarIdentificationOptions& options) {
+                               const BarIdentificationOptions& options, const Workers& workers) {
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot on the bar");
   }
-  BarData data =
+  const BarData data =
       bar_data(shots, options.band_limit_Hz, options.theory.value_or(WaveTheory::elementary));
-  Explanations explanations(data);
-  const SolidKind three = SolidKind::three_element;
-  const std::vector<FarEndReturn> ends = ends_to_try(options, data.two_passes());
-  const std::vector<WaveTheory> theories =
-      options.theory ? std::vector{*options.theory}
-                     : std::vector{WaveTheory::exact, WaveTheory::love, WaveTheory::elementary};
-
-  for (const WaveTheory waves : theories) {
-    explanations.look({waves, three, ends.front()});
-  }
-  if (const BarTheory* leading = explanations.leading(); leading != nullptr && ends.size() > 1) {
-    const WaveTheory waves = leading->waves;
-    explanations.look({waves, three, ends.back()});
-    for (const FarEndReturn far_end : ends) {
-      if (explanations.left_over_noise() > kMoreThanNoise) {
-        explanations.look_afresh({waves, three, far_end});
-      }
-    }
-  }
-  const FarEndReturn likely =
-      explanations.leading() != nullptr ? explanations.leading()->far_end : ends.front();
-  std::vector<const BarFit*> over_theories;
-  for (const WaveTheory waves : theories) {
-    over_theories.push_back(explanations.at({waves, three, likely}));
-  }
-  const Best theory = best_of(over_theories);
-  if (theory.fit == nullptr) {
-    // Says why.
-    (void)fit_bar(data, {theories.front(), three, ends.front()});
-    throw InputError("fit", "does not converge", "try another --dispersion or a narrower band");
-  }
-  std::vector<const BarFit*> over_ends;
-  for (const FarEndReturn far_end : ends) {
-    over_ends.push_back(explanations.at({theory.fit->theory, three, far_end}));
-  }
-  Best end = best_of(over_ends);
-  if (over_ends.front() != nullptr && ends.back() == FarEndReturn::partial &&
-      end.choice.ahead < kPartialAhead) {
-    end.fit = over_ends.front();
-  }
-  const BarFit* three_element = end.fit;
-  if (!options.far_end && !data.two_passes() && end.choice.told_apart) {
-    const BarFit* partial = explanations.at({three_element->theory, three, FarEndReturn::partial});
-    if (partial != nullptr && partial->log_evidence > three_element->log_evidence + kPartialAhead) {
-      std::vector<const BarFit*> again;
-      for (const FarEndReturn far_end : ends) {
-        again.push_back(explanations.again({theory.fit->theory, three, far_end}, *partial));
-      }
-      three_element = best_of(again).fit;
-      if (partial->log_evidence > three_element->log_evidence + kPartialAhead) {
-        three_element = partial;
-      }
-    }
-  }
-
-  if (!loss_stands_out(*three_element)) {
-    const BarFit* lossless =
-        explanations.at({three_element->theory, three, three_element->far_end, true});
-    if (lossless != nullptr && lossless->log_evidence > three_element->log_evidence) {
-      three_element = lossless;
-    }
-  }
-
+  Explanations explanations(data, workers);
   BarIdentification result;
-  result.three_element = explanations.finished(theory_of(*three_element));
   result.two_passes = data.two_passes();
+  const BarFit* three_element = choose_three_elements(options, data, explanations, result);
+  choose_solid(options, data, *three_element, explanations, result);
   if (three_element->lossless) {
-    for (std::size_t i = 1; i < result.three_element.parameters.size(); ++i) {
-      result.three_element.parameters[i].sd = result.three_element.parameters[i].value;
+    for (BarFit* fit : {&result.three_element, &result.fit}) {
+      for (std::size_t i = 1; fit->lossless && i < fit->parameters.size(); ++i) {
+        fit->parameters[i].sd = fit->parameters[i].value;
+      }
     }
   }
-  result.wave_theory = theory.choice;
-  result.wave_theory.asked = options.theory.has_value();
-  result.far_end = end.choice;
-  result.far_end.asked = options.far_end.has_value();
-  const BarFit* chosen = three_element;
-  const auto with_solid = [&](SolidKind solid) {
-    return explanations.at({three_element->theory, solid, three_element->far_end}, *three_element);
-  };
-  if (options.solid && *options.solid != three) {
-    chosen = with_solid(*options.solid);
-    if (chosen == nullptr) {
-      (void)fit_bar(data, {three_element->theory, *options.solid, three_element->far_end});
-      throw InputError("fit", "does not converge", "try another family of solids");
-    }
-    result.solid.asked = true;
-  }
-  if ((options.compare_solids || !options.solid) && !three_element->lossless) {
-    std::vector<const BarFit*> over_solids = {three_element};
-    for (const SolidKind solid :
-         {SolidKind::four_element_fluid, SolidKind::two_kelvin, SolidKind::fractional}) {
-      over_solids.push_back(with_solid(solid));
-    }
-    const Best solid = best_of(over_solids);
-    const bool asked = result.solid.asked;
-    result.solid = solid.choice;
-    result.solid.asked = asked || options.solid.has_value();
-    if (!options.solid) {
-      chosen = solid.fit;
-    }
-  }
-  result.fit =
-      chosen == three_element ? result.three_element : explanations.finished(theory_of(*chosen));
   if (!options.theory && !result.wave_theory.told_apart) {
     std::vector<const BarFit*> others;
-    for (const WaveTheory waves : theories) {
-      const BarFit* other = explanations.at({waves, three, result.three_element.far_end});
-      if (other != nullptr && waves != result.three_element.theory) {
+    for (const BarTheory& theory : Open(options, data).with_end(result.three_element.far_end)) {
+      const BarFit* other = explanations.at(theory);
+      if (other != nullptr && theory.waves != result.three_element.theory) {
         others.push_back(other);
       }
     }
@@ -343,8 +433,13 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   }
   result.alternatives = explanations.alternatives();
   result.over_shots = over_shots(result.three_element);
-  result.spectrum = likely_spectrum(data, result.fit);
-  result.straight_lines = straight_line_spectrum(data, result.fit);
+  workers.run(2, [&](std::size_t index, std::size_t /*worker*/) {
+    if (index == 0) {
+      result.spectrum = likely_spectrum(data, result.fit);
+    } else {
+      result.straight_lines = straight_line_spectrum(data, result.fit);
+    }
+  });
   result.paper = three_elements_through(result.straight_lines, kPaperBand_Hz);
   for (const Shot& shot : shots) {
     result.shot_ids.push_back(shot.id);
@@ -358,7 +453,8 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
 
 std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit) {
   const auto solid = make_solid(fit.solid, values_of(fit.parameters));
-  BarData data(shots, fit.band_limit_Hz, {.solid = solid.get()});
+  const BarData data(shots, fit.band_limit_Hz, {.solid = solid.get()});
+  BarJudge judge(data);
   const BarModel model(data.bench(), data.records().front(), {fit.theory, fit.solid, fit.far_end});
   const auto transfers = model.transfers(fit.at, data.path(), false);
   const BarData::Places& places = data.places();
@@ -366,7 +462,7 @@ std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit&
   std::vector<ForetoldShot> list;
   BarData::Spectrum product(data.path().size());
   const auto judged = [&](const BarData::Spectrum& spectrum) {
-    const auto record = data.in_time(spectrum).subspan(places.judged_begin);
+    const auto record = judge.in_time(spectrum).subspan(places.judged_begin);
     return std::vector<double>(record.begin(), record.end());
   };
   for (std::size_t i = 0; i < data.shots(); ++i) {
@@ -377,7 +473,7 @@ std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit&
     }
     for (std::size_t j = 1; j < data.gauges(); ++j) {
       for (std::size_t k = 0; k < product.size(); ++k) {
-        product[k] = transfers[j - 1].g[k] * data.spectrum(i, 0)[k];
+        product[k] = transfers.g[j - 1][k] * data.spectrum(i, 0)[k];
       }
       shot.gauges.push_back({data.bench().gauges[data.records()[i].channel[j]].name,
                              judged(data.spectrum(i, j)), judged(product)});

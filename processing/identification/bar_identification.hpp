@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/identification/bar_fit.hpp"
 #include "processing/identification/bar_spectrum.hpp"
 
@@ -54,7 +55,8 @@ struct BarIdentification {
 /// three-element parameters take in how far these lie from each other, by their odds.
 /// @throws InputError as BarData, and where no explanation can be fitted
 [[nodiscard]] BarIdentification identify_bar(const std::vector<Shot>& shots,
-                                             const BarIdentificationOptions& options);
+                                             const BarIdentificationOptions& options,
+                                             const Workers& workers = {});
 
 /// What gauge 0 of a shot foretells for the others, by a fit (paper, Fig. 21).
 struct ForetoldGauge {

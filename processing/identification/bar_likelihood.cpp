@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -15,22 +16,56 @@ constexpr std::size_t kMostReturns = 12;
 /// Bins whose noise is taken together: to 15 kHz in records of 4 ms. Where losses show in them, an
 /// average over returns states deviations that are 4 to 8 % small.
 constexpr std::size_t kLowestBins = 60;
-/// Places at which noise enters, per bin: what moves faster is not in them.
-constexpr std::size_t kPlacesPerBin = 12;
+/// Places at which noise enters, per bin: what moves faster is not in them. With six times as many
+/// deviations differ by less than 0.1 %.
+constexpr std::size_t kPlacesPerBin = 8;
 
 /// What first-order noise does, by independent causes: `shown` is by strides of so many samples,
 /// over which the noise is taken by its mean.
-Eigen::MatrixXd driven(const Eigen::MatrixXd& shown, const NoiseSpectrum::SlowPart& part,
-                       double samples) {
+EightColumns driven(EightColumns shown, const NoiseSpectrum::SlowPart& part, double samples) {
+  constexpr Eigen::Index kEight = EightColumns::kEight;
   const double keep = std::pow(part.keep, samples);
   const double sd = std::sqrt(part.variance_of_mean(samples));
-  Eigen::MatrixXd by_cause = shown;
-  for (Eigen::Index e = by_cause.cols() - 2; e >= 0; --e) {
-    by_cause.col(e) += keep * by_cause.col(e + 1);
+  const double sd_of_new = sd * std::sqrt(1.0 - keep * keep);
+  for (Eigen::Index p = 0; p < shown.panels(); ++p) {
+    double* const panel = shown.panel(p);
+    for (Eigen::Index at = kEight * (shown.rows() - 1) - 1; at >= 0; --at) {
+      panel[at] += keep * panel[at + kEight];
+    }
+    for (Eigen::Index at = 0; at < kEight * shown.rows(); ++at) {
+      panel[at] *= at < kEight ? sd : sd_of_new;
+    }
   }
-  by_cause.rightCols(by_cause.cols() - 1) *= sd * std::sqrt(1.0 - keep * keep);
-  by_cause.col(0) *= sd;
-  return by_cause;
+  return shown;
+}
+
+double angle_per_place(const BarData::Places& places, std::size_t bin) {
+  return -2.0 * std::numbers::pi * static_cast<double>(bin + 1) /
+         static_cast<double>(places.judged());
+}
+
+/// From a first one on, each turned by an angle from the one before it.
+void turn_on(Complex first, double angle, std::span<Complex> phases) {
+  const Complex turn = std::polar(1.0, angle);
+  for (Complex& phase : phases) {
+    phase = first;
+    first *= turn;
+  }
+}
+
+/// The first `quiet` rows less the sum of all rows over their number.
+void take_off_quiet_mean(Eigen::Index quiet, EightColumns& shown) {
+  constexpr Eigen::Index kEight = EightColumns::kEight;
+  for (Eigen::Index p = 0; p < shown.panels(); ++p) {
+    double* const panel = shown.panel(p);
+    std::array<double, kEight> mean{};
+    for (Eigen::Index at = 0; at < kEight * shown.rows(); ++at) {
+      mean[static_cast<std::size_t>(at % kEight)] += panel[at] / static_cast<double>(quiet);
+    }
+    for (Eigen::Index at = 0; at < kEight * std::min(quiet, shown.rows()); ++at) {
+      panel[at] -= mean[static_cast<std::size_t>(at % kEight)];
+    }
+  }
 }
 
 /// Slow noise jumps from the end of what is judged to its beginning, which every bin sees alike: a
@@ -44,7 +79,7 @@ std::vector<BarData::Spectrum> jumps(const BarData& data) {
     }
     return variance;
   };
-  const auto judged = static_cast<double>(data.places().judged_end - data.places().judged_begin);
+  const auto judged = static_cast<double>(data.places().judged());
   std::vector<BarData::Spectrum> list;
   for (std::size_t j = 1; j < data.gauges(); ++j) {
     const double sd = std::sqrt(variance_of(0) + variance_of(j));
@@ -66,8 +101,8 @@ double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
 
 }  // namespace
 
-BarLikelihood::BarLikelihood(BarData& data, BarModel model)
-    : data_(data), model_(std::move(model)) {}
+BarLikelihood::BarLikelihood(const BarData& data, BarModel model)
+    : data_(data), judge_(data), model_(std::move(model)) {}
 
 std::size_t BarLikelihood::residuals() const {
   return 2 * data_.judged_path().size() * (data_.gauges() - 1) * data_.shots();
@@ -99,7 +134,7 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
         const auto i = static_cast<std::size_t>(j);
         const Complex echo =
             R != 0.0 ? series + R * returns[i + 1][k] * series_before : Complex(1.0);
-        g[j] = passages[i].g[k] * echo;
+        g[j] = passages.g[i][k] * echo;
       }
       covariance += share * data_.noise_power(0)[k] * g * g.adjoint();
       mean_g += share * g;
@@ -128,73 +163,71 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
   return whitening;
 }
 
-/// What a unit of gauge 0's reading over one stride shows at the others in the lowest bins. Rows as
-/// in `white`, columns by the stride. The response from its place to the end of what is judged:
-/// differences of sums over one response. The mean of the quiet strides is taken off, as it is from
-/// the records.
-Eigen::MatrixXd BarLikelihood::shown_by_first(std::span<const double> at, std::size_t bins,
-                                              std::size_t stride) const {
+/// What a unit of gauge 0's reading over one stride shows at the others in the lowest bins. Columns
+/// as the rows in `white`, a row a stride. The response from its place to the end of what is
+/// judged: differences of sums over one response. The mean of the quiet strides is taken off, as it
+/// is from the records.
+EightColumns BarLikelihood::shown_by_first(std::span<const double> at, std::size_t bins,
+                                           std::size_t stride) {
   const BarData::Places& places = data_.places();
-  const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
+  const auto others = static_cast<std::size_t>(this->others());
   const auto begin = static_cast<std::size_t>(places.records_begin);
   const std::size_t entries = (places.judged_end - begin) / stride;
-  const std::size_t judged = places.judged_end - places.judged_begin;
-  const auto transfers = model_.transfers(at, data_.path(), false);
-  Eigen::MatrixXd shown(2 * others * static_cast<Eigen::Index>(bins),
-                        static_cast<Eigen::Index>(entries));
-  std::vector<Complex> sums(places.judged_end + 1);
+  const double samples = static_cast<double>(stride) * places.samples_per_place;
+  const BarModel::Transfers transfers = model_.transfers(at, data_.path(), false);
+  std::vector<std::vector<double>> responses;
   Spectrum product(data_.path().size());
-  for (Eigen::Index j = 0; j < others; ++j) {
+  for (std::size_t j = 0; j < others; ++j) {
     for (std::size_t k = 0; k < product.size(); ++k) {
-      product[k] = transfers[static_cast<std::size_t>(j)].g[k] * data_.unit_impulse()[k];
+      product[k] = transfers.g[j][k] * data_.unit_impulse()[k];
     }
-    const std::span<const double> response = data_.in_time(product);
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-      const double angle =
-          -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
-      const Complex turn = std::polar(1.0, angle);
-      Complex phase = 1.0;
-      for (std::size_t n = 0; n < response.size(); ++n) {
-        sums[n + 1] = sums[n] + response[n] * phase;
-        phase *= turn;
+    const std::span<const double> response = judge_.in_time(product);
+    responses.emplace_back(response.begin(), response.end());
+  }
+  EightColumns shown(static_cast<Eigen::Index>(entries),
+                     static_cast<Eigen::Index>(2 * others * bins));
+  std::vector<Complex> phases(places.judged_end);
+  std::vector<Complex> shifts(entries);
+  std::vector<Complex> sums(places.judged_end + 1);
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const double angle = angle_per_place(places, bin);
+    turn_on(1.0, angle, phases);
+    turn_on(samples * data_.undo_filter(bin) *
+                std::polar(1.0, -angle * static_cast<double>(places.judged_begin)),
+            angle * static_cast<double>(stride), shifts);
+    for (std::size_t j = 0; j < others; ++j) {
+      for (std::size_t n = 0; n < phases.size(); ++n) {
+        sums[n + 1] = sums[n] + responses[j][n] * phases[n];
       }
-      const double samples = static_cast<double>(stride) * places.samples_per_place;
-      Complex shift = samples * data_.undo_filter(bin) *
-                      std::polar(1.0, -angle * static_cast<double>(places.judged_begin));
-      const Complex shift_per_entry = std::polar(1.0, angle * static_cast<double>(stride));
-      const Eigen::Index row = 2 * others * static_cast<Eigen::Index>(bin) + j;
+      const auto column = static_cast<Eigen::Index>(2 * others * bin + j);
       for (std::size_t e = 0; e < entries; ++e) {
         const std::size_t late = e * stride;
         const std::size_t first = places.judged_begin > late ? places.judged_begin - late : 0;
-        const Complex seen = shift * (sums[places.judged_end - late] - sums[first]);
-        shown(row, static_cast<Eigen::Index>(e)) = seen.real();
-        shown(row + others, static_cast<Eigen::Index>(e)) = seen.imag();
-        shift *= shift_per_entry;
+        const Complex seen = shifts[e] * (sums[places.judged_end - late] - sums[first]);
+        shown(static_cast<Eigen::Index>(e), column) = seen.real();
+        shown(static_cast<Eigen::Index>(e), column + this->others()) = seen.imag();
       }
     }
   }
-  const auto quiet = std::max<Eigen::Index>(
-      1, static_cast<Eigen::Index>((places.quiet_end - places.records_begin) /
-                                   static_cast<double>(stride)));
-  const Eigen::VectorXd of_constant = shown.rowwise().sum() / static_cast<double>(quiet);
-  shown.leftCols(quiet).colwise() -= of_constant;
+  take_off_quiet_mean(std::max<Eigen::Index>(
+                          1, static_cast<Eigen::Index>((places.quiet_end - places.records_begin) /
+                                                       static_cast<double>(stride))),
+                      shown);
   return shown;
 }
 
-/// The same of a gauge's own reading in its own rows, from where the judging begins.
-Eigen::MatrixXd BarLikelihood::shown_by_own(std::size_t bins, std::size_t stride) const {
+/// The same of a gauge's own reading in its own columns, from where the judging begins.
+EightColumns BarLikelihood::shown_by_own(std::size_t bins, std::size_t stride) const {
   const BarData::Places& places = data_.places();
-  const std::size_t judged = places.judged_end - places.judged_begin;
-  Eigen::MatrixXd shown(static_cast<Eigen::Index>(2 * bins),
-                        static_cast<Eigen::Index>(judged / stride));
+  EightColumns shown(static_cast<Eigen::Index>(places.judged() / stride),
+                     static_cast<Eigen::Index>(2 * bins));
   for (Eigen::Index bin = 0; bin < static_cast<Eigen::Index>(bins); ++bin) {
     const double angle =
-        -2.0 * std::numbers::pi * static_cast<double>(bin + 1) / static_cast<double>(judged);
-    for (Eigen::Index e = 0; e < shown.cols(); ++e) {
-      const Complex seen = std::polar(static_cast<double>(stride),
-                                      angle * static_cast<double>(stride) * static_cast<double>(e));
-      shown(2 * bin, e) = seen.real();
-      shown(2 * bin + 1, e) = seen.imag();
+        angle_per_place(places, static_cast<std::size_t>(bin)) * static_cast<double>(stride);
+    for (Eigen::Index e = 0; e < shown.rows(); ++e) {
+      const Complex seen = std::polar(static_cast<double>(stride), angle * static_cast<double>(e));
+      shown(e, 2 * bin) = seen.real();
+      shown(e, 2 * bin + 1) = seen.imag();
     }
   }
   return shown;
@@ -205,9 +238,8 @@ LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
   const auto bins = static_cast<Eigen::Index>(lowest_bins);
-  const auto judged = static_cast<double>(places.judged_end - places.judged_begin);
-  const auto stride = std::max<std::size_t>(
-      1, (places.judged_end - places.judged_begin) / (kPlacesPerBin * lowest_bins));
+  const auto judged = static_cast<double>(places.judged());
+  const auto stride = std::max<std::size_t>(1, places.judged() / (kPlacesPerBin * lowest_bins));
   const double samples = static_cast<double>(stride) * places.samples_per_place;
   // Power per sample of what is not in the slow parts, which are treated each by itself.
   const auto steady = [&](std::size_t gauge, std::size_t bin) {
@@ -219,22 +251,23 @@ LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
     }
     return std::max(power, 0.0);
   };
-  const Eigen::MatrixXd by_first = shown_by_first(at, lowest_bins, stride);
-  Eigen::MatrixXd scaled = by_first;
-  for (Eigen::Index bin = 0; bin < bins; ++bin) {
-    scaled.middleRows(2 * others * bin, 2 * others) *=
-        std::sqrt(steady(0, static_cast<std::size_t>(bin)) / samples);
-  }
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(by_first.rows(), by_first.rows());
-  add_square(scaled, covariance);
+  EightColumns by_first = shown_by_first(at, lowest_bins, stride);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2 * others * bins, 2 * others * bins);
   for (const auto& part : data_.slow_noise(0)) {
     add_square(driven(by_first, part, samples), covariance);
   }
+  for (Eigen::Index bin = 0; bin < bins; ++bin) {
+    const double sd = std::sqrt(steady(0, static_cast<std::size_t>(bin)) / samples);
+    for (Eigen::Index i = 0; i < 2 * others; ++i) {
+      by_first.scale(2 * others * bin + i, sd);
+    }
+  }
+  add_square(by_first, covariance);
   for (Eigen::Index j = 0; j < others; ++j) {
     const auto gauge = static_cast<std::size_t>(j) + 1;
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(2 * bins, 2 * bins);
     if (!data_.slow_noise(gauge).empty()) {
-      const Eigen::MatrixXd by_own = shown_by_own(lowest_bins, stride);
+      const EightColumns by_own = shown_by_own(lowest_bins, stride);
       for (const auto& part : data_.slow_noise(gauge)) {
         add_square(driven(by_own, part, samples), own);
       }
@@ -303,7 +336,7 @@ void BarLikelihood::look_at_nuisances() {
   Spectrum offset(data_.judged_path().size());
   for (Eigen::Index j = 0; j < others(); ++j) {
     const auto i = static_cast<std::size_t>(j);
-    data_.judge_product(place_.transfers[i].g, data_.unit_offset(), offset);
+    judge_.judge_product(place_.transfers->g[i], data_.unit_offset(), offset);
     for (Complex& value : offset) {
       value *= data_.baseline_sd(0, 0);
     }
@@ -321,7 +354,7 @@ void BarLikelihood::look_at_residuals() {
     for (Eigen::Index j = 0; j < others(); ++j) {
       const auto i = static_cast<std::size_t>(j);
       Spectrum r(data_.judged_path().size());
-      data_.judge_product(place_.transfers[i].g, data_.spectrum(place_.shots[index], 0), r);
+      judge_.judge_product(place_.transfers->g[i], data_.spectrum(place_.shots[index], 0), r);
       const Spectrum& own = data_.judged(place_.shots[index], i + 1);
       for (std::size_t k = 0; k < r.size(); ++k) {
         r[k] = own[k] - r[k];
@@ -334,6 +367,7 @@ void BarLikelihood::look_at_residuals() {
 }
 
 double BarLikelihood::chi2_at(std::span<const double> at, Shots which) {
+  place_.at.assign(at.begin(), at.end());
   place_.transfers = model_.transfers(at, data_.path(), true);
   place_.passages = model_.first_passages(at, data_.judged_path(), true);
   place_.shots = {data_.all_as_one()};
@@ -367,7 +401,7 @@ double BarLikelihood::chi2_at(std::span<const double> at, Shots which) {
 }
 
 /// What the parameters do to a shot's residuals.
-void BarLikelihood::put_slopes(std::size_t index, EightColumns& columns) {
+void BarLikelihood::put_slopes(std::size_t index, const Slopes& slopes, EightColumns& columns) {
   const std::size_t bins = data_.judged_path().size();
   const std::size_t shot = place_.shots[index];
   const std::vector<Spectrum>& residual = place_.residuals[index];
@@ -380,21 +414,20 @@ void BarLikelihood::put_slopes(std::size_t index, EightColumns& columns) {
   columns.clear();
   Spectrum moved(bins);
   for (std::size_t i = 0; i < residual.size(); ++i) {
-    const auto& derivatives = place_.transfers[i].derivatives;
-    const BarModel::Transfer& passages = place_.passages[i];
-    for (std::size_t d = 0; d < derivatives.size(); ++d) {
-      const auto& derivative = derivatives[d];
-      const auto& passage = passages.derivatives[d];
+    const Spectrum& passages = place_.passages->g[i];
+    for (std::size_t d = 0; d < slopes.transfers[i].size(); ++d) {
+      const BarModel::Derivative& derivative = slopes.transfers[i][d];
+      const BarModel::Derivative& passage = slopes.passages[i][d];
       if (derivative.proportion) {
         for (std::size_t k = 0; k < bins; ++k) {
           moved[k] = *derivative.proportion * (data_.judged(shot, i + 1)[k] - residual[i][k]);
         }
       } else {
-        data_.judge_product(derivative.of_g, data_.spectrum(shot, 0), moved);
+        judge_.judge_product(derivative.of_g, data_.spectrum(shot, 0), moved);
       }
       for (std::size_t k = 0; k < bins; ++k) {
         const Complex slope =
-            passage.proportion ? *passage.proportion * passages.g[k] : passage.of_g[k];
+            passage.proportion ? *passage.proportion * passages[k] : passage.of_g[k];
         moved[k] = -moved[k] - slope * noise_of_first[k];
       }
       put(moved, static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(derivative.parameter), 0,
@@ -403,10 +436,10 @@ void BarLikelihood::put_slopes(std::size_t index, EightColumns& columns) {
   }
 }
 
-ShotTerms BarLikelihood::terms_of(std::size_t index, EightColumns& columns) {
+ShotTerms BarLikelihood::terms_of(std::size_t index, const Slopes& slopes, EightColumns& columns) {
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
   const Eigen::Index nuisances = 1 + others();
-  put_slopes(index, columns);
+  put_slopes(index, slopes, columns);
   whiten(columns);
   for (Eigen::Index row = 0; row < columns.rows(); ++row) {
     columns(row, parameters) = place_.white_residuals(row, static_cast<Eigen::Index>(index));
@@ -429,10 +462,12 @@ ShotTerms BarLikelihood::terms_of(std::size_t index, EightColumns& columns) {
 }
 
 std::vector<ShotTerms> BarLikelihood::terms() {
+  const Slopes slopes{model_.derivatives(place_.at, data_.path(), *place_.transfers),
+                      model_.derivatives(place_.at, data_.judged_path(), *place_.passages)};
   EightColumns columns(rows(), static_cast<Eigen::Index>(model_.parameters()) + 2 + others());
   std::vector<ShotTerms> list;
   for (std::size_t index = 0; index < place_.shots.size(); ++index) {
-    list.push_back(terms_of(index, columns));
+    list.push_back(terms_of(index, slopes, columns));
   }
   return list;
 }

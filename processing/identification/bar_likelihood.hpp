@@ -2,10 +2,11 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "processing/identification/bar_data.hpp"
+#include "processing/identification/bar_judge.hpp"
 #include "processing/identification/bar_model.hpp"
 #include "processing/identification/wide_products.hpp"
 
@@ -38,7 +39,7 @@ struct ShotTerms {
 class BarLikelihood {
  public:
   /// @param data outlives this
-  BarLikelihood(BarData& data, BarModel model);
+  BarLikelihood(const BarData& data, BarModel model);
 
   [[nodiscard]] const BarModel& model() const { return model_; }
   [[nodiscard]] const BarData& data() const { return data_; }
@@ -68,8 +69,9 @@ class BarLikelihood {
 
   /// A place in the parameters, and what is common to the shots there.
   struct Place {
-    std::vector<BarModel::Transfer> transfers;  ///< on the damped path
-    std::vector<BarModel::Transfer> passages;   ///< on the imaginary axis
+    std::vector<double> at;
+    std::optional<BarModel::Transfers> transfers;  ///< on the damped path
+    std::optional<BarModel::Transfers> passages;   ///< on the imaginary axis
     std::vector<std::size_t> shots;
     std::vector<std::vector<Spectrum>> residuals;  ///< by shot and gauge
     std::vector<double> chi2;                      ///< by shot
@@ -84,19 +86,25 @@ class BarLikelihood {
   [[nodiscard]] Eigen::Index rows() const;
   [[nodiscard]] Whitening whitening(std::span<const double> at);
   [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at, std::size_t bins);
-  [[nodiscard]] Eigen::MatrixXd shown_by_first(std::span<const double> at, std::size_t bins,
-                                               std::size_t stride) const;
-  [[nodiscard]] Eigen::MatrixXd shown_by_own(std::size_t bins, std::size_t stride) const;
+  [[nodiscard]] EightColumns shown_by_first(std::span<const double> at, std::size_t bins,
+                                            std::size_t stride);
+  [[nodiscard]] EightColumns shown_by_own(std::size_t bins, std::size_t stride) const;
   void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
            std::size_t first_bin, EightColumns& columns) const;
   void whiten(EightColumns& columns) const;
   void whiten_above_lowest(EightColumns& columns) const;
   void look_at_nuisances();
   void look_at_residuals();
-  void put_slopes(std::size_t index, EightColumns& columns);
-  [[nodiscard]] ShotTerms terms_of(std::size_t index, EightColumns& columns);
+  /// How the gauges follow the parameters there.
+  struct Slopes {
+    std::vector<std::vector<BarModel::Derivative>> transfers;
+    std::vector<std::vector<BarModel::Derivative>> passages;
+  };
+  void put_slopes(std::size_t index, const Slopes& slopes, EightColumns& columns);
+  [[nodiscard]] ShotTerms terms_of(std::size_t index, const Slopes& slopes, EightColumns& columns);
 
-  BarData& data_;
+  const BarData& data_;
+  BarJudge judge_;
   BarModel model_;
   Weights weights_;
   Place place_;

@@ -128,23 +128,26 @@ std::optional<BarModel::LogSlope> BarModel::slope_by(const KnownUnknown& unknown
                   &gamma.by_poisson};
 }
 
-void BarModel::differentiate(std::span<const double> at, std::size_t gauge, const MovedBench& bench,
-                             const BarWaves& waves, const GammaSlopes& gamma,
-                             Transfer& transfer) const {
-  const RatioSlopes ratio(waves, bench, gauge);
+std::vector<BarModel::Derivative> BarModel::derivatives_of(std::span<const double> at,
+                                                           std::size_t gauge,
+                                                           const Transfers& transfers,
+                                                           const GammaSlopes& gamma) const {
+  const RatioSlopes ratio(transfers.waves, transfers.bench, gauge);
+  const Spectrum& g = transfers.g[gauge - 1];
+  std::vector<Derivative> list;
   const auto add = [&](std::size_t parameter, const LogSlope& slope) {
     if (slope.ratio == nullptr) {
-      transfer.derivatives.push_back({parameter, slope.factor, {}});
+      list.push_back({parameter, slope.factor, {}});
       return;
     }
-    Spectrum of_g(transfer.g.size());
+    Spectrum of_g(g.size());
     for (std::size_t k = 0; k < of_g.size(); ++k) {
-      of_g[k] = slope.factor * transfer.g[k] * (*slope.ratio)[k];
+      of_g[k] = slope.factor * g[k] * (*slope.ratio)[k];
     }
     for (std::size_t k = 0; slope.gamma != nullptr && k < of_g.size(); ++k) {
       of_g[k] *= (*slope.gamma)[k];
     }
-    transfer.derivatives.push_back({parameter, std::nullopt, std::move(of_g)});
+    list.push_back({parameter, std::nullopt, std::move(of_g)});
   };
   for (std::size_t m = 0; m < solid_parameters(); ++m) {
     add(m, {1.0, &ratio.by_gamma, &gamma.by_solid[m]});
@@ -157,10 +160,11 @@ void BarModel::differentiate(std::span<const double> at, std::size_t gauge, cons
     }
   }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (const auto slope = slope_by(unknowns_[i], gauge, bench, ratio, gamma)) {
+    if (const auto slope = slope_by(unknowns_[i], gauge, transfers.bench, ratio, gamma)) {
       add(first_unknown() + i, *slope);
     }
   }
+  return list;
 }
 
 void BarModel::make_returned(std::span<const double> at, const std::vector<Complex>& path,
@@ -170,45 +174,48 @@ void BarModel::make_returned(std::span<const double> at, const std::vector<Compl
   }
 }
 
-std::vector<BarModel::Transfer> BarModel::transfers_with(std::span<const double> at, double R,
-                                                         const std::vector<Complex>& path,
-                                                         bool with_derivatives) const {
+BarModel::Transfers BarModel::transfers_with(std::span<const double> at, double R,
+                                             const std::vector<Complex>& path,
+                                             bool to_differentiate) const {
+  const bool with_echo = R != 0.0 || (to_differentiate && reflection_at() && !records_->returned);
   const MovedBench bench = moved(at);
-  const bool with_echo = R != 0.0 || (with_derivatives && reflection_at() && !records_->returned);
-  const BarWaves waves(theory_.waves, bench, *solid(at), R, with_echo, gauge_length_m_, path);
-  std::optional<GammaSlopes> gamma;
-  if (with_derivatives) {
-    gamma.emplace(theory_.waves, bench.bar, theory_.solid,
-                  exponentials(at.first(solid_parameters())), waves,
-                  varies(KnownUnknown::Of::poisson_ratio), path);
-  }
-  std::vector<Transfer> list(records_->position_m.size() - 1);
-  for (std::size_t j = 1; j <= list.size(); ++j) {
-    Transfer& transfer = list[j - 1];
-    transfer.g = waves.ratio(bench, j);
-    for (Complex& g : transfer.g) {
+  Transfers transfers{
+      {}, bench, BarWaves(theory_.waves, bench, *solid(at), R, with_echo, gauge_length_m_, path)};
+  for (std::size_t j = 1; j < records_->position_m.size(); ++j) {
+    Spectrum& of_gauge = transfers.g.emplace_back(transfers.waves.ratio(bench, j));
+    for (Complex& g : of_gauge) {
       g *= bench.gain[j] / bench.gain[0];
     }
     if (records_->returned) {
-      make_returned(at, path, transfer.g);
-    }
-    if (gamma) {
-      differentiate(at, j, bench, waves, *gamma, transfer);
+      make_returned(at, path, of_gauge);
     }
   }
+  return transfers;
+}
+
+BarModel::Transfers BarModel::transfers(std::span<const double> at,
+                                        const std::vector<Complex>& path,
+                                        bool to_differentiate) const {
+  return transfers_with(at, reflection(at), path, to_differentiate);
+}
+
+BarModel::Transfers BarModel::first_passages(std::span<const double> at,
+                                             const std::vector<Complex>& path,
+                                             bool to_differentiate) const {
+  return transfers_with(at, 0.0, path, to_differentiate);
+}
+
+std::vector<std::vector<BarModel::Derivative>> BarModel::derivatives(
+    std::span<const double> at, const std::vector<Complex>& path,
+    const Transfers& transfers) const {
+  const GammaSlopes gamma(theory_.waves, transfers.bench.bar, theory_.solid,
+                          exponentials(at.first(solid_parameters())), transfers.waves,
+                          varies(KnownUnknown::Of::poisson_ratio), path);
+  std::vector<std::vector<Derivative>> list;
+  for (std::size_t j = 1; j <= transfers.g.size(); ++j) {
+    list.push_back(derivatives_of(at, j, transfers, gamma));
+  }
   return list;
-}
-
-std::vector<BarModel::Transfer> BarModel::transfers(std::span<const double> at,
-                                                    const std::vector<Complex>& path,
-                                                    bool with_derivatives) const {
-  return transfers_with(at, reflection(at), path, with_derivatives);
-}
-
-std::vector<BarModel::Transfer> BarModel::first_passages(std::span<const double> at,
-                                                         const std::vector<Complex>& path,
-                                                         bool with_derivatives) const {
-  return transfers_with(at, 0.0, path, with_derivatives);
 }
 
 std::vector<BarModel::Spectrum> BarModel::returns(std::span<const double> at,

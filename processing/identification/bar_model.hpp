@@ -60,19 +60,25 @@ class BarModel {
     std::optional<double> proportion;  ///< dg_j = proportion g_j, else
     Spectrum of_g;
   };
-  struct Transfer {
-    Spectrum g;
-    std::vector<Derivative> derivatives;  ///< only of parameters that move this g_j
+  /// How the gauges follow along a path as `bar_modes` takes it.
+  struct Transfers {
+    std::vector<Spectrum> g;  ///< one per gauge but the first
+    MovedBench bench;         ///< what they are made from
+    BarWaves waves;
   };
-  /// One per gauge but the first, along a path as `bar_modes` takes it.
-  [[nodiscard]] std::vector<Transfer> transfers(std::span<const double> at,
-                                                const std::vector<Complex>& path,
-                                                bool with_derivatives) const;
+  /// @param to_differentiate  with what derivatives need beside
+  [[nodiscard]] Transfers transfers(std::span<const double> at, const std::vector<Complex>& path,
+                                    bool to_differentiate) const;
 
   /// First passages alone (R = 0): what noise of the first gauge becomes at once.
-  [[nodiscard]] std::vector<Transfer> first_passages(std::span<const double> at,
-                                                     const std::vector<Complex>& path,
-                                                     bool with_derivatives) const;
+  [[nodiscard]] Transfers first_passages(std::span<const double> at,
+                                         const std::vector<Complex>& path,
+                                         bool to_differentiate) const;
+
+  /// By gauge, only of parameters that move its g_j. @pre the transfers are of this place and path
+  [[nodiscard]] std::vector<std::vector<Derivative>> derivatives(std::span<const double> at,
+                                                                 const std::vector<Complex>& path,
+                                                                 const Transfers& transfers) const;
 
   /// exp(-2 gamma (L - x)) of each gauge: what a wave that has passed it meets before it is back.
   [[nodiscard]] std::vector<Spectrum> returns(std::span<const double> at,
@@ -92,11 +98,13 @@ class BarModel {
   [[nodiscard]] std::optional<LogSlope> slope_by(const KnownUnknown& unknown, std::size_t gauge,
                                                  const MovedBench& bench, const RatioSlopes& ratio,
                                                  const GammaSlopes& gamma) const;
-  [[nodiscard]] std::vector<Transfer> transfers_with(std::span<const double> at, double reflection,
-                                                     const std::vector<Complex>& path,
-                                                     bool with_derivatives) const;
-  void differentiate(std::span<const double> at, std::size_t gauge, const MovedBench& bench,
-                     const BarWaves& waves, const GammaSlopes& gamma, Transfer& transfer) const;
+  [[nodiscard]] Transfers transfers_with(std::span<const double> at, double reflection,
+                                         const std::vector<Complex>& path,
+                                         bool to_differentiate) const;
+  [[nodiscard]] std::vector<Derivative> derivatives_of(std::span<const double> at,
+                                                       std::size_t gauge,
+                                                       const Transfers& transfers,
+                                                       const GammaSlopes& gamma) const;
 
   Bar bar_;
   const BarRecords* records_;

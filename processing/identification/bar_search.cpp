@@ -15,7 +15,7 @@ constexpr double kPriorOfLogs = 5.0;
 constexpr double kUnseen = 1e6;
 constexpr double kHeld = 1e-3;
 constexpr double kPriorOfReflection = 2.0;
-constexpr int kMostSteps = 60;
+constexpr int kMostSteps = 100;
 /// A step is not worth taking when it gains less in chi2: a hundredth of a standard deviation.
 constexpr double kNegligibleGain = 1e-4;
 /// Of a search whose end is only where another one begins, or compared with others: a third of a
@@ -104,7 +104,7 @@ ShotEstimate estimate_of(const ShotTerms& shot, const BarPlace& common, const Ba
 
 }  // namespace
 
-BarSearch::BarSearch(BarData& data, const BarTheory& theory)
+BarSearch::BarSearch(const BarData& data, const BarTheory& theory)
     : likelihood_(data, BarModel(data.bench(), data.records().front(), theory)),
       prior_(prior_of(data, likelihood_.model())) {}
 
@@ -249,7 +249,7 @@ BarFit BarSearch::describe(double objective) const {
   return fit;
 }
 
-std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
+std::unique_ptr<BarSearch> rough_search(const BarData& data, const BarTheory& theory,
                                         const std::vector<double>& start) {
   auto search = std::make_unique<BarSearch>(data, theory);
   try {
@@ -267,7 +267,7 @@ bool may_be_elastic(const BarTheory& theory) {
   return theory.solid == SolidKind::three_element && !theory.lossless;
 }
 
-std::unique_ptr<BarSearch> search_from_elastic(BarData& data, const BarTheory& theory) {
+std::unique_ptr<BarSearch> search_from_elastic(const BarData& data, const BarTheory& theory) {
   BarTheory elastic_theory = theory;
   elastic_theory.lossless = true;
   BarSearch elastic(data, elastic_theory);

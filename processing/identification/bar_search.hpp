@@ -35,7 +35,7 @@ struct BarPlace {
 class BarSearch {
  public:
   /// @param data outlives this
-  BarSearch(BarData& data, const BarTheory& theory);
+  BarSearch(const BarData& data, const BarTheory& theory);
 
   /// With all shots as one and the noise bin by bin, twice: weights turn with the phase of the
   /// waves, so that those of where it began do not do for where it ends.
@@ -72,13 +72,13 @@ class BarSearch {
 
 /// A rough search; where it does not end, from the elastic bar.
 /// @throws InputError where it does not end even then
-[[nodiscard]] std::unique_ptr<BarSearch> rough_search(BarData& data, const BarTheory& theory,
+[[nodiscard]] std::unique_ptr<BarSearch> rough_search(const BarData& data, const BarTheory& theory,
                                                       const std::vector<double>& start);
 
 /// Where a bar shows no loss, its retardation can be anything and a search of three elements may
 /// not end; it does from the elastic bar.
 [[nodiscard]] bool may_be_elastic(const BarTheory& theory);
-[[nodiscard]] std::unique_ptr<BarSearch> search_from_elastic(BarData& data,
+[[nodiscard]] std::unique_ptr<BarSearch> search_from_elastic(const BarData& data,
                                                              const BarTheory& theory);
 
 }  // namespace kolsky

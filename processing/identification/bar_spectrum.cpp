@@ -26,17 +26,18 @@ Eigen::MatrixXcd inverse_covariance(const Eigen::VectorXcd& g, const std::vector
 
 /// What moves of the bench do to log J: square root of the known unknowns' covariance, column by
 /// column, through the estimator.
-std::vector<Complex> bench_causes(const std::vector<BarModel::Transfer>& transfers, std::size_t k,
-                                  const Eigen::RowVectorXcd& estimator, const BarModel& model,
-                                  const Eigen::MatrixXd& root) {
+std::vector<Complex> bench_causes(const std::vector<std::vector<Complex>>& g,
+                                  const std::vector<std::vector<BarModel::Derivative>>& derivatives,
+                                  std::size_t k, const Eigen::RowVectorXcd& estimator,
+                                  const BarModel& model, const Eigen::MatrixXd& root) {
   Eigen::RowVectorXcd by_unknown = Eigen::RowVectorXcd::Zero(root.rows());
-  for (std::size_t j = 0; j < transfers.size(); ++j) {
-    for (const auto& derivative : transfers[j].derivatives) {
+  for (std::size_t j = 0; j < g.size(); ++j) {
+    for (const auto& derivative : derivatives[j]) {
       if (derivative.parameter < model.first_unknown()) {
         continue;
       }
       const Complex of_g =
-          derivative.proportion ? *derivative.proportion * transfers[j].g[k] : derivative.of_g[k];
+          derivative.proportion ? *derivative.proportion * g[j][k] : derivative.of_g[k];
       by_unknown[static_cast<Eigen::Index>(derivative.parameter - model.first_unknown())] -=
           estimator[static_cast<Eigen::Index>(j)] * of_g;
     }
@@ -71,14 +72,14 @@ std::vector<std::vector<Complex>> slopes_by_log_J(const BarModel& model, const B
   const auto at = [&](double factor) {
     BarModel changed = model;
     changed.scale_density(factor);
-    return changed.transfers(fit.at, path, false);
+    return changed.transfers(fit.at, path, false).g;
   };
   const auto above = at(std::exp(kStep));
   const auto below = at(std::exp(-kStep));
   std::vector<std::vector<Complex>> slopes(above.size());
   for (std::size_t j = 0; j < above.size(); ++j) {
     for (std::size_t k = 0; k < path.size(); ++k) {
-      slopes[j].push_back((above[j].g[k] - below[j].g[k]) / (2.0 * kStep));
+      slopes[j].push_back((above[j][k] - below[j][k]) / (2.0 * kStep));
     }
   }
   return slopes;
@@ -96,22 +97,23 @@ BarSpectrum likely_spectrum(const BarData& data, const BarFit& fit) {
       damped_band(data, samples, kLeftAtEnd, 1.0, [&](auto, auto) { return samples; });
   SpectrumGathering gathering(data, fit, model, band);
   const auto transfers = model.transfers(fit.at, band.path, true);
+  const auto derivatives = model.derivatives(fit.at, band.path, transfers);
   const auto slopes = slopes_by_log_J(model, fit, band.path);
   const Eigen::MatrixXd root = root_of_bench_covariance(fit, model);
-  const auto others = static_cast<Eigen::Index>(transfers.size());
+  const auto others = static_cast<Eigen::Index>(transfers.g.size());
   Eigen::VectorXcd g(others);
   Eigen::VectorXcd slope(others);
   Eigen::VectorXcd r(others);
   for (std::size_t k = 0; k < band.path.size(); ++k) {
     const auto power = powers_at(data, band, k);
     for (Eigen::Index j = 0; j < others; ++j) {
-      g[j] = transfers[static_cast<std::size_t>(j)].g[k];
+      g[j] = transfers.g[static_cast<std::size_t>(j)][k];
       slope[j] = slopes[static_cast<std::size_t>(j)][k];
     }
     const Eigen::MatrixXcd weight = inverse_covariance(g, power);
     const double information = (slope.adjoint() * weight * slope)(0, 0).real();
     const Eigen::RowVectorXcd estimator = slope.adjoint() * weight / information;
-    gathering.add_bench(k, bench_causes(transfers, k, estimator, model, root));
+    gathering.add_bench(k, bench_causes(transfers.g, derivatives, k, estimator, model, root));
     for (std::size_t shot = 0; shot < data.shots(); ++shot) {
       const auto& spectra = band.spectra[shot];
       const Complex first = spectra[0][k];

@@ -18,29 +18,6 @@ Complex log_slope_of_sinhc(Complex z) {
   return std::abs(z) < 1e-2 ? z / 3.0 : 1.0 / std::tanh(z) - 1.0 / z;
 }
 
-/// d log J / d log p of each parameter of a solid, by central differences: J is smooth in them to
-/// all orders, and the error of 1e-10 is below that of J itself in its effect.
-std::vector<std::vector<Complex>> log_slopes(SolidKind kind, std::vector<double> parameters,
-                                             const std::vector<Complex>& path) {
-  constexpr double kStep = 1e-5;
-  std::vector<std::vector<Complex>> slopes(parameters.size());
-  for (std::size_t m = 0; m < parameters.size(); ++m) {
-    const double value = parameters[m];
-    parameters[m] = value * std::exp(kStep);
-    const auto above = make_solid(kind, parameters);
-    parameters[m] = value * std::exp(-kStep);
-    const auto below = make_solid(kind, parameters);
-    parameters[m] = value;
-    slopes[m].reserve(path.size());
-    for (const Complex s : path) {
-      const Complex up = above->at(s);
-      const Complex down = below->at(s);
-      slopes[m].push_back((up - down) / (up + down) / kStep);
-    }
-  }
-  return slopes;
-}
-
 }  // namespace
 
 BarWaves::BarWaves(WaveTheory theory, const MovedBench& bench, const Compliance& solid,
@@ -86,7 +63,7 @@ BarWaves::Spectrum BarWaves::ratio(const MovedBench& bench, std::size_t j) const
 GammaSlopes::GammaSlopes(WaveTheory theory, const Bar& bar, SolidKind kind,
                          std::span<const double> parameters, const BarWaves& waves,
                          bool poisson_varies, const std::vector<Complex>& path)
-    : by_solid(log_slopes(kind, {parameters.begin(), parameters.end()}, path)),
+    : by_solid(log_slopes(kind, parameters, path)),
       by_density(path.size()),
       by_diameter(path.size()) {
   for (std::size_t k = 0; k < path.size(); ++k) {

@@ -13,6 +13,9 @@ namespace {
 /// some percent of itself; to be told apart takes 10.
 constexpr double kFarBehind = 400.0;
 constexpr double kNoWorse = 1.0;
+/// What another parameter must gain to be believed is three times as much; less than this by a
+/// rough search does not become that by a closer one.
+constexpr double kNoBetter = 10.0;
 
 /// A solid that three elements nearly are, as logarithms: a little away from them, where what it
 /// has more still shows.
@@ -55,8 +58,10 @@ Explanations::Entry* Explanations::find(const BarTheory& theory) {
 }
 
 Explanations::Entry& Explanations::add(const BarTheory& theory) {
+  const Entry* near = nearest(theory);
   entries_.push_back(std::make_unique<Entry>());
   entries_.back()->theory = theory;
+  entries_.back()->near = near;
   return *entries_.back();
 }
 
@@ -75,18 +80,21 @@ const Explanations::Entry* Explanations::nearest(const BarTheory& theory) const 
   return near;
 }
 
-Explanations::Entry& Explanations::rough(const BarTheory& theory) {
-  if (Entry* known = find(theory)) {
-    return *known;
-  }
-  const Entry* near = nearest(theory);
-  Entry& entry = add(theory);
-  if (near != nullptr) {
-    search_roughly(entry, near->search->at());
+void Explanations::start_roughly(Entry& entry) {
+  if (entry.near != nullptr) {
+    search_roughly(entry, entry.near->search->at());
   }
   if (!entry.search) {
     search_roughly(entry, {});
   }
+}
+
+Explanations::Entry& Explanations::rough(const BarTheory& theory) {
+  if (Entry* known = find(theory)) {
+    return *known;
+  }
+  Entry& entry = add(theory);
+  start_roughly(entry);
   return entry;
 }
 
@@ -105,8 +113,23 @@ void Explanations::search_roughly(Entry& entry, const std::vector<double>& start
   }
 }
 
-void Explanations::look(const BarTheory& theory) {
-  lead_with(rough(theory));
+std::vector<Explanations::Entry*> Explanations::add_new(const std::vector<BarTheory>& theories) {
+  std::vector<Entry*> added;
+  for (const BarTheory& theory : theories) {
+    if (find(theory) == nullptr) {
+      added.push_back(&add(theory));
+    }
+  }
+  return added;
+}
+
+void Explanations::look(const std::vector<BarTheory>& theories) {
+  const std::vector<Entry*> added = add_new(theories);
+  workers_.run(added.size(),
+               [&](std::size_t index, std::size_t /*worker*/) { start_roughly(*added[index]); });
+  for (const BarTheory& theory : theories) {
+    lead_with(*find(theory));
+  }
 }
 
 void Explanations::look_afresh(const BarTheory& theory) {
@@ -127,6 +150,15 @@ double Explanations::left_over_noise() const {
   return leader_->rough_chi2 / expected;
 }
 
+double Explanations::behind(const BarTheory& theory) const {
+  for (const auto& entry : entries_) {
+    if (entry->theory == theory && entry->search && leader_ != nullptr) {
+      return entry->rough_chi2 - leader_->rough_chi2;
+    }
+  }
+  return 0.0;
+}
+
 const BarTheory* Explanations::leading() const {
   return leader_ != nullptr ? &leader_->theory : nullptr;
 }
@@ -145,51 +177,103 @@ void Explanations::compare(Entry& entry, const std::function<void(BarSearch&)>& 
   }
 }
 
-const BarFit* Explanations::at(const BarTheory& theory) {
-  Entry& entry = rough(theory);
-  if (entry.search && leader_ != nullptr && !entry.fit) {
-    entry.left_behind = far_behind(entry);
-    if (entry.left_behind) {
-      entry.fit = entry.search->so_far();
-    } else {
-      compare(entry, by_own_weights);
-      if (!entry.fit && may_be_elastic(theory)) {
-        try_from(entry, search_from_elastic);
-      }
-    }
+void Explanations::compare(Entry& entry) {
+  if (!entry.search || leader_ == nullptr || entry.fit) {
+    return;
   }
-  return entry.fit ? &*entry.fit : nullptr;
+  entry.left_behind = far_behind(entry);
+  if (entry.left_behind) {
+    entry.fit = entry.search->so_far();
+    return;
+  }
+  compare(entry, by_own_weights);
+  if (!entry.fit && may_be_elastic(entry.theory)) {
+    try_from(entry, search_from_elastic);
+  }
 }
 
-const BarFit* Explanations::at(const BarTheory& theory, const BarFit& three_element) {
-  Entry* entry = find(theory);
-  if (entry == nullptr) {
-    entry = &add(theory);
-    entry->search = std::make_unique<BarSearch>(data_, theory);
-    const auto solid = three_element.at.begin() +
-                       static_cast<std::ptrdiff_t>(parameters_of(SolidKind::three_element).size());
-    std::vector<double> start =
-        near_three_elements(theory.solid, {three_element.at.begin(), solid});
-    start.insert(start.end(), solid, three_element.at.end());
-    // By the same weights: what holds three elements must not look worse for where it was weighed.
-    const BarTheory held{three_element.theory, three_element.solid, three_element.far_end};
-    const auto weights = find(held)->search->weights();
-    compare(*entry, [&](BarSearch& search) { search.closely(start, weights); });
-    // It holds three elements within it, so that it cannot be worse: but its search can.
-    if (!entry->fit || chi2_of(*entry->fit) > chi2_of(three_element) + kNoWorse) {
-      try_from(*entry,
-               [](BarData& data, const BarTheory& other) { return rough_search(data, other, {}); });
-    }
+std::vector<const BarFit*> Explanations::at(const std::vector<BarTheory>& theories,
+                                            const std::vector<BarTheory>& next) {
+  std::vector<Entry*> entries;
+  for (const BarTheory& theory : theories) {
+    entries.push_back(&rough(theory));
   }
-  return entry->fit ? &*entry->fit : nullptr;
+  const std::vector<Entry*> added = add_new(next);
+  const std::size_t compared = entries.size();
+  workers_.run(compared + added.size(), [&](std::size_t index, std::size_t /*worker*/) {
+    if (index < compared) {
+      compare(*entries[index]);
+    } else {
+      start_roughly(*added[index - compared]);
+    }
+  });
+  std::vector<const BarFit*> fits;
+  for (const Entry* entry : entries) {
+    fits.push_back(entry->fit ? &*entry->fit : nullptr);
+  }
+  return fits;
+}
+
+const BarFit* Explanations::at_if_better(const BarTheory& theory) {
+  Entry& entry = rough(theory);
+  if (entry.search && !entry.fit && leader_ != nullptr &&
+      entry.rough_chi2 > leader_->rough_chi2 - kNoBetter * std::max(1.0, left_over_noise())) {
+    entry.left_behind = true;
+    return nullptr;
+  }
+  return at(theory);
+}
+
+void Explanations::compare_from(Entry& entry, const BarFit& three_element,
+                                const BarLikelihood::Weights& weights) {
+  const auto solid = three_element.at.begin() +
+                     static_cast<std::ptrdiff_t>(parameters_of(SolidKind::three_element).size());
+  std::vector<double> start =
+      near_three_elements(entry.theory.solid, {three_element.at.begin(), solid});
+  start.insert(start.end(), solid, three_element.at.end());
+  entry.search = std::make_unique<BarSearch>(data_, entry.theory);
+  compare(entry, [&](BarSearch& search) { search.closely(start, weights); });
+  // It holds three elements within it, so that it cannot be worse: but its search can.
+  if (!entry.fit || chi2_of(*entry.fit) > chi2_of(three_element) + kNoWorse) {
+    try_from(entry, [](const BarData& data, const BarTheory& other) {
+      return rough_search(data, other, {});
+    });
+  }
+}
+
+Explanations::Solids Explanations::solids(const BarFit& three_element,
+                                          const std::vector<SolidKind>& others) {
+  Entry& held = *find(
+      {three_element.theory, three_element.solid, three_element.far_end, three_element.lossless});
+  // By the same weights: what holds three elements must not look worse for where it was weighed.
+  const BarLikelihood::Weights weights = held.search->weights();
+  std::vector<Entry*> entries;
+  for (const SolidKind solid : others) {
+    entries.push_back(&add({three_element.theory, solid, three_element.far_end}));
+  }
+  Solids result;
+  const BarFit start = three_element;
+  // The longest first.
+  workers_.run(1 + entries.size(), [&](std::size_t index, std::size_t /*worker*/) {
+    if (index == 0) {
+      result.three_element = finished(held);
+    } else {
+      compare_from(*entries[index - 1], start, weights);
+    }
+  });
+  for (const Entry* entry : entries) {
+    result.others.push_back(entry->fit ? &*entry->fit : nullptr);
+  }
+  return result;
 }
 
 const BarFit* Explanations::again(const BarTheory& theory, const BarFit& partial) {
   Entry& entry = *find(theory);
   std::vector<double> start = partial.at;
   start.erase(start.begin() + static_cast<std::ptrdiff_t>(parameters_of(theory.solid).size()));
-  try_from(entry,
-           [&](BarData& data, const BarTheory& other) { return rough_search(data, other, start); });
+  try_from(entry, [&](const BarData& data, const BarTheory& other) {
+    return rough_search(data, other, start);
+  });
   return entry.fit ? &*entry.fit : nullptr;
 }
 
@@ -209,15 +293,18 @@ void Explanations::try_from(Entry& entry, const Start& start) {
 }
 
 BarFit Explanations::finished(const BarTheory& theory) {
-  Entry& entry = *find(theory);
+  return finished(*find(theory));
+}
+
+BarFit Explanations::finished(Entry& entry) {
   BarFit fit;
   try {
     fit = entry.search->finished();
   } catch (const InputError&) {
-    if (!may_be_elastic(theory)) {
+    if (!may_be_elastic(entry.theory)) {
       throw;
     }
-    entry.search = search_from_elastic(data_, theory);
+    entry.search = search_from_elastic(data_, entry.theory);
     entry.search->closely();
     fit = entry.search->finished();
   }
@@ -225,20 +312,36 @@ BarFit Explanations::finished(const BarTheory& theory) {
   return fit;
 }
 
+/// Of one left at a rough search: as far from the leading one as that found it, with one number
+/// more.
+Alternative Explanations::left_roughly(const Entry& entry) const {
+  Alternative alternative;
+  if (leader_->fit) {
+    const auto freedom = static_cast<double>(leader_->fit->degrees_of_freedom);
+    const double gain = leader_->rough_chi2 - entry.rough_chi2;
+    alternative.log_evidence = leader_->fit->log_evidence + 0.5 * (gain - std::log(freedom));
+    alternative.chi2_reduced = leader_->fit->chi2_reduced - gain / freedom;
+  }
+  return alternative;
+}
+
 std::vector<Alternative> Explanations::alternatives() const {
   std::vector<Alternative> list;
   for (const auto& entry : entries_) {
-    if (!entry->fit && entry->failed.empty()) {
+    if (!entry->fit && !entry->left_behind && entry->failed.empty()) {
       continue;
     }
-    Alternative& alternative = list.emplace_back();
-    alternative.theory = entry->theory;
-    alternative.left_behind = entry->left_behind;
-    alternative.failed = entry->failed;
+    Alternative alternative;
     if (entry->fit) {
       alternative.log_evidence = entry->fit->log_evidence;
       alternative.chi2_reduced = entry->fit->chi2_reduced;
+    } else if (entry->left_behind) {
+      alternative = left_roughly(*entry);
     }
+    alternative.theory = entry->theory;
+    alternative.left_behind = entry->left_behind;
+    alternative.failed = entry->failed;
+    list.push_back(std::move(alternative));
   }
   std::stable_sort(list.begin(), list.end(), [](const Alternative& a, const Alternative& b) {
     return a.failed.empty() != b.failed.empty() ? a.failed.empty()

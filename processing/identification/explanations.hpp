@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/identification/bar_identification.hpp"
 #include "processing/identification/bar_search.hpp"
 
@@ -21,22 +22,38 @@ namespace kolsky {
 class Explanations {
  public:
   /// @param data outlives this
-  explicit Explanations(BarData& data) : data_(data) {}
+  explicit Explanations(const BarData& data, Workers workers = {})
+      : data_(data), workers_(std::move(workers)) {}
 
-  /// Searches roughly. All that may lead are looked at before the first is compared.
-  void look(const BarTheory& theory);
+  /// Searches roughly, all from what was looked at before. All that may lead are looked at before
+  /// the first is compared.
+  void look(const std::vector<BarTheory>& theories);
   /// Also from the pulses' own speed and decay: another end leads astray, from where nothing leads
   /// back.
   void look_afresh(const BarTheory& theory);
   /// What the leading one leaves, over what noise would.
   [[nodiscard]] double left_over_noise() const;
+  /// By how much chi2 a theory that was looked at is behind the leading one; 0 where it was not.
+  [[nodiscard]] double behind(const BarTheory& theory) const;
   /// The one with the least that is left by a rough search; none where none was found.
   [[nodiscard]] const BarTheory* leading() const;
 
   /// What is compared: without the shots' own estimates. Null where it cannot be fitted.
-  [[nodiscard]] const BarFit* at(const BarTheory& theory);
-  /// Of another family of solids, from three elements at their best.
-  [[nodiscard]] const BarFit* at(const BarTheory& theory, const BarFit& three_element);
+  /// @param next  searched roughly beside them: what is likely to be asked for then
+  [[nodiscard]] std::vector<const BarFit*> at(const std::vector<BarTheory>& theories,
+                                              const std::vector<BarTheory>& next = {});
+  [[nodiscard]] const BarFit* at(const BarTheory& theory) { return at(std::vector{theory})[0]; }
+  /// The same of one with a number more than the leading one: null, too, where a rough search finds
+  /// it no better.
+  [[nodiscard]] const BarFit* at_if_better(const BarTheory& theory);
+
+  /// Three elements searched to the end, with the shots' own estimates, and other families of
+  /// solids from where they are at their best, to compare.
+  struct Solids {
+    BarFit three_element;
+    std::vector<const BarFit*> others;
+  };
+  [[nodiscard]] Solids solids(const BarFit& three_element, const std::vector<SolidKind>& others);
 
   /// An end that returns all or nothing once more, from where one that may return anything is best:
   /// it holds the others within it.
@@ -51,6 +68,7 @@ class Explanations {
  private:
   struct Entry {
     BarTheory theory;
+    const Entry* near = nullptr;        ///< from where it is first searched
     std::unique_ptr<BarSearch> search;  ///< null where it failed
     double rough_chi2 = 0.0;
     bool left_behind = false;
@@ -60,17 +78,25 @@ class Explanations {
 
   Entry* find(const BarTheory& theory);
   Entry& add(const BarTheory& theory);
+  std::vector<Entry*> add_new(const std::vector<BarTheory>& theories);
   Entry& rough(const BarTheory& theory);
+  void start_roughly(Entry& entry);
   void lead_with(Entry& entry);
+  void compare(Entry& entry);
+  void compare_from(Entry& entry, const BarFit& three_element,
+                    const BarLikelihood::Weights& weights);
+  [[nodiscard]] BarFit finished(Entry& entry);
   void compare(Entry& entry, const std::function<void(BarSearch&)>& closely);
   /// By another search, where that ends better.
-  using Start = std::function<std::unique_ptr<BarSearch>(BarData&, const BarTheory&)>;
+  using Start = std::function<std::unique_ptr<BarSearch>(const BarData&, const BarTheory&)>;
   void try_from(Entry& entry, const Start& start);
+  [[nodiscard]] Alternative left_roughly(const Entry& entry) const;
   [[nodiscard]] bool far_behind(const Entry& entry) const;
   [[nodiscard]] const Entry* nearest(const BarTheory& theory) const;
   void search_roughly(Entry& entry, const std::vector<double>& start);
 
-  BarData& data_;
+  const BarData& data_;
+  Workers workers_;
   std::vector<std::unique_ptr<Entry>> entries_;
   Entry* leader_ = nullptr;
 };

@@ -10,6 +10,8 @@ namespace kolsky {
 
 namespace {
 
+constexpr std::size_t kMostSolidParameters = 5;
+
 class FourElementFluid final : public Compliance {
  public:
   explicit FourElementFluid(std::span<const double> p)
@@ -48,6 +50,61 @@ class FractionalSolid final : public Compliance {
  private:
   double E1_, E2_, eta2_, beta_;
 };
+
+/// J at one s, and how it moves with the logarithm of each parameter.
+struct Moved {
+  Complex J;
+  std::array<Complex, kMostSolidParameters> by_log;
+};
+
+/// Adds a spring and a dashpot side by side.
+void add_kelvin(Complex s, double E, double eta, std::size_t at_E, std::size_t at_eta, Moved& m) {
+  const Complex k = 1.0 / (E + s * eta);
+  m.J += k;
+  m.by_log[at_E] = -E * k * k;
+  m.by_log[at_eta] = -s * eta * k * k;
+}
+
+void add_dashpot(Complex s, double eta, std::size_t at, Moved& m) {
+  const Complex k = 1.0 / (s * eta);
+  m.J += k;
+  m.by_log[at] = -k;
+}
+
+/// E2 and eta2 at places 1 and 2, the power at 3.
+void add_fractional(Complex s, std::span<const double> p, Moved& m) {
+  const Complex log_z = p[3] * std::log(s * p[2] / p[1]);
+  const Complex z = std::exp(log_z);
+  const Complex k = 1.0 / (p[1] * (1.0 + z));
+  const Complex by_z = -k * k * p[1];
+  m.J += k;
+  m.by_log[1] = by_z * (1.0 + z - p[3] * z);
+  m.by_log[2] = by_z * p[3] * z;
+  m.by_log[3] = by_z * log_z * z;
+}
+
+Moved moved(SolidKind kind, std::span<const double> p, Complex s) {
+  Moved m;
+  m.J = 1.0 / p[0];
+  m.by_log[0] = -m.J;
+  switch (kind) {
+    case SolidKind::three_element:
+      add_kelvin(s, p[1], p[2], 1, 2, m);
+      break;
+    case SolidKind::four_element_fluid:
+      add_dashpot(s, p[1], 1, m);
+      add_kelvin(s, p[2], p[3], 2, 3, m);
+      break;
+    case SolidKind::two_kelvin:
+      add_kelvin(s, p[1], p[2], 1, 2, m);
+      add_kelvin(s, p[3], p[4], 3, 4, m);
+      break;
+    case SolidKind::fractional:
+      add_fractional(s, p, m);
+      break;
+  }
+  return m;
+}
 
 constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"},
                             std::pair{SolidKind::four_element_fluid, "four-element-fluid"},
@@ -89,6 +146,19 @@ std::unique_ptr<const Compliance> make_solid(SolidKind kind, std::span<const dou
       break;
   }
   return std::make_unique<FractionalSolid>(parameters);
+}
+
+std::vector<std::vector<Complex>> log_slopes(SolidKind kind, std::span<const double> parameters,
+                                             std::span<const Complex> path) {
+  std::vector<std::vector<Complex>> slopes(parameters.size(), std::vector<Complex>(path.size()));
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const Moved m = moved(kind, parameters, path[k]);
+    const Complex per_J = 1.0 / m.J;
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      slopes[i][k] = m.by_log[i] * per_J;
+    }
+  }
+  return slopes;
 }
 
 SolidKind solid_kind(const std::string& name) {

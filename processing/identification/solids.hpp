@@ -29,6 +29,11 @@ struct SolidParameter {
 [[nodiscard]] std::unique_ptr<const Compliance> make_solid(SolidKind kind,
                                                            std::span<const double> parameters);
 
+/// d log J / d log p along a path of s, by parameter.
+[[nodiscard]] std::vector<std::vector<Complex>> log_slopes(SolidKind kind,
+                                                           std::span<const double> parameters,
+                                                           std::span<const Complex> path);
+
 /// @throws InputError for any other name: three-element, four-element-fluid, two-kelvin, fractional
 [[nodiscard]] SolidKind solid_kind(const std::string& name);
 [[nodiscard]] std::string name_of(SolidKind kind);

@@ -14,17 +14,6 @@ constexpr Eigen::Index kEight = EightColumns::kEight;
 /// Four doubles anywhere in memory: one register, or several of what the machine has.
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-/// The rows of `columns` as columns.
-EightColumns turned(const Eigen::MatrixXd& columns) {
-  EightColumns packed(columns.cols(), columns.rows());
-  for (Eigen::Index e = 0; e < columns.cols(); ++e) {
-    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
-      packed(e, i) = columns(i, e);
-    }
-  }
-  return packed;
-}
-
 /// Products of eight columns with each of four others, over all rows.
 KOLSKY_WIDE void multiply(const double* columns, const double* others, Eigen::Index rows,
                           double* products) {
@@ -129,8 +118,8 @@ Eigen::MatrixXd square_of(const EightColumns& columns) {
   return all;
 }
 
-void add_square(const Eigen::MatrixXd& columns, Eigen::MatrixXd& lower) {
-  square(turned(columns), [&](Eigen::Index a, Eigen::Index b, double product) {
+void add_square(const EightColumns& columns, Eigen::MatrixXd& lower) {
+  square(columns, [&](Eigen::Index a, Eigen::Index b, double product) {
     if (a >= b && a < lower.rows()) {
       lower(a, b) += product;
     }

@@ -30,6 +30,11 @@ class EightColumns {
   [[nodiscard]] double operator()(Eigen::Index row, Eigen::Index column) const {
     return panel(column / kEight)[row * kEight + column % kEight];
   }
+  void scale(Eigen::Index column, double factor) {
+    for (Eigen::Index row = 0; row < rows_; ++row) {
+      (*this)(row, column) *= factor;
+    }
+  }
   void clear() { std::fill(numbers_.begin(), numbers_.end(), 0.0); }
 
  private:
@@ -41,8 +46,8 @@ class EightColumns {
 /// columns^T columns.
 [[nodiscard]] Eigen::MatrixXd square_of(const EightColumns& columns);
 
-/// lower += columns columns^T, of which only the lower triangle is meant.
-void add_square(const Eigen::MatrixXd& columns, Eigen::MatrixXd& lower);
+/// lower += columns^T columns, of which only the lower triangle of as many columns is meant.
+void add_square(const EightColumns& columns, Eigen::MatrixXd& lower);
 
 /// A lower triangular matrix to solve with for a few columns at a time.
 class LowerTriangle {

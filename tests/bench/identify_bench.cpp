@@ -8,6 +8,7 @@
 #include "processing/waves/bar_modes.hpp"
 #include "processing/waves/transform.hpp"
 #include "tests/bench/bound.hpp"
+#include "tests/bench/two_threads.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/solid_bar_shots.hpp"
 #include "tests/generators/table4.hpp"
@@ -55,13 +56,17 @@ BENCHMARK_CAPTURE(fit_ten_shots, exact, WaveTheory::exact, true)->Unit(benchmark
 BENCHMARK_CAPTURE(fit_ten_shots, exact_of_elementary, WaveTheory::exact, false)
     ->Unit(benchmark::kMillisecond);
 
-void identify_ten_shots(benchmark::State& state) {
-  const auto& shots = ten_shots();
+/// All of it: wave theories, far ends and families of solids tried, and the spectra.
+void identify_ten_shots(benchmark::State& state, bool solid) {
+  const auto& shots = solid ? ten_shots_of_solid() : ten_shots();
+  const Workers two = two_threads();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(identify_bar(shots, {}));
+    benchmark::DoNotOptimize(identify_bar(shots, {}, two));
   }
+  hold_to(state, 0.05);
 }
-BENCHMARK(identify_ten_shots)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(identify_ten_shots, thin, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(identify_ten_shots, solid, true)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void transforms_of_ten_shots(benchmark::State& state) {
   const auto& shots = ten_shots();

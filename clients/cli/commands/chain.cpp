@@ -113,7 +113,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   const std::vector<Shot> shots = captured_shots(settings.bar_shots);
   require_kind(shots, BenchKind::bar, "--bar-shots", "bar");
   say_to_a_person(fmt::format("identifying the bar from {} shots", shots.size()));
-  run.bar = identify_bar(shots, {});
+  run.bar = identify_bar(shots, {}, all_cores());
   const BarFit& fit = run.bar->three_element;
   Material material;
   material.density_kg_m3 = shots.front().bench.input.density_kg_m3;

@@ -6,6 +6,7 @@
 #include "clients/cli/bar_report.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
@@ -110,7 +111,7 @@ void write_material(const std::string& path, const BarIdentification& result,
 int run(const Settings& settings, Context& context) {
   const BarIdentificationOptions options = options_from(settings);
   const std::vector<Shot> shots = captured_shots(settings.captures);
-  const BarIdentification result = identify_bar(shots, options);
+  const BarIdentification result = identify_bar(shots, options, all_cores());
   std::vector<ForetoldShot> foretold;
   if (settings.waveforms || settings.svg) {
     foretold = foretell(shots, result.fit);

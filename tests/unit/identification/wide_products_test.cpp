@@ -28,15 +28,15 @@ Eigen::MatrixXd plain(const EightColumns& columns, Eigen::Index count) {
 }
 
 TEST(WideProducts, SquaresAddToTheLowerTriangleOfAnySize) {
-  for (const Eigen::Index rows : {1, 4, 7, 8, 9, 22}) {
-    const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(rows, 13);
-    const Eigen::MatrixXd before = Eigen::MatrixXd::Random(rows, rows);
+  for (const Eigen::Index count : {1, 4, 7, 8, 9, 22}) {
+    const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(13, count);
+    const Eigen::MatrixXd before = Eigen::MatrixXd::Random(count, count);
     Eigen::MatrixXd sum = before;
-    add_square(columns, sum);
-    const Eigen::MatrixXd whole = before + columns * columns.transpose();
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      for (Eigen::Index j = 0; j < rows; ++j) {
-        EXPECT_NEAR(sum(i, j), j <= i ? whole(i, j) : before(i, j), 1e-14) << rows;
+    add_square(in_eights(columns), sum);
+    const Eigen::MatrixXd whole = before + columns.transpose() * columns;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j < count; ++j) {
+        EXPECT_NEAR(sum(i, j), j <= i ? whole(i, j) : before(i, j), 1e-14) << count;
       }
     }
   }
