@@ -172,20 +172,20 @@ class Diagnostician {
     options_.progress("weighing the other readings of the law in three dimensions");
     const auto now = static_cast<std::size_t>(std::lround(own->values[0].value));
     std::array<double, kReadingNames.size()> objective{};
+    const auto with_reading = [&](std::size_t r, const Workers& executor, Settle settle) {
+      Model model = first.model;
+      model.find(kReading)->values[0].value = static_cast<double>(r);
+      return study_.refit(model, executor, settle).fit.objective();
+    };
     // All around the same fine forces, as the search itself.
     if (anchor_) {
       study_.residuals().anchor(first.composition, first_anchor_);
     }
     study_.executor().run(kReadingNames.size(), [&](std::size_t r, std::size_t worker) {
       if (r != now) {
-        Model model = first.model;
-        model.find(kReading)->values[0].value = static_cast<double>(r);
-        objective[r] = study_.refit(model, serial_on(worker)).fit.objective();
+        objective[r] = with_reading(r, serial_on(worker), Settle::roughly);
       }
     });
-    if (anchor_) {
-      study_.residuals().anchor(anchor_->first, anchor_->second);
-    }
     std::size_t best = now;
     for (std::size_t r = 0; r < kReadingNames.size(); ++r) {
       if (r != now && std::isfinite(objective[r]) &&
@@ -193,8 +193,17 @@ class Diagnostician {
         best = r;
       }
     }
-    const double ahead =
-        (objective[best] - (anchor_ ? searched_ : current.fit.objective())) / scale_;
+    const auto ahead_of = [&](double objective_there) {
+      return (objective_there - (anchor_ ? searched_ : current.fit.objective())) / scale_;
+    };
+    constexpr double kRoughlyKnown = 1.0;
+    if (best != now && std::abs(std::abs(ahead_of(objective[best])) - kTie) < kRoughlyKnown) {
+      objective[best] = with_reading(best, study_.executor(), Settle::fully);
+    }
+    if (anchor_) {
+      study_.residuals().anchor(anchor_->first, anchor_->second);
+    }
+    const double ahead = ahead_of(objective[best]);
     if (best == now || ahead > kTie) {
       return;
     }
