@@ -15,6 +15,8 @@ constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
 /// The same where residuals are calculated and rough by as much (a contact grows by nodes), and a
 /// square of a deviate counts over several.
 constexpr double kNear = 0.05;
+/// The same for a first look at what may be far behind.
+constexpr double kRoughly = 1.0;
 
 }  // namespace
 
@@ -116,11 +118,12 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
 
 ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals,
                         const Workers& executor, std::vector<double> start,
-                        const Eigen::MatrixXd* chord) {
+                        const Eigen::MatrixXd* chord, Settle settle) {
   FitSteps steps(composition, residuals, executor, std::move(start));
   if (steps.nothing_free()) {
     return steps.done(true);
   }
+  const bool roughly = settle == Settle::roughly;
   bool fresh = chord == nullptr;  // derivatives made, and no step taken since
   if (fresh) {
     steps.derive();
@@ -134,7 +137,7 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
   constexpr int kMostRefused = 4;
   for (int n = 0; n < kMostSteps && !converged; ++n) {
     const double promised = steps.promised();
-    if (fresh && promised < kNear) {
+    if (roughly ? promised < kRoughly : fresh && promised < kNear) {
       converged = true;
       break;
     }

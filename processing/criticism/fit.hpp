@@ -35,10 +35,14 @@ struct ModelFit {
 
 /// The same where residuals are dear: steps teach the derivatives (Broyden's method), which are
 /// made anew only where these stop coming true, and at the end.
-/// @param chord  derivatives from nearby to begin with; none: made where the fit starts
+/// @param chord   derivatives from nearby to begin with; none: made where the fit starts
+/// @param settle  roughly: to 1 of the objective by what the steps have taught, which is then what
+///                the covariance is made of
+enum class Settle { fully, roughly };
 [[nodiscard]] ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals,
                                       const Workers& executor, std::vector<double> start = {},
-                                      const Eigen::MatrixXd* chord = nullptr);
+                                      const Eigen::MatrixXd* chord = nullptr,
+                                      Settle settle = Settle::fully);
 
 /// Derivatives of the residuals by some of the free numbers, by differences.
 [[nodiscard]] Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& residuals,

@@ -18,7 +18,6 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kTie = 7.5;            ///< squares of normal deviates, as for bars
 constexpr double kAllowedRest = 0.03;   ///< of a misfit that certified effects explain
 constexpr double kUnexplained = -9.2;   ///< ln of the chance that noise leaves as much
 constexpr double kSpeedsDiffer = -9.2;  ///< ln of the chance of strengths so different
@@ -91,10 +90,13 @@ class Diagnostician {
       search.emplace(study_, first);
     }
     Studied current = first;
-    while (add_one(*search, current) && diagnosis_.effects.size() < options_.most_effects) {
+    while ((add_one(*search, current) || add_two(current)) &&
+           diagnosis_.effects.size() < options_.most_effects) {
       options_.progress("testing what remains after " + diagnosis_.effects.back());
       search.emplace(study_, current);
     }
+    weigh_beside_others(first, current);
+    weigh_beside_rest(first);
     conclude(first, current);
     return std::move(diagnosis_);
   }
@@ -133,31 +135,158 @@ class Diagnostician {
           {search.candidates(), search.directions(), current, search.log_trials(), search.scale()});
       note_refits(search, refits, current);
     }
+    const auto claimed = first_certified(search, refits, current);
+    if (!claimed) {
+      rest_.reset();
+      // A filed number that is set free has its place in every model already.
+      if (!refits.empty() && refits.front().evidence > kStandsBefore &&
+          !search.candidate(refits.front()).frees_prior) {
+        rest_ = Rest{search.candidate(refits.front()).id(), refits.front().studied};
+      }
+      return false;
+    }
+    const std::string id = search.candidate(*claimed).id();
+    diagnosis_.effects.push_back(id);
+    diagnosis_.tied_with[id] = beside(search, refits, *claimed);
+    take(claimed->studied, current);
+    return true;
+  }
+
+  /// Where two are missing, each spoils what the other foretells. So what came nearest to a claim
+  /// takes its place, and is weighed beside the next (weigh_beside_others), if that is certified.
+  bool add_two(Studied& current) {
+    if (!rest_ || diagnosis_.effects.size() + 2 > options_.most_effects) {
+      return false;
+    }
+    options_.progress("testing two effects, of which one is " + rest_->id);
+    const Rest nearest = *rest_;
+    Studied beside = nearest.studied;
+    ImpactSearch search(study_, beside);
+    const std::size_t place = diagnosis_.effects.size();
+    if (!add_one(search, beside)) {
+      rest_ = nearest;
+      return false;
+    }
+    diagnosis_.effects.insert(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(place),
+                              nearest.id);
+    current = std::move(beside);
+    return true;
+  }
+
+  [[nodiscard]] const ImpactRefit* first_certified(const ImpactSearch& search,
+                                                   const std::vector<ImpactRefit>& refits,
+                                                   const Studied& current) {
     for (const ImpactRefit& refit : refits) {
-      if (refit.evidence < refits.front().evidence - kTie) {
+      if (refit.evidence < refits.front().evidence - kStandsBefore) {
         break;
       }
-      const std::string id = search.candidate(refit).id();
-      if (!certified(search, refit, current)) {
-        set_verdict(id, "rejected");
+      if (certified(search, refit, current)) {
+        return &refit;
+      }
+      set_verdict(search.candidate(refit).id(), "rejected");
+    }
+    return nullptr;
+  }
+
+  /// What a refit does not stand before.
+  [[nodiscard]] static std::vector<std::string> beside(const ImpactSearch& search,
+                                                       const std::vector<ImpactRefit>& refits,
+                                                       const ImpactRefit& own) {
+    std::vector<std::string> ties;
+    for (const ImpactRefit& rival : refits) {
+      const std::string other = search.candidate(rival).id();
+      if (other != search.candidate(own).id() && rival.evidence > own.evidence - kStandsBefore) {
+        ties.push_back(other);
+      }
+    }
+    return ties;
+  }
+
+  void take(const Studied& refit, Studied& current) {
+    searched_ = refit.fit.objective();
+    anchor_.emplace(refit.composition, refit.fit.theta);
+    // Refits borrow their derivatives, and their fine forces from a ball without the effect.
+    current = study_.settled(refit);
+  }
+
+  [[nodiscard]] Studied without(const Model& model, const std::string& id) {
+    Model others = model;
+    std::erase_if(others.effects, [&](const EffectUse& use) { return use.id() == id; });
+    return study_.refit(others, study_.executor());
+  }
+
+  /// A number that every model here holds has no place to be taken from.
+  [[nodiscard]] static bool is_filed(const Studied& first, const std::string& id) {
+    return first.model.find(id) != nullptr;
+  }
+
+  /// What was found before other effects were may have stood for a mix of them, or be tied with one
+  /// that is in the model by now: each again in its place beside the others, until all stay.
+  void weigh_beside_others(const Studied& first, Studied& current) {
+    constexpr int kMostPasses = 3;
+    bool moved = diagnosis_.effects.size() > 1;
+    for (int pass = 0; moved && pass < kMostPasses; ++pass) {
+      moved = false;
+      for (const std::string& id : std::vector<std::string>(diagnosis_.effects)) {
+        moved = (!is_filed(first, id) && moves_beside_others(id, current)) || moved;
+      }
+    }
+  }
+
+  /// @return whether another took its place, or none
+  bool moves_beside_others(const std::string& id, Studied& current) {
+    options_.progress("weighing " + id + " beside what else was found");
+    const Studied others = without(current.model, id);
+    ImpactSearch search(study_, others);
+    const std::vector<ImpactRefit> refits = search.refits();
+    const ImpactRefit* claimed = first_certified(search, refits, others);
+    diagnosis_.tied_with.erase(id);
+    if (claimed == nullptr) {
+      std::erase(diagnosis_.effects, id);
+      set_verdict(id, "rejected");
+      take(others, current);
+      return true;
+    }
+    const std::string now = search.candidate(*claimed).id();
+    std::replace(diagnosis_.effects.begin(), diagnosis_.effects.end(), id, now);
+    diagnosis_.tied_with[now] = beside(search, refits, *claimed);
+    if (now == id) {
+      return false;
+    }
+    set_verdict(id, "rejected");
+    take(claimed->studied, current);
+    return true;
+  }
+
+  /// What is left may hold an effect that is not certified by itself. With it in the model, what
+  /// was claimed may be tied with more.
+  void weigh_beside_rest(const Studied& first) {
+    if (!rest_ || diagnosis_.effects.empty()) {
+      return;
+    }
+    for (const std::string& id : diagnosis_.effects) {
+      options_.progress("weighing " + id + " beside " + rest_->id);
+      if (is_filed(first, id) || rest_->studied.model.find(id) == nullptr) {
         continue;
       }
-      std::vector<std::string> ties;
-      for (const ImpactRefit& rival : refits) {
-        const std::string other = search.candidate(rival).id();
-        if (other != id && rival.evidence > refit.evidence - kTie) {
+      const Studied others = without(rest_->studied.model, id);
+      ImpactSearch search(study_, others);
+      const std::vector<ImpactRefit> refits = search.refits();
+      const auto own = std::find_if(refits.begin(), refits.end(), [&](const ImpactRefit& refit) {
+        return search.candidate(refit).id() == id;
+      });
+      if (own == refits.end()) {
+        continue;
+      }
+      std::vector<std::string>& ties = diagnosis_.tied_with[id];
+      for (const std::string& other : beside(search, refits, *own)) {
+        if (std::find(ties.begin(), ties.end(), other) == ties.end()) {
           ties.push_back(other);
         }
       }
-      diagnosis_.effects.push_back(id);
-      diagnosis_.tied_with[id] = ties;
-      searched_ = refit.studied.fit.objective();
-      // Refits borrow their derivatives, and their fine forces from a ball without the effect.
-      current = study_.settled(refit.studied);
-      anchor_.emplace(refit.studied.composition, refit.studied.fit.theta);
-      return true;
     }
-    return false;
+    diagnosis_.notes.push_back(
+        "what is claimed leaves something that is not certified; nearest is " + rest_->id);
   }
 
   /// Other readings of the law in three dimensions, without what was found: where one does as well,
@@ -172,20 +301,20 @@ class Diagnostician {
     options_.progress("weighing the other readings of the law in three dimensions");
     const auto now = static_cast<std::size_t>(std::lround(own->values[0].value));
     std::array<double, kReadingNames.size()> objective{};
+    const auto with_reading = [&](std::size_t r, const Workers& executor, Settle settle) {
+      Model model = first.model;
+      model.find(kReading)->values[0].value = static_cast<double>(r);
+      return study_.refit(model, executor, settle).fit.objective();
+    };
     // All around the same fine forces, as the search itself.
     if (anchor_) {
       study_.residuals().anchor(first.composition, first_anchor_);
     }
     study_.executor().run(kReadingNames.size(), [&](std::size_t r, std::size_t worker) {
       if (r != now) {
-        Model model = first.model;
-        model.find(kReading)->values[0].value = static_cast<double>(r);
-        objective[r] = study_.refit(model, serial_on(worker)).fit.objective();
+        objective[r] = with_reading(r, serial_on(worker), Settle::roughly);
       }
     });
-    if (anchor_) {
-      study_.residuals().anchor(anchor_->first, anchor_->second);
-    }
     std::size_t best = now;
     for (std::size_t r = 0; r < kReadingNames.size(); ++r) {
       if (r != now && std::isfinite(objective[r]) &&
@@ -193,16 +322,26 @@ class Diagnostician {
         best = r;
       }
     }
-    const double ahead =
-        (objective[best] - (anchor_ ? searched_ : current.fit.objective())) / scale_;
-    if (best == now || ahead > kTie) {
+    const auto ahead_of = [&](double objective_there) {
+      return (objective_there - (anchor_ ? searched_ : current.fit.objective())) / scale_;
+    };
+    constexpr double kRoughlyKnown = 1.0;
+    if (best != now &&
+        std::abs(std::abs(ahead_of(objective[best])) - kStandsBefore) < kRoughlyKnown) {
+      objective[best] = with_reading(best, study_.executor(), Settle::fully);
+    }
+    if (anchor_) {
+      study_.residuals().anchor(anchor_->first, anchor_->second);
+    }
+    const double ahead = ahead_of(objective[best]);
+    if (best == now || ahead > kStandsBefore) {
       return;
     }
     const std::string name = kReadingNames.at(best);
     if (diagnosis_.effects.empty()) {
       diagnosis_.notes.push_back("reading " + name + " of the law leaves less unexplained than " +
                                  kReadingNames.at(now) + ": choose it with `model new --reading`");
-    } else if (ahead < -kTie) {
+    } else if (ahead < -kStandsBefore) {
       diagnosis_.notes.push_back(
           "reading " + name + " of the law explains more than " + diagnosis_.effects.front() +
           " does: nothing is claimed; choose it with `model new --reading` and diagnose again");
@@ -373,7 +512,7 @@ class Diagnostician {
     if (const auto& second = study_.second_minimum()) {
       note +=
           fmt::format("; at {:.2f}, with other moduli, chi2 is more by {:.0f}, where {:.0f} tells",
-                      second->friction, second->behind, kTie * scale_);
+                      second->friction, second->behind, kStandsBefore * scale_);
     }
     diagnosis_.notes.push_back(std::move(note));
     const EffectUse* law = current.model.find("finite-strain-law");
@@ -419,6 +558,12 @@ class Diagnostician {
   /// Where the fine forces were taken for what was added last.
   std::optional<std::pair<Composition, std::vector<double>>> anchor_;
   bool overruled_ = false;  ///< by another reading of the law
+  struct Rest {
+    std::string id;
+    Studied studied;  ///< with it beside all that was found
+  };
+  /// What came nearest to a claim last, of what stands before nothing at all.
+  std::optional<Rest> rest_;
 };
 
 }  // namespace

@@ -21,6 +21,8 @@ namespace kolsky {
 /// over this, at least, and the solver's share of a number's variance is this many times what was
 /// allowed for.
 inline constexpr double kSolverDoubt = 6.0;
+/// Squares of normal deviates, over kSolverDoubt: by so much one explanation stands before another.
+inline constexpr double kStandsBefore = 7.5;
 
 /// Whitened residuals of impacts: the records and the rebound speeds less what the ball's solver
 /// and the bar foretell, at every shot's own speed. Nothing of the source is free but its arrival.

@@ -95,7 +95,8 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
         there[i] = number.inside(number.theta_of(filed.prior_mean + deviations * filed.prior_sd));
       }
     }
-    ModelFit other = fit_by_secants(composition, residuals, executor, there);
+    ModelFit other =
+        fit_by_secants(composition, residuals, executor, there, nullptr, Settle::roughly);
     if (std::isfinite(other.objective()) && !(fit.objective() <= other.objective())) {
       fit = std::move(other);
     }
@@ -171,26 +172,33 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
 std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, std::size_t worker) {
   const Candidate& candidate = candidates_[index];
   const Model model = with(base_.model, candidate, true);
-  const Composition composition(model, study_.campaign());
+  Composition composition(model, study_.campaign());
   const Workers alone = serial_on(worker);
   const Eigen::MatrixXd chord = borrowed(candidate, directions_[index], base_, composition);
   ModelFit fit = fit_by_secants(composition, study_.residuals(), alone,
                                 begin_near(candidate, directions_[index], base_, composition),
-                                chord.size() > 0 ? &chord : nullptr);
+                                chord.size() > 0 ? &chord : nullptr, Settle::roughly);
   if (!std::isfinite(fit.objective())) {
     // First order led to a ball that the solver refuses: begin at null.
     fit = fit_by_secants(composition, study_.residuals(), alone,
-                         carry(base_.composition, base_.fit.theta, composition));
+                         carry(base_.composition, base_.fit.theta, composition), nullptr,
+                         Settle::roughly);
   }
   if (is_filed_number(candidate)) {
     fit = from_afar(candidate, std::move(fit), composition,
                     carry(base_.composition, base_.fit.theta, composition), study_.residuals(),
                     alone);
   }
+  return described(index, model, std::move(composition), std::move(fit));
+}
+
+std::optional<ImpactRefit> ImpactSearch::described(std::size_t index, const Model& model,
+                                                   Composition composition, ModelFit fit) const {
   if (!std::isfinite(fit.objective()) || !fit.covariance.allFinite()) {
     return std::nullopt;
   }
-  ImpactRefit out{index, study_.finish(model, composition, std::move(fit))};
+  const Candidate& candidate = candidates_[index];
+  ImpactRefit out{index, study_.finish(model, std::move(composition), std::move(fit))};
   if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign(), Claim::fresh)) {
     return std::nullopt;
   }
@@ -220,6 +228,32 @@ void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
   }
 }
 
+/// Fits to the end what may be claimed, and what may stand beside it.
+void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
+  const auto best = std::max_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
+    return a.evidence < b.evidence;
+  });
+  constexpr double kInSight = -3.0;  ///< ln p: what a rough fit misses moves it by less than a half
+  constexpr double kNearBest = 15.0;  ///< twice what a tie needs
+  if (best == list.end() || with_search(best->log_p) > kInSight) {
+    return;
+  }
+  const double least = best->evidence - kNearBest;
+  study_.executor().run(list.size(), [&](std::size_t i, std::size_t worker) {
+    ImpactRefit& own = list[i];
+    if (own.evidence < least) {
+      return;
+    }
+    const Studied& rough = own.studied;
+    ModelFit fit = fit_by_secants(rough.composition, study_.residuals(), serial_on(worker),
+                                  rough.fit.theta, &rough.fit.jacobian);
+    if (auto refined = described(own.candidate, rough.model, rough.composition, std::move(fit))) {
+      own = std::move(*refined);
+    }
+  });
+  rate(list);
+}
+
 std::vector<ImpactRefit> ImpactSearch::refits() {
   const std::vector<std::size_t> chosen = worth_refitting();
   std::vector<std::optional<ImpactRefit>> done(chosen.size());
@@ -234,6 +268,7 @@ std::vector<ImpactRefit> ImpactSearch::refits() {
   }
   if (!list.empty()) {
     rate(list);
+    refine(list);
   }
   std::sort(list.begin(), list.end(),
             [](const auto& a, const auto& b) { return a.evidence > b.evidence; });

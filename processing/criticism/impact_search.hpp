@@ -49,6 +49,9 @@ class ImpactSearch {
  private:
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
   [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, std::size_t worker);
+  [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
+                                                     Composition composition, ModelFit fit) const;
+  void refine(std::vector<ImpactRefit>& list);
   void rate(std::vector<ImpactRefit>& list);
 
   ImpactStudy& study_;

@@ -72,9 +72,9 @@ ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composit
   if (!filed || !strained(composition, fit.theta)) {
     return fit;
   }
-  const auto again_at = [&](const std::vector<double>& theta) {
+  const auto again_at = [&](const std::vector<double>& theta, Settle settle) {
     residuals_.anchor(composition, theta, ImpactResiduals::AnchorBy::middle);
-    return fit_by_secants(composition, residuals_, executor_, theta);
+    return fit_by_secants(composition, residuals_, executor_, theta, nullptr, settle);
   };
   constexpr double kFiledDeviations = 3.0;
   const ModelValue& mu = friction->values[0];
@@ -85,8 +85,8 @@ ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composit
   const FreeNumber& number = composition.numbers()[own];
   std::vector<double> little = composition.start();
   little[own] = number.inside(number.theta_of(mu.prior_mean - kFiledDeviations * mu.prior_sd));
-  const ModelFit near = again_at(fit.theta);
-  const ModelFit other = again_at(again_at(little).theta);
+  const ModelFit near = again_at(fit.theta, Settle::fully);
+  const ModelFit other = again_at(again_at(little, Settle::roughly).theta, Settle::fully);
   const double ahead = near.objective() - other.objective();
   if (!std::isfinite(ahead)) {
     residuals_.anchor(composition, composition.start());
@@ -122,9 +122,9 @@ Studied ImpactStudy::fit(const Model& begun) {
   return finish(model, std::move(composition), std::move(fit));
 }
 
-Studied ImpactStudy::refit(const Model& model, const Workers& executor) {
+Studied ImpactStudy::refit(const Model& model, const Workers& executor, Settle settle) {
   Composition composition(model, campaign_);
-  ModelFit fit = fit_by_secants(composition, residuals_, executor);
+  ModelFit fit = fit_by_secants(composition, residuals_, executor, {}, nullptr, settle);
   return finish(model, std::move(composition), std::move(fit));
 }
 

@@ -79,7 +79,8 @@ class ImpactStudy {
   /// corrected by the shots' scatter.
   [[nodiscard]] Studied fit(const Model& begun);
   /// With the noise and the fine forces as they are by now.
-  [[nodiscard]] Studied refit(const Model& model, const Workers& executor);
+  [[nodiscard]] Studied refit(const Model& model, const Workers& executor,
+                              Settle settle = Settle::fully);
   /// The same, from where the model is and from where another fit left what both hold.
   [[nodiscard]] Studied refit_near(const Model& model, const Studied& other);
   /// With the fine forces taken where a fit has led, and fitted again from there. The whitener

@@ -12,7 +12,8 @@ namespace kolsky {
 /// now: the square root of the factor on its covariance, the largest that they do not contradict
 /// (95 %). By the likelihood of the groups' means, what the model's numbers take up counted out. Of
 /// the model as it is and with any one candidate's strength beside it, the likeliest counts: what
-/// is missing is not the calculation's.
+/// is missing is not the calculation's. With any two where these stand before every one by what
+/// tells effects apart.
 [[nodiscard]] double largest_solver_share(const ImpactWhitening& whitening, const ModelFit& base,
                                           const std::vector<Candidate>& candidates,
                                           const std::vector<Direction>& directions);

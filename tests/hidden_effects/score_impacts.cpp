@@ -71,7 +71,8 @@ const std::vector<Kind>& kinds() {
 }
 
 /// Which of these are hidden together.
-constexpr std::array<std::pair<std::size_t, std::size_t>, 2> kPairs{{{0, 7}, {2, 3}}};
+constexpr std::array<std::pair<std::size_t, std::size_t>, 4> kPairs{
+    {{0, 7}, {2, 3}, {3, 7}, {0, 6}}};
 
 struct Draw {
   Case drawn;

@@ -109,6 +109,20 @@ TEST(ImpactDiagnosis, ASecondRelaxationIsFound) {
   EXPECT_LT(diagnosis.held_out.after, kHeldOutOfNulls) << told(diagnosis);
 }
 
+/// The second of two effects is too small for a claim and too large for nothing: it is not passed
+/// over.
+TEST(ImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
+  testing::ImpactWishes own = two_speeds(16, 3);
+  own.core_b = 0.45;
+  own.bridge_b = 150.0;
+  own.across = 12;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+  EXPECT_TRUE(holds(diagnosis, "core-nonlinearity")) << told(diagnosis);
+  EXPECT_TRUE(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
+    return note.find("not certified; nearest is bridge-nonlinearity") != std::string::npos;
+  })) << told(diagnosis);
+}
+
 /// A core whose stress falls with strain somewhere is outside of what its law allows: the numbers
 /// that such a model gives are not to be taken without that word.
 TEST(ImpactDiagnosis, SofteningBeyondWhatTheLawAllowsIsNoted) {

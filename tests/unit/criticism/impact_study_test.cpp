@@ -31,6 +31,47 @@ TEST(ImpactStudy, AStrengthsDeviationHoldsAnotherCodesTruth) {
   EXPECT_GT(b.sd, 0.03) << "noise alone knows it better than codes agree";
 }
 
+/// How often a ball's residuals were asked for.
+class Counted : public ShotResiduals {
+ public:
+  explicit Counted(ImpactResiduals& residuals) : residuals_(residuals) {}
+  [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
+                                         const std::vector<double>& theta,
+                                         std::size_t worker) override {
+    ++times;
+    return residuals_.evaluate(composition, theta, worker);
+  }
+  [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
+                                              const std::vector<double>& theta, std::size_t shot,
+                                              std::size_t worker) override {
+    ++times;
+    return residuals_.evaluate_shot(composition, theta, shot, worker);
+  }
+  [[nodiscard]] std::size_t per_shot() const override { return residuals_.per_shot(); }
+  [[nodiscard]] bool shots_hang_together() const override { return true; }
+
+  std::size_t times = 0;
+
+ private:
+  ImpactResiduals& residuals_;
+};
+
+/// Rivals are told apart by tens of chi2, and not by what derivatives at the end tell.
+TEST(ImpactStudy, ARoughFitIsNearWithoutTheLastDerivatives) {
+  testing::ImpactWishes own = two_speeds(26, 2);
+  own.core_b = 0.6;
+  ThrownBalls balls(testing::impact_shots(own));
+  static_cast<void>(balls.study.fit(paper_with({})));
+  const Composition composition(paper_with({"core-nonlinearity"}), balls.campaign);
+  Counted fully(balls.study.residuals());
+  Counted roughly(balls.study.residuals());
+  const ModelFit fit = fit_by_secants(composition, fully, Workers{});
+  const ModelFit rough =
+      fit_by_secants(composition, roughly, Workers{}, {}, nullptr, Settle::roughly);
+  EXPECT_LT(rough.objective(), fit.objective() + 2.0);
+  EXPECT_LE(roughly.times + composition.numbers().size(), fully.times);
+}
+
 /// With the right effect what is left at 51 m/s is the noise and the other code's own mesh, which
 /// goes as that mesh is refined: our solver's error is not in it.
 TEST(ImpactStudy, TheRightEffectLeavesTheOtherCodesMesh) {

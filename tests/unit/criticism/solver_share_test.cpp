@@ -96,21 +96,27 @@ struct Impacts {
   std::unique_ptr<ImpactWhitening> whitening;
 };
 
-/// A fit of two numbers to such means, and one candidate beside it.
-/// @param missing  of the candidate's effect
-double found(const Impacts& impacts, double share, double missing, std::mt19937_64& random) {
-  const Eigen::VectorXd white =
-      impacts.white(impacts.drawn(share, random) + missing * impacts.effect(1.0));
+/// A fit of two numbers to such means, and candidates beside it.
+/// @param missing  of every candidate's effect
+double found(const Impacts& impacts, double share, double missing, std::mt19937_64& random,
+             const std::vector<double>& cycles = {1.0}) {
+  Eigen::VectorXd means = impacts.drawn(share, random);
+  for (const double own : cycles) {
+    means += missing * impacts.effect(own);
+  }
+  const Eigen::VectorXd white = impacts.white(means);
   ModelFit fit;
   fit.jacobian.resize(white.size(), 2);
   fit.jacobian << impacts.white(impacts.effect(0.0)), impacts.white(impacts.effect(2.0));
   fit.information = fit.jacobian.transpose() * fit.jacobian;
   const Eigen::Vector2d pull = fit.jacobian.transpose() * white;
   fit.residual = white - fit.jacobian * solve_symmetric(fit.information, pull);
-  Candidate candidate;
-  Direction direction;
-  direction.columns = impacts.white(impacts.effect(1.0));
-  return largest_solver_share(*impacts.whitening, fit, {candidate}, {direction});
+  std::vector<Direction> directions(cycles.size());
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    directions[i].columns = impacts.white(impacts.effect(cycles[i]));
+  }
+  return largest_solver_share(*impacts.whitening, fit, std::vector<Candidate>(cycles.size()),
+                              directions);
 }
 
 TEST(SolverShare, IsTheLargestThatRecordsDoNotContradict) {
@@ -130,6 +136,39 @@ TEST(SolverShare, IsTheLargestThatRecordsDoNotContradict) {
       EXPECT_LE(below, 33) << share << " " << missing;
       EXPECT_LT(sum, 1.35) << share << " " << missing;
     }
+  }
+}
+
+/// One strength leaves the other effect, which would pass for an error of the calculation.
+TEST(SolverShare, IsKnownBesideTwoThatAreMissing) {
+  const Impacts impacts;
+  std::mt19937_64 random(7);
+  constexpr double kShare = 0.3;
+  int below = 0;
+  double sum = 0.0;
+  constexpr int kDraws = 200;
+  for (int n = 0; n < kDraws; ++n) {
+    const double own = found(impacts, kShare, 0.2, random, {1.0, 3.0});
+    below += own < kShare ? 1 : 0;
+    sum += own / kShare / kDraws;
+  }
+  // One in twenty; three deviations of that.
+  EXPECT_LE(below, 19);
+  EXPECT_LT(sum, 1.35);
+}
+
+/// Two strengths that are free take up some of what another code does smoothly: not at the cost of
+/// what is allowed for that.
+TEST(SolverShare, IsNotLessForCandidatesThatMissNothing) {
+  const Impacts impacts;
+  std::mt19937_64 random(8);
+  for (const double share : {0.3, 0.9}) {
+    int below = 0;
+    for (int n = 0; n < 200; ++n) {
+      below += found(impacts, share, 0.0, random, {1.0, 3.0, 4.0, 5.0}) < share ? 1 : 0;
+    }
+    // One in twenty; three deviations of that.
+    EXPECT_LE(below, 19) << share;
   }
 }
 
