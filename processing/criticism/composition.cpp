@@ -59,6 +59,15 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
   if (bench.input.density_kg_m3.sd > 0.0) {
     list.push_back(filed("bar-density", {relative_sd(bench.input.density_kg_m3)}));
   }
+  if (bench.output && bench.output->length_m.sd > 0.0) {
+    list.push_back(filed("output-bar-length", {bench.output->length_m.sd}));
+  }
+  if (bench.output && bench.output->density_kg_m3.sd > 0.0) {
+    // Each bar's is off by itself, but one moves both.
+    list.push_back(
+        filed("output-bar-density", {std::hypot(relative_sd(bench.input.density_kg_m3),
+                                                relative_sd(bench.output->density_kg_m3))}));
+  }
   if (bench.input.youngs_modulus_Pa && bench.input.youngs_modulus_Pa->sd > 0.0) {
     const double sd = relative_sd(*bench.input.youngs_modulus_Pa);
     list.push_back(filed("bar-modulus", {sd}));
