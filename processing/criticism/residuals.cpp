@@ -174,6 +174,18 @@ void WhiteResiduals::prepare_spectra() {
   }
 }
 
+/// Takes off what lies beyond the judged band: noise alone, by what a band is judged for.
+void WhiteResiduals::smooth(Workspace& work, std::vector<double>& record) const {
+  std::fill(work.record.begin(), work.record.end(), 0.0);
+  std::copy(record.begin(), record.end(),
+            work.record.begin() + static_cast<std::ptrdiff_t>(band_.lead));
+  work.whole.forward(work.record, work.full);
+  for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+    work.full[k] *= damped_filter_[k];
+  }
+  work.whole.inverse({work.full.data(), band_.bins_carried}, record, band_.lead);
+}
+
 /// Undoes what effects say was done to the records after the strain was sensed.
 void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
                                    std::size_t of_shot) const {
@@ -204,6 +216,7 @@ void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEff
       for (std::size_t n = 0; n < work.fine_record.size(); ++n) {
         read[band_.edge + n] -= work.fine_record[n];
       }
+      smooth(work, read);
       std::vector<double> straight = read;
       record.straighten(j, straight);
       for (std::size_t n = 0; n < read.size(); ++n) {
@@ -415,6 +428,7 @@ std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) 
   const auto first = record.begin() + static_cast<std::ptrdiff_t>(band_.edge);
   std::transform(work.fine_record.begin(), work.fine_record.end(), first, first,
                  [](double noise, double read) { return read - noise; });
+  smooth(work, record);
   return record;
 }
 

@@ -166,6 +166,7 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] std::vector<double> judged_part(Workspace& work, const Spectrum& damped) const;
   void measure_signal();
   void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
+  void smooth(Workspace& work, std::vector<double>& record) const;
   void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
                      std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;

@@ -1,6 +1,8 @@
 #include "processing/criticism/unexplained.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 
 #include "processing/algebra/algebra.hpp"
@@ -17,6 +19,9 @@ namespace {
 /// Degrees of freedom by which the quiet before a single pulse tells slow noise.
 constexpr double kOneStretch = 3.0;
 
+/// How much smooth distortions weigh beside all that is left: they are few, and find what is small.
+constexpr double kOfDistortions = 0.8;
+
 /// Columns of one kind of distortion at one place, and where they stand among all.
 struct Kind {
   Eigen::Index first = 0;
@@ -26,6 +31,7 @@ struct Kind {
 struct Distortions {
   Eigen::MatrixXd columns;
   std::vector<Kind> kinds;
+  Eigen::VectorXd sizes;  ///< what each does at its usual size, of which the columns are a unit
 };
 
 /// Residuals of the records, and below them those of the priors.
@@ -61,6 +67,7 @@ Distortions unit_columns(Study& study, const Studied& studied) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     out.columns.middleCols(out.kinds[i].first, out.kinds[i].count) = list[i];
   }
+  out.sizes = out.columns.colwise().norm();
   out.columns.colwise().normalize();
   return out;
 }
@@ -72,7 +79,8 @@ Extended clear_columns(Study& study, const Studied& studied) {
   const Eigen::MatrixXd taken = fit.covariance * (fit.jacobian.transpose() * unit.columns);
   const Eigen::Index rows = unit.columns.rows();
   const auto numbers = static_cast<Eigen::Index>(fit.theta.size());
-  Extended out{{Eigen::MatrixXd::Zero(rows + numbers, unit.columns.cols()), std::move(unit.kinds)},
+  Extended out{{Eigen::MatrixXd::Zero(rows + numbers, unit.columns.cols()), std::move(unit.kinds),
+                std::move(unit.sizes)},
                Eigen::VectorXd::Zero(rows + numbers)};
   Eigen::MatrixXd& columns = out.distortions.columns;
   columns.topRows(rows) = unit.columns - fit.jacobian * taken;
@@ -90,13 +98,26 @@ Extended clear_columns(Study& study, const Studied& studied) {
 }
 
 /// Orthonormal directions that the distortions span.
-Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns) {
+///
+/// Those along which a distortion as large as the signal would not show by three deviations are
+/// left out: where the model or the source takes up so much of them, what stays is made of the
+/// noise that is in the signal, and finds itself in the residuals.
+Eigen::MatrixXd directions_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& sizes) {
   constexpr double kResolved = 1e-4;
+  constexpr double kUsual = 1e-3;  // of the signal: what a distortion is at its usual size
+  constexpr double kShown = 3.0;
   const SymmetricEigen solver(columns.transpose() * columns);
-  const Eigen::VectorXd& values = solver.eigenvalues();
-  const Eigen::Index count = (values.array() > kResolved).count();
-  return columns * solver.eigenvectors().rightCols(count) *
-         values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+  Eigen::MatrixXd directions(columns.rows(), columns.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    const Eigen::VectorXd share = solver.eigenvectors().col(i);
+    const double power = solver.eigenvalues()[i];
+    if (power > kResolved &&
+        std::sqrt(power) > kShown * kUsual * share.cwiseQuotient(sizes).norm()) {
+      directions.col(count++) = columns * share / std::sqrt(power);
+    }
+  }
+  return directions.leftCols(count);
 }
 
 /// Power of what differs between the shots in each direction, over its expectation under noise of
@@ -159,11 +180,19 @@ double combined(double log_p, const std::vector<double>& by_kind) {
   return combined_log_p(log_ps, weights);
 }
 
+/// ln of the chance that noise leaves as much in all directions together, by what differs between
+/// the shots.
+double log_p_of_all(const Misfit& misfit, std::size_t shots) {
+  const double freedom = misfit.degrees_of_freedom;
+  return log_f_tail(misfit.chi2_reduced / noise_of(misfit, shots), freedom,
+                    freedom * (1.0 - 1.0 / static_cast<double>(shots)));
+}
+
 }  // namespace
 
 Unexplained unexplained(Study& study, const Studied& studied) {
   const auto [distortions, residual] = clear_columns(study, studied);
-  const Eigen::MatrixXd directions = directions_of(distortions.columns);
+  const Eigen::MatrixXd directions = directions_of(distortions.columns, distortions.sizes);
   const std::size_t per_shot = study.residuals().per_shot();
   const std::size_t shots = study.campaign().shots.size();
   const auto freedom = static_cast<double>(directions.cols());
@@ -182,14 +211,17 @@ Unexplained unexplained(Study& study, const Studied& studied) {
   std::vector<double> by_kind;
   for (const Kind& kind : distortions.kinds) {
     const Eigen::MatrixXd own =
-        directions_of(distortions.columns.middleCols(kind.first, kind.count));
+        directions_of(distortions.columns.middleCols(kind.first, kind.count),
+                      distortions.sizes.segment(kind.first, kind.count));
     if (own.cols() > 0) {
       const double power = between_shots(own, residual, per_shot, shots).mean();
       by_kind.push_back(log_chance(own, residual, power, noise));
     }
   }
   const double log_p = log_f_tail(found / freedom / noise.power, equal, noise.freedom);
-  return {combined(log_p, by_kind), std::max(0.0, found / noise.power - freedom)};
+  const std::array log_ps{combined(log_p, by_kind), log_p_of_all(studied.misfit, shots)};
+  const std::array weights{kOfDistortions, 1.0 - kOfDistortions};
+  return {combined_log_p(log_ps, weights), std::max(0.0, found / noise.power - freedom)};
 }
 
 }  // namespace kolsky

@@ -14,9 +14,9 @@ struct Unexplained {
 /// Distortions by frequency, amplitude and shot (distortion.hpp), by time (wander.hpp) and of the
 /// specimen's law (departure.hpp), clear of the model's own numbers: all of them together, and each
 /// kind at each gauge by itself, as what is missing acts at one place and is easily lost among all
-/// directions. With two shots or more the noise in their directions is taken from what differs
-/// between the shots there, which slow noise raises above its spectrum; of one shot it is known by
-/// the quiet before its pulse alone, which is hardly at all.
+/// directions; and all that is left, of whatever shape. With two shots or more the noise in their
+/// directions is taken from what differs between the shots there, which slow noise raises above its
+/// spectrum; of one shot it is known by the quiet before its pulse alone, which is hardly at all.
 [[nodiscard]] Unexplained unexplained(Study& study, const Studied& studied);
 
 }  // namespace kolsky

@@ -6,6 +6,27 @@
 
 namespace kolsky {
 
+namespace {
+
+/// A gauge's signal where it stands out of its noise: elsewhere it is noise, which a distortion
+/// that grows in time would make the most of where no pulse is.
+std::vector<double> standing_out(std::vector<double> signal, const CampaignShot& shot,
+                                 std::size_t gauge) {
+  constexpr double kOut = 4.0;  // deviations of the noise
+  double power = 0.0;
+  for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
+    power += shot.strain[gauge][n] * shot.strain[gauge][n];
+  }
+  power *= kOut * kOut / static_cast<double>(std::max<std::size_t>(1, shot.quiet_samples));
+  for (double& value : signal) {
+    const double square = value * value;
+    value *= square > 0.0 ? square / (square + power) : 0.0;
+  }
+  return signal;
+}
+
+}  // namespace
+
 Wander::Wander(WhiteResiduals& residuals)
     : Effect({
           .id = "wander",
@@ -24,7 +45,7 @@ Wander::Wander(WhiteResiduals& residuals)
   for (std::size_t n = 0; n < residuals.campaign().shots.size(); ++n) {
     std::vector<std::vector<double>> of_shot;
     for (std::size_t j = 0; j < residuals.campaign().gauges(); ++j) {
-      of_shot.push_back(residuals.signal(n, j));
+      of_shot.push_back(standing_out(residuals.signal(n, j), residuals.campaign().shots[n], j));
     }
     signal_.push_back(std::move(of_shot));
   }
