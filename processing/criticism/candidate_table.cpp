@@ -114,9 +114,9 @@ std::vector<CandidateResult> first_order_table(const Tried& tried) {
 }
 
 void note_refits(const Search& search, const std::vector<Refit>& refits,
-                 const std::vector<Certification>& held_out, std::size_t residuals_per_shot,
-                 std::vector<CandidateResult>& table) {
-  for (std::size_t i = 0; i < refits.size(); ++i) {
+                 const std::vector<Certification>& held_out, const std::vector<std::size_t>& which,
+                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table) {
+  for (const std::size_t i : which) {
     const Refit& refit = refits[i];
     for (CandidateResult& result : table) {
       if (result.effect == search.candidates()[refit.candidate].id()) {

@@ -36,11 +36,12 @@ struct Tried {
 /// First-order strengths and limits of every effect beside the model that was searched.
 [[nodiscard]] std::vector<CandidateResult> first_order_table(const Tried& tried);
 
-/// Puts what the refits found in the place of first order.
+/// Puts what refits found in the place of first order.
 /// @param held_out  one per refit
+/// @param which     of the refits
 void note_refits(const Search& search, const std::vector<Refit>& refits,
-                 const std::vector<Certification>& held_out, std::size_t residuals_per_shot,
-                 std::vector<CandidateResult>& table);
+                 const std::vector<Certification>& held_out, const std::vector<std::size_t>& which,
+                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table);
 
 /// Strength and deviation of an effect in a fitted model.
 void set_strength(const Studied& studied, const std::string& id, CandidateResult& result);

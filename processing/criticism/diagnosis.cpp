@@ -33,6 +33,27 @@ HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
           study.campaign().shots.size() > 1 ? after.misfit.noise_scale : 1.0};
 }
 
+/// Whether an effect is so strong that nothing is built so: then noise was fitted with it.
+bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr) {
+    return false;
+  }
+  double peak = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    peak = std::max(peak, shot.facts.peak_strain);
+  }
+  const auto& parameters = use->effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const double size = std::abs(use->values[p].value);
+    const auto beyond = [](double own, double most) { return most > 0.0 && own > most; };
+    if (beyond(size, parameters[p].most) || beyond(size * peak, parameters[p].most_times_peak)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string name_of(DiagnosisVerdict verdict) {
@@ -112,7 +133,9 @@ class Diagnostician {
     const std::vector<Certification> held_out = certify(search, refits, base);
     const std::size_t per_shot = study_.residuals().per_shot();
     if (note) {
-      note_refits(search, refits, held_out, per_shot, diagnosis_.candidates);
+      std::vector<std::size_t> all(refits.size());
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      note_refits(search, refits, held_out, all, per_shot, diagnosis_.candidates);
     }
     std::optional<std::size_t> best;
     std::optional<std::size_t> leading;
@@ -134,7 +157,8 @@ class Diagnostician {
       const Safeguards& safeguards = options_.safeguards;
       if ((safeguards.held_out && !foretold) ||
           (safeguards.shot_agreement &&
-           !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot))) {
+           !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) ||
+          beyond_belief(refit.studied, id, study_.campaign())) {
         set_verdict(id, "rejected");
         continue;
       }
@@ -153,6 +177,9 @@ class Diagnostician {
       if (other != id && lead(refits[i], refits[*best]) < kTie) {
         ties.push_back(other);
       }
+    }
+    if (!note) {
+      note_refits(search, refits, held_out, confirmed, per_shot, diagnosis_.candidates);
     }
     return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
   }
@@ -281,7 +308,8 @@ class Diagnostician {
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
     const bool rest =
-        options_.safeguards.unknown && (remains || at_all_gauges_but_one() || more_than_two());
+        options_.safeguards.unknown &&
+        (remains || at_all_gauges_but_one() || more_than_two() || any_beyond_belief(current));
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (rest) {
@@ -319,6 +347,13 @@ class Diagnostician {
       diagnosis_.notes.emplace_back(
           "one shot: held out were parts of its record, not shots; repeat the shot to certify");
     }
+  }
+
+  /// Beside what was found later, what was found first may have grown out of all bounds.
+  [[nodiscard]] bool any_beyond_belief(const Studied& current) const {
+    return std::any_of(
+        diagnosis_.effects.begin(), diagnosis_.effects.end(),
+        [&](const std::string& id) { return beyond_belief(current, id, study_.campaign()); });
   }
 
   [[nodiscard]] double repeated_excess(const Misfit& misfit) const {

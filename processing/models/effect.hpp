@@ -34,6 +34,10 @@ struct EffectParameter {
   bool chosen = false;       ///< one of its starts and nothing between (a neighbour, a harmonic)
   /// The records change with this power of it near null: fits move value^power.
   double power = 1.0;
+  /// |value|, or |value| x peak strain, beyond which nothing is built so and a fit is one to noise
+  /// or to what the library lacks; 0: no such limit.
+  double most = 0.0;
+  double most_times_peak = 0.0;
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };

@@ -13,8 +13,15 @@ class BridgeNonlinearity final : public Effect {
             .definition = "reading = e (1 + b e)",
             .reference = "effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
-            .parameters = {{"b", "-", 0.0, -500.0, 500.0, 0.5, {}}},
+            .parameters = {strength()},
         }) {}
+
+  /// Semiconductor gauges, the least linear, bend a few per cent at a millistrain.
+  static EffectParameter strength() {
+    EffectParameter b{"b", "-", 0.0, -500.0, 500.0, 0.5, {}};
+    b.most_times_peak = 0.1;
+    return b;
+  }
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
     scene.record.bridge_b = values[0];
