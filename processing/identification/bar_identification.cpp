@@ -237,11 +237,13 @@ struct Open {
   }
 };
 
-/// The cheapest theory first: the others begin from where it ended.
+/// The cheapest theory first: the others, and its other end, begin from where it ended.
 void look_at_all(const Open& open, Explanations& explanations) {
   std::vector<BarTheory> theories = open.with_end(open.ends.front());
-  explanations.look({theories.front()});
-  theories.erase(theories.begin());
+  const BarTheory cheapest = theories.front();
+  explanations.look({cheapest});
+  theories.front() = {cheapest.waves, cheapest.solid, open.ends.back()};
+  std::rotate(theories.begin(), theories.begin() + 1, theories.end());
   explanations.look(theories);
   const BarTheory* leading = explanations.leading();
   if (leading == nullptr || open.ends.size() == 1) {

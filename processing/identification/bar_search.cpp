@@ -129,7 +129,9 @@ BarPlace BarSearch::looked_at(const Eigen::VectorXd& at, double objective) {
 }
 
 /// Levenberg's and Marquardt's search, undamped as long as it goes downhill.
-void BarSearch::minimise(BarLikelihood::Shots shots, double negligible_gain) {
+bool BarSearch::minimise(BarLikelihood::Shots shots, double negligible_gain, double hopeless) {
+  // A foretold gain is of the same size as what a step gains, but far from the end.
+  constexpr double kForetold = 10.0;
   const std::size_t logs = likelihood_.model().solid_parameters();
   const double judged =
       static_cast<double>(likelihood_.residuals()) /
@@ -145,7 +147,10 @@ void BarSearch::minimise(BarLikelihood::Shots shots, double negligible_gain) {
     // Where the model leaves more than noise, deviations are that much wider.
     const double widened = std::max(1.0, place_.objective / judged);
     if (gain < negligible_gain * widened) {
-      return;
+      return true;
+    }
+    if (damping == 0.0 && place_.objective - kForetold * gain > hopeless) {
+      return false;
     }
     const Eigen::VectorXd next = place_.at + step;
     const double objective = objective_at(next, shots);
@@ -154,11 +159,11 @@ void BarSearch::minimise(BarLikelihood::Shots shots, double negligible_gain) {
           damping > 0.0 && place_.objective - objective < kDoubtfulGain * widened;
       place_ = looked_at(next, objective);
       if (in_a_valley) {
-        return;
+        return true;
       }
       damping = damping > 1e-6 ? damping / 10.0 : 0.0;
     } else if (gain < kDoubtfulGain * widened) {
-      return;
+      return true;
     } else {
       damping = std::max(1e-3, damping * 10.0);
     }
@@ -170,7 +175,7 @@ void BarSearch::go_to(const std::vector<double>& at) {
   place_.at = Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size()));
 }
 
-void BarSearch::roughly(const std::vector<double>& start) {
+void BarSearch::roughly(const std::vector<double>& start, double hopeless) {
   place_.at = prior_.centre;
   if (!start.empty()) {
     go_to(start);
@@ -178,8 +183,7 @@ void BarSearch::roughly(const std::vector<double>& start) {
   for (int round = 0; round < 2; ++round) {
     const Eigen::VectorXd before = place_.at;
     likelihood_.use(likelihood_.weights_at(at(), false));
-    minimise(BarLikelihood::Shots::as_one, kNearEnough);
-    if (place_.at == before) {
+    if (!minimise(BarLikelihood::Shots::as_one, kNearEnough, hopeless) || place_.at == before) {
       return;  // as the other round would
     }
   }
@@ -250,10 +254,10 @@ BarFit BarSearch::describe(double objective) const {
 }
 
 std::unique_ptr<BarSearch> rough_search(const BarData& data, const BarTheory& theory,
-                                        const std::vector<double>& start) {
+                                        const std::vector<double>& start, double hopeless) {
   auto search = std::make_unique<BarSearch>(data, theory);
   try {
-    search->roughly(start);
+    search->roughly(start, hopeless);
   } catch (const InputError&) {
     if (!may_be_elastic(theory)) {
       throw;

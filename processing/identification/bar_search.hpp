@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -40,7 +41,10 @@ class BarSearch {
   /// With all shots as one and the noise bin by bin, twice: weights turn with the phase of the
   /// waves, so that those of where it began do not do for where it ends.
   /// @param start  in BarModel's parameters; empty: from the pulses' speed and decay
-  void roughly(const std::vector<double>& start);
+  /// @param hopeless  the chi2 above which it need not go on, once its steps gain far less than
+  /// lies
+  ///   between
+  void roughly(const std::vector<double>& start, double hopeless = HUGE_VAL);
   /// chi2 of all shots as one where that ended.
   [[nodiscard]] double rough_chi2() const { return place_.objective; }
 
@@ -62,7 +66,8 @@ class BarSearch {
   void go_to(const std::vector<double>& at);
   [[nodiscard]] double objective_at(const Eigen::VectorXd& at, BarLikelihood::Shots shots);
   [[nodiscard]] BarPlace looked_at(const Eigen::VectorXd& at, double objective);
-  void minimise(BarLikelihood::Shots shots, double negligible_gain);
+  /// @return whether it came to an end below `hopeless`
+  bool minimise(BarLikelihood::Shots shots, double negligible_gain, double hopeless = HUGE_VAL);
   [[nodiscard]] BarFit describe(double objective) const;
 
   BarLikelihood likelihood_;
@@ -73,7 +78,8 @@ class BarSearch {
 /// A rough search; where it does not end, from the elastic bar.
 /// @throws InputError where it does not end even then
 [[nodiscard]] std::unique_ptr<BarSearch> rough_search(const BarData& data, const BarTheory& theory,
-                                                      const std::vector<double>& start);
+                                                      const std::vector<double>& start,
+                                                      double hopeless = HUGE_VAL);
 
 /// Where a bar shows no loss, its retardation can be anything and a search of three elements may
 /// not end; it does from the elastic bar.

@@ -100,7 +100,7 @@ Explanations::Entry& Explanations::rough(const BarTheory& theory) {
 
 void Explanations::search_roughly(Entry& entry, const std::vector<double>& start) {
   try {
-    auto search = rough_search(data_, entry.theory, start);
+    auto search = rough_search(data_, entry.theory, start, hopeless());
     if (!entry.search || search->rough_chi2() < entry.rough_chi2) {
       entry.rough_chi2 = search->rough_chi2();
       entry.search = std::move(search);
@@ -142,6 +142,14 @@ void Explanations::lead_with(Entry& entry) {
   if (entry.search && (leader_ == nullptr || entry.rough_chi2 < leader_->rough_chi2)) {
     leader_ = &entry;
   }
+}
+
+/// So far behind the leading one that a closer search would leave it there.
+double Explanations::hopeless() const {
+  constexpr double kFarther = 10.0;
+  return leader_ != nullptr
+             ? leader_->rough_chi2 + kFarther * kFarBehind * std::max(1.0, left_over_noise())
+             : HUGE_VAL;
 }
 
 double Explanations::left_over_noise() const {

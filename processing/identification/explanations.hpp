@@ -91,6 +91,7 @@ class Explanations {
   using Start = std::function<std::unique_ptr<BarSearch>(const BarData&, const BarTheory&)>;
   void try_from(Entry& entry, const Start& start);
   [[nodiscard]] Alternative left_roughly(const Entry& entry) const;
+  [[nodiscard]] double hopeless() const;
   [[nodiscard]] bool far_behind(const Entry& entry) const;
   [[nodiscard]] const Entry* nearest(const BarTheory& theory) const;
   void search_roughly(Entry& entry, const std::vector<double>& start);
