@@ -13,9 +13,9 @@ namespace {
 /// some percent of itself; to be told apart takes 10.
 constexpr double kFarBehind = 400.0;
 constexpr double kNoWorse = 1.0;
-/// What another parameter must gain to be believed is three times as much; less than this by a
+/// What another parameter must gain to be believed is ten times as much; less than this by a
 /// rough search does not become that by a closer one.
-constexpr double kNoBetter = 10.0;
+constexpr double kNoBetter = 3.0;
 
 /// A solid that three elements nearly are, as logarithms: a little away from them, where what it
 /// has more still shows.
@@ -82,7 +82,7 @@ const Explanations::Entry* Explanations::nearest(const BarTheory& theory) const 
 
 void Explanations::start_roughly(Entry& entry) {
   if (entry.near != nullptr) {
-    search_roughly(entry, entry.near->search->at());
+    search_roughly(entry, entry.near->search->at(), hopeless());
   }
   if (!entry.search) {
     search_roughly(entry, {});
@@ -98,9 +98,9 @@ Explanations::Entry& Explanations::rough(const BarTheory& theory) {
   return entry;
 }
 
-void Explanations::search_roughly(Entry& entry, const std::vector<double>& start) {
+void Explanations::search_roughly(Entry& entry, const std::vector<double>& start, double hopeless) {
   try {
-    auto search = rough_search(data_, entry.theory, start, hopeless());
+    auto search = rough_search(data_, entry.theory, start, hopeless);
     if (!entry.search || search->rough_chi2() < entry.rough_chi2) {
       entry.rough_chi2 = search->rough_chi2();
       entry.search = std::move(search);
@@ -225,7 +225,7 @@ std::vector<const BarFit*> Explanations::at(const std::vector<BarTheory>& theori
 const BarFit* Explanations::at_if_better(const BarTheory& theory) {
   Entry& entry = rough(theory);
   if (entry.search && !entry.fit && leader_ != nullptr &&
-      entry.rough_chi2 > leader_->rough_chi2 - kNoBetter * std::max(1.0, left_over_noise())) {
+      entry.rough_chi2 > leader_->rough_chi2 - kNoBetter) {
     entry.left_behind = true;
     return nullptr;
   }

@@ -94,7 +94,8 @@ class Explanations {
   [[nodiscard]] double hopeless() const;
   [[nodiscard]] bool far_behind(const Entry& entry) const;
   [[nodiscard]] const Entry* nearest(const BarTheory& theory) const;
-  void search_roughly(Entry& entry, const std::vector<double>& start);
+  /// @param hopeless  as BarSearch has it: only for what begins near its end
+  void search_roughly(Entry& entry, const std::vector<double>& start, double hopeless = HUGE_VAL);
 
   const BarData& data_;
   Workers workers_;
