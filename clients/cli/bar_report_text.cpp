@@ -40,8 +40,8 @@ std::string alternatives_text(const BarIdentification& result) {
   }
   const double best = result.alternatives.front().log_evidence;
   std::string text =
-      "  tried, best first (log evidence under the best's, reduced chi2; roughly: far behind, not "
-      "searched further)\n";
+      "  tried, best first (log evidence under the best's, reduced chi2; roughly: no better by a "
+      "rough search, not searched further)\n";
   for (const Alternative& a : result.alternatives) {
     text += fmt::format("    {:<11}{:<20}far end {:<8}", name_of(a.theory.waves),
                         a.theory.lossless ? "elastic" : name_of(a.theory.solid),
@@ -146,8 +146,7 @@ Figure bar_figure(const BarIdentification& result, const ForetoldShot& foretold)
                            {{"alpha", s.frequency_Hz, s.alpha_per_m.mean}}});
   figure.panels.push_back(
       {"phase velocity", {"frequency", "Hz"}, {"c", "m/s"}, {{"c", s.frequency_Hz, speed}}});
-  Panel waves{
-      "measured and foretold from the first gauge", {"time", "s"}, {"strain", "strain"}, {}};
+  Panel waves{"measured, and foretold", {"time", "s"}, {"strain", "strain"}, {}};
   Panel left{"measured less foretold", {"time", "s"}, {"strain", "strain"}, {}};
   for (const ForetoldGauge& gauge : foretold.gauges) {
     waves.series.push_back({gauge.name, foretold.time_s, gauge.measured});

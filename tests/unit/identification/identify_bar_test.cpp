@@ -174,7 +174,10 @@ TEST(IdentifyBar, AnEndThatIsLeftRoughlyIsAsFarBehindAsItsSearchFindsIt) {
 
 TEST(IdentifyBar, ThreadsShareTheSearchWithoutMovingIt) {
   Workers backwards;
-  backwards.run = [](std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
+  std::size_t most_at_once = 0;
+  backwards.run = [&](std::size_t count,
+                      const std::function<void(std::size_t, std::size_t)>& work) {
+    most_at_once = std::max(most_at_once, count);
     std::vector<std::jthread> threads;
     for (std::size_t index = count; index-- > 0;) {
       threads.emplace_back([&work, index] { work(index, 0); });
@@ -183,6 +186,7 @@ TEST(IdentifyBar, ThreadsShareTheSearchWithoutMovingIt) {
   const auto shots = draw(paper_bar(), 3, 6);
   const auto one = identify_bar(shots, {});
   const auto several = identify_bar(shots, {}, backwards);
+  EXPECT_GE(most_at_once, 4U);
   EXPECT_EQ(one.fit.at, several.fit.at);
   EXPECT_EQ(one.spectrum.J1_per_Pa.mean, several.spectrum.J1_per_Pa.mean);
   ASSERT_EQ(one.alternatives.size(), several.alternatives.size());
