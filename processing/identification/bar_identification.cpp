@@ -365,29 +365,35 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
                   const BarFit& three_element, Explanations& explanations,
                   BarIdentification& result) {
   const std::vector<SolidKind> kinds = solids_to_try(options, three_element);
-  const Explanations::Solids solids = explanations.solids(three_element, kinds);
+  Explanations::Solids solids = explanations.solids(three_element, kinds);
   result.three_element = solids.three_element;
   result.fit = solids.three_element;
   result.solid.asked = options.solid.has_value();
   if (options.solid && *options.solid != SolidKind::three_element) {
     const auto at = std::find(kinds.begin(), kinds.end(), *options.solid) - kinds.begin();
-    if (solids.others[static_cast<std::size_t>(at)] == nullptr) {
-      (void)fit_bar(data, {three_element.theory, *options.solid, three_element.far_end});
-      throw InputError("fit", "does not converge", "try another family of solids");
-    }
-    result.fit = explanations.finished(theory_of(*solids.others[static_cast<std::size_t>(at)]));
+    const BarFit*& asked = solids.others[static_cast<std::size_t>(at)];
+    asked = asked != nullptr ? explanations.finished(theory_of(*asked)) : nullptr;
+    result.fit = asked != nullptr
+                     ? *asked
+                     : fit_bar(data, {three_element.theory, *options.solid, three_element.far_end});
   }
   if (!(options.compare_solids || !options.solid) || three_element.lossless) {
     return;
   }
-  std::vector<const BarFit*> over_solids = solids.others;
+  std::vector<const BarFit*>& over_solids = solids.others;
   over_solids.insert(over_solids.begin(), &three_element);
-  const Best best = best_of(over_solids);
+  Best best = best_of(over_solids);
+  while (!options.solid && best.fit != &three_element) {
+    const auto place = std::find(over_solids.begin(), over_solids.end(), best.fit);
+    *place = explanations.finished(theory_of(*best.fit));
+    if (*place != nullptr) {
+      result.fit = **place;
+      break;
+    }
+    best = best_of(over_solids);
+  }
   result.solid.told_apart = best.choice.told_apart;
   result.solid.ahead = best.choice.ahead;
-  if (!options.solid && best.fit != &three_element) {
-    result.fit = explanations.finished(theory_of(*best.fit));
-  }
 }
 
 }  // namespace

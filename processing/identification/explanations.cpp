@@ -264,7 +264,7 @@ Explanations::Solids Explanations::solids(const BarFit& three_element,
   // The longest first.
   workers_.run(1 + entries.size(), [&](std::size_t index, std::size_t /*worker*/) {
     if (index == 0) {
-      result.three_element = finished(held);
+      result.three_element = searched_to_end(held);
     } else {
       compare_from(*entries[index - 1], start, weights);
     }
@@ -300,11 +300,19 @@ void Explanations::try_from(Entry& entry, const Start& start) {
   }
 }
 
-BarFit Explanations::finished(const BarTheory& theory) {
-  return finished(*find(theory));
+const BarFit* Explanations::finished(const BarTheory& theory) {
+  Entry& entry = *find(theory);
+  try {
+    entry.fit = searched_to_end(entry);
+    return &*entry.fit;
+  } catch (const InputError& error) {
+    entry.fit.reset();
+    entry.failed = error.problem();
+    return nullptr;
+  }
 }
 
-BarFit Explanations::finished(Entry& entry) {
+BarFit Explanations::searched_to_end(Entry& entry) {
   BarFit fit;
   try {
     fit = entry.search->finished();

@@ -59,8 +59,9 @@ class Explanations {
   /// it holds the others within it.
   [[nodiscard]] const BarFit* again(const BarTheory& theory, const BarFit& partial);
 
-  /// The fit of one that was compared, searched to the end, with the shots' own estimates.
-  [[nodiscard]] BarFit finished(const BarTheory& theory);
+  /// The fit of one that was compared, searched to the end, with the shots' own estimates. Null
+  /// where that search does not end: it counts among those that failed then.
+  [[nodiscard]] const BarFit* finished(const BarTheory& theory);
 
   /// All that were compared, best first.
   [[nodiscard]] std::vector<Alternative> alternatives() const;
@@ -85,7 +86,7 @@ class Explanations {
   void compare(Entry& entry);
   void compare_from(Entry& entry, const BarFit& three_element,
                     const BarLikelihood::Weights& weights);
-  [[nodiscard]] BarFit finished(Entry& entry);
+  [[nodiscard]] BarFit searched_to_end(Entry& entry);
   void compare(Entry& entry, const std::function<void(BarSearch&)>& closely);
   /// By another search, where that ends better.
   using Start = std::function<std::unique_ptr<BarSearch>(const BarData&, const BarTheory&)>;
