@@ -104,8 +104,20 @@ KOLSKY_WIDE void add_products_with_conjugates(const FourNumbers* a, const FourNu
 /// @param end  of the response
 KOLSKY_WIDE void add_up(const double* response, const FourNumbers* turn, std::size_t end,
                         std::size_t whole, std::size_t before_twice, FourNumbers* sums) {
+  // Each sum waits for the one before it, unless four are made beside it.
   FourNumbers sum;
-  for (std::size_t n = 0; n < end; ++n) {
+  std::size_t done = 0;
+  for (; done + 4 <= end; done += 4) {
+    FourNumbers further;
+    for (std::size_t n = done; n < done + 4; ++n) {
+      further.add(response[n], turn[n]);
+      FourNumbers& own = sums[whole - 1 - n];
+      own = sum;
+      own.add(1.0, further);
+    }
+    sum.add(1.0, further);
+  }
+  for (std::size_t n = done; n < end; ++n) {
     sum.add(response[n], turn[n]);
     sums[whole - 1 - n] = sum;
   }

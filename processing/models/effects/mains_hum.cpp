@@ -1,14 +1,48 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
-#include "processing/models/additions.hpp"
 #include "processing/models/effect.hpp"
 #include "processing/models/scene.hpp"
 
 namespace kolsky {
 namespace {
+
+constexpr std::size_t kAtOnce = 8;
+
+/// Of some samples in a row. A fit asks for them thousands of times: from one set to the next they
+/// only turn, all alike, and none waits for another.
+class Phases {
+ public:
+  Phases(double first, double step)
+      : turn_cos_(std::cos(step * kAtOnce)), turn_sin_(std::sin(step * kAtOnce)) {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      cos_[i] = std::cos(first + step * static_cast<double>(i));
+      sin_[i] = std::sin(first + step * static_cast<double>(i));
+    }
+  }
+
+  /// @param samples  at most kAtOnce
+  void add(std::array<double, 2> parts, std::span<double> samples) const {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples[i] += parts[0] * cos_[i] + parts[1] * sin_[i];
+    }
+  }
+  void turn() {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      const double turned = cos_[i] * turn_cos_ - sin_[i] * turn_sin_;
+      sin_[i] = cos_[i] * turn_sin_ + sin_[i] * turn_cos_;
+      cos_[i] = turned;
+    }
+  }
+
+ private:
+  double turn_cos_;
+  double turn_sin_;
+  std::array<double, kAtOnce> cos_{};
+  std::array<double, kAtOnce> sin_{};
+};
 
 class MainsHum final : public Effect {
  public:
@@ -37,18 +71,18 @@ class MainsHum final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
-    const double w = 2.0 * std::numbers::pi * values[2];
     const std::vector<double>& time_s = scene.facts->time_s;
-    // A fit asks for it thousands of times: from sample to sample the phase only turns.
     const double period_s = (time_s.back() - time_s.front()) /
                             static_cast<double>(std::max<std::size_t>(time_s.size(), 2) - 1);
-    Complex phase = std::polar(1.0, w * time_s.front());
-    const Complex turn = std::polar(1.0, w * period_s);
-    add_to(scene.record.additions[gauge], time_s, [&](double) {
-      const double reading = values[0] * phase.real() + values[1] * phase.imag();
-      phase *= turn;
-      return reading;
-    });
+    std::vector<double>& addition = scene.record.additions[gauge];
+    addition.resize(time_s.size(), 0.0);
+    const double w = 2.0 * std::numbers::pi * values[2];
+    Phases phases(w * time_s.front(), w * period_s);
+    for (std::size_t first = 0; first < addition.size(); first += kAtOnce) {
+      phases.add({values[0], values[1]},
+                 std::span(addition).subspan(first, std::min(kAtOnce, addition.size() - first)));
+      phases.turn();
+    }
   }
 };
 
