@@ -134,11 +134,11 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
       result.reasons.push_back("gauges " + one + " and " + other +
                                " are exchanged: the pulse arrives in the other order");
     }
-    if (fitted.chi2_reduced > kMoreThanNoise) {
+    const bool something_else =
+        std::any_of(fitted.numbers.begin(), fitted.numbers.end(),
+                    [](const auto& number) { return number.standing == Standing::unexplained; });
+    if (something_else || fitted.chi2_reduced > kMoreThanNoise) {
       undecided = true;
-      const bool something_else =
-          std::any_of(fitted.numbers.begin(), fitted.numbers.end(),
-                      [](const auto& number) { return number.standing == Standing::unexplained; });
       result.reasons.push_back(
           name_of(part.lay) +
           (something_else

@@ -334,20 +334,19 @@ class PartFit {
   /// Whether the records are of something else than bars lying like this.
   [[nodiscard]] bool explains_nothing() const { return leaves_most() || at_a_limit(); }
 
-  /// Whether more than noise is left with a released number as far off as any may be, a gain at ten
-  /// or a tenth: it goes there for want of what is really between the bars.
+  /// Whether a released number is as far off as any may be, a gain at ten or a tenth: it goes there
+  /// for want of what is really between the bars, even where enough such numbers leave but noise.
   [[nodiscard]] bool at_a_limit() const {
     constexpr double kClose = 1e-6;
     const Composition& composition = fitted_->studied.composition;
-    return result_.chi2_reduced > kMoreThanNoise &&
-           std::any_of(numbers_.begin(), numbers_.end(), [&](const ModelNumber& number) {
-             const std::size_t place = place_of(composition, number);
-             const FreeNumber& free = composition.numbers()[place];
-             const double value = fitted_->studied.fit.theta[place] * free.scale;
-             const double close = kClose * (free.upper - free.lower);
-             return released_.count(number.id) > 0 &&
-                    (value < free.lower + close || value > free.upper - close);
-           });
+    return std::any_of(numbers_.begin(), numbers_.end(), [&](const ModelNumber& number) {
+      const std::size_t place = place_of(composition, number);
+      const FreeNumber& free = composition.numbers()[place];
+      const double value = fitted_->studied.fit.theta[place] * free.scale;
+      const double close = kClose * (free.upper - free.lower);
+      return released_.count(number.id) > 0 &&
+             (value < free.lower + close || value > free.upper - close);
+    });
   }
 
   /// Whether what was released explains too little of the misfit to be what differs.
