@@ -21,6 +21,11 @@ EffectUse filed(const std::string& id, std::vector<double> sds) {
   return use;
 }
 
+/// Each bar's number is off by itself, but an effect on the first moves both.
+double beside(double first_sd, const Measured& second) {
+  return std::hypot(first_sd, relative_sd(second));
+}
+
 /// Without waves, or with a material that nobody states, nothing can be foretold.
 void require_whole(const Model& model, const Bench& bench) {
   std::vector<std::string> needed;
@@ -63,18 +68,23 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
     list.push_back(filed("output-bar-length", {bench.output->length_m.sd}));
   }
   if (bench.output && bench.output->density_kg_m3.sd > 0.0) {
-    // Each bar's is off by itself, but one moves both.
-    list.push_back(
-        filed("output-bar-density", {std::hypot(relative_sd(bench.input.density_kg_m3),
-                                                relative_sd(bench.output->density_kg_m3))}));
+    list.push_back(filed("output-bar-density", {beside(relative_sd(bench.input.density_kg_m3),
+                                                       bench.output->density_kg_m3)}));
+  }
+  // What waves in one bar alone do depends on it only where they are dispersed, as a strength of
+  // that dispersion does.
+  if (bench.kind != BenchKind::bar && bench.input.diameter_m.sd > 0.0) {
+    list.push_back(filed("bar-diameter", {relative_sd(bench.input.diameter_m)}));
+  }
+  if (bench.output && bench.output->diameter_m.sd > 0.0) {
+    list.push_back(filed("output-bar-diameter",
+                         {beside(relative_sd(bench.input.diameter_m), bench.output->diameter_m)}));
   }
   if (bench.input.youngs_modulus_Pa && bench.input.youngs_modulus_Pa->sd > 0.0) {
     const double sd = relative_sd(*bench.input.youngs_modulus_Pa);
     list.push_back(filed("bar-modulus", {sd}));
     if (bench.output && bench.output->youngs_modulus_Pa) {
-      // Each bar's is off by itself.
-      list.push_back(filed("output-bar-modulus",
-                           {std::hypot(sd, relative_sd(*bench.output->youngs_modulus_Pa))}));
+      list.push_back(filed("output-bar-modulus", {beside(sd, *bench.output->youngs_modulus_Pa)}));
     }
   }
   if (bench.specimen &&

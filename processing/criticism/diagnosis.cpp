@@ -243,6 +243,7 @@ class Diagnostician {
       }
       if (choice->studied.fit.objective() > current.fit.objective() + 1.0) {
         // Not where it was found before: that was better.
+        std::ranges::replace(choice->ties, id, choice->id);
         diagnosis_.tied_with[id] = std::move(choice->ties);
         continue;
       }

@@ -77,6 +77,7 @@ Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex>
     g.name = gauge.name;
     g.bar = gauge.bar == "output" ? 1 : 0;
     g.position_m = gauge.position_m;
+    g.length_m = gauge.length_m.value_or(Measured{}).value;
     g.factor.assign(path.size(), 1.0);
     gauges.push_back(std::move(g));
   }

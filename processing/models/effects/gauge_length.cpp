@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "processing/models/effect.hpp"
 #include "processing/models/scene.hpp"
 
@@ -10,7 +12,7 @@ class GaugeLength final : public Effect {
       : Effect({
             .id = "gauge-length",
             .stage = Stage::sensor,
-            .definition = "reading x sinh(gamma L/2) / (gamma L/2)",
+            .definition = "reading x sinh(gamma L/2) / (gamma L/2), beside the length filed",
             .reference = "effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"L", "m", 0.0, 0.0, 0.5, 5e-3, {}, false, 2e-3, false, 2.0, 0.1}},
@@ -18,7 +20,9 @@ class GaugeLength final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
-    scene.gauges[gauge].length_m = values[0];
+    // A mean of a mean is, but for the fourth order, one over the root of both squares.
+    double& length_m = scene.gauges[gauge].length_m;
+    length_m = std::hypot(length_m, values[0]);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <span>
@@ -372,12 +373,13 @@ TEST(Diagnosis, DoesNotFitABridgeToNoise) {
             DiagnosisVerdict::adequate);
 }
 
-// That the bench file said so was not heard: clean records were unknown.
-TEST(Diagnosis, KnowsThatAnOutputBarsLengthMayBeOff) {
+/// What is said of a split bar's clean records where the bench file has a number of its output bar
+/// wrong, without and with a deviation beside it.
+void expect_heard(const std::function<Measured&(Bar&)>& number, double off, double sd) {
   const testing::Campaign truth = testing::draw_campaign(split_wishes(13, 6, 2400));
   std::vector<Shot> shots = testing::shots_of(truth);
   for (Shot& shot : shots) {
-    shot.bench.output->length_m.value += 2e-3;
+    number(*shot.bench.output).value += off;
   }
   const auto verdict = [&] {
     const Campaign campaign = read_campaign(shots);
@@ -386,9 +388,26 @@ TEST(Diagnosis, KnowsThatAnOutputBarsLengthMayBeOff) {
   };
   EXPECT_NE(verdict(), DiagnosisVerdict::adequate);
   for (Shot& shot : shots) {
-    shot.bench.output->length_m.sd = 1.5e-3;
+    number(*shot.bench.output).sd = sd;
   }
   EXPECT_EQ(verdict(), DiagnosisVerdict::adequate);
+}
+
+// That the bench file said so was not heard: clean records were unknown.
+TEST(Diagnosis, KnowsThatAnOutputBarsLengthMayBeOff) {
+  expect_heard([](Bar& bar) -> Measured& { return bar.length_m; }, 2e-3, 1.5e-3);
+}
+TEST(Diagnosis, KnowsThatAnOutputBarsDiameterMayBeOff) {
+  expect_heard([](Bar& bar) -> Measured& { return bar.diameter_m; }, 0.3e-3, 0.2e-3);
+}
+
+// A gauge's length in the bench file was not heard either: it was found anew.
+TEST(Diagnosis, TakesAGaugesFiledLengthAsFiled) {
+  Made made = make(80, {"gauge-length:g2=0.04"});
+  for (Shot& shot : made.shots) {
+    shot.bench.gauges[1].length_m = Measured{0.04, 0.0};
+  }
+  EXPECT_EQ(diagnosed(made.shots, BenchKind::bar).verdict, DiagnosisVerdict::adequate);
 }
 
 TEST(Diagnosis, DoesNotClaimAFiledNumberWithinItsDeviation) {
