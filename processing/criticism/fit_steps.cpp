@@ -50,7 +50,7 @@ FitSteps::FitSteps(const Composition& composition, ShotResiduals& residuals,
       precision_(composition.prior_precision()) {
   fit_.theta = start.empty() ? composition.start() : std::move(start);
   keep_inside(composition, fit_.theta);
-  fit_.residual = residuals.evaluate(composition, fit_.theta, executor.first);
+  fit_.residual = residuals.evaluate_on(executor, composition, fit_.theta);
   fit_.chi2 = fit_.residual.squaredNorm();
   fit_.penalty = penalty_of(composition, precision_, fit_.theta);
 }
@@ -116,7 +116,7 @@ FitSteps::Step FitSteps::tried(double damping) {
     step.theta[static_cast<std::size_t>(i)] += move[i];
   }
   keep_inside(composition_, step.theta);
-  step.residual = residuals_.evaluate(composition_, step.theta, executor_.first);
+  step.residual = residuals_.evaluate_on(executor_, composition_, step.theta);
   step.chi2 = step.residual.squaredNorm();
   step.penalty = penalty_of(composition_, precision_, step.theta);
   step.gain = fit_.objective() - step.chi2 - step.penalty;

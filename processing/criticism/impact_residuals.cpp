@@ -194,6 +194,22 @@ Eigen::VectorXd ImpactResiduals::evaluate(const Composition& composition,
   return whitening_->white(foretold.residual);
 }
 
+/// Nearly all of it are the impacts, one for each speed.
+Eigen::VectorXd ImpactResiduals::evaluate_on(const Workers& executor,
+                                             const Composition& composition,
+                                             const std::vector<double>& theta) {
+  BallScene ball;
+  static_cast<void>(transfers(composition, theta, 0, ball));
+  executor.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
+    try {
+      static_cast<void>(runs_->run(ball, records_.groups[g].speed_m_per_s, meshes_.coarse));
+    } catch (const InputError&) {
+      // Refused again below, and said there.
+    }
+  });
+  return evaluate(composition, theta, executor.first);
+}
+
 Eigen::VectorXd ImpactResiduals::evaluate_shot(const Composition& composition,
                                                const std::vector<double>& theta, std::size_t shot,
                                                std::size_t worker) {

@@ -69,6 +69,8 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
                                          const std::vector<double>& theta,
                                          std::size_t worker) override;
+  [[nodiscard]] Eigen::VectorXd evaluate_on(const Workers& executor, const Composition& composition,
+                                            const std::vector<double>& theta) override;
   [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t shot,
                                               std::size_t worker) override;

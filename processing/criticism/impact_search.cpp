@@ -169,25 +169,24 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
   return chosen;
 }
 
-std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, std::size_t worker) {
+std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor) {
   const Candidate& candidate = candidates_[index];
   const Model model = with(base_.model, candidate, true);
   Composition composition(model, study_.campaign());
-  const Workers alone = serial_on(worker);
   const Eigen::MatrixXd chord = borrowed(candidate, directions_[index], base_, composition);
-  ModelFit fit = fit_by_secants(composition, study_.residuals(), alone,
+  ModelFit fit = fit_by_secants(composition, study_.residuals(), executor,
                                 begin_near(candidate, directions_[index], base_, composition),
                                 chord.size() > 0 ? &chord : nullptr, Settle::roughly);
   if (!std::isfinite(fit.objective())) {
     // First order led to a ball that the solver refuses: begin at null.
-    fit = fit_by_secants(composition, study_.residuals(), alone,
+    fit = fit_by_secants(composition, study_.residuals(), executor,
                          carry(base_.composition, base_.fit.theta, composition), nullptr,
                          Settle::roughly);
   }
   if (is_filed_number(candidate)) {
     fit = from_afar(candidate, std::move(fit), composition,
                     carry(base_.composition, base_.fit.theta, composition), study_.residuals(),
-                    alone);
+                    executor);
   }
   return described(index, model, std::move(composition), std::move(fit));
 }
@@ -228,6 +227,19 @@ void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
   }
 }
 
+/// One to a worker; fewer than there are workers one after the other, each with all of them.
+void ImpactSearch::share_out(std::size_t count,
+                             const std::function<void(std::size_t, const Workers&)>& work) {
+  if (count < study_.executor().workers) {
+    for (std::size_t i = 0; i < count; ++i) {
+      work(i, study_.executor());
+    }
+    return;
+  }
+  study_.executor().run(count,
+                        [&](std::size_t i, std::size_t worker) { work(i, serial_on(worker)); });
+}
+
 /// Fits to the end what may be claimed, and what may stand beside it.
 void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
   const auto best = std::max_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
@@ -238,15 +250,17 @@ void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
   if (best == list.end() || with_search(best->log_p) > kInSight) {
     return;
   }
-  const double least = best->evidence - kNearBest;
-  study_.executor().run(list.size(), [&](std::size_t i, std::size_t worker) {
-    ImpactRefit& own = list[i];
-    if (own.evidence < least) {
-      return;
+  std::vector<ImpactRefit*> near;
+  for (ImpactRefit& own : list) {
+    if (own.evidence >= best->evidence - kNearBest) {
+      near.push_back(&own);
     }
+  }
+  share_out(near.size(), [&](std::size_t i, const Workers& executor) {
+    ImpactRefit& own = *near[i];
     const Studied& rough = own.studied;
-    ModelFit fit = fit_by_secants(rough.composition, study_.residuals(), serial_on(worker),
-                                  rough.fit.theta, &rough.fit.jacobian);
+    ModelFit fit = fit_by_secants(rough.composition, study_.residuals(), executor, rough.fit.theta,
+                                  &rough.fit.jacobian);
     if (auto refined = described(own.candidate, rough.model, rough.composition, std::move(fit))) {
       own = std::move(*refined);
     }
@@ -255,11 +269,17 @@ void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
 }
 
 std::vector<ImpactRefit> ImpactSearch::refits() {
-  const std::vector<std::size_t> chosen = worth_refitting();
+  std::vector<std::size_t> chosen = worth_refitting();
+  const auto from_afar_too =
+      std::stable_partition(chosen.begin(), chosen.end(),
+                            [&](std::size_t i) { return !is_filed_number(candidates_[i]); });
+  const auto near = static_cast<std::size_t>(from_afar_too - chosen.begin());
   std::vector<std::optional<ImpactRefit>> done(chosen.size());
-  study_.executor().run(chosen.size(), [&](std::size_t i, std::size_t worker) {
-    done[i] = refit(chosen[i], worker);
-  });
+  share_out(near,
+            [&](std::size_t i, const Workers& executor) { done[i] = refit(chosen[i], executor); });
+  for (std::size_t i = near; i < chosen.size(); ++i) {
+    done[i] = refit(chosen[i], study_.executor());
+  }
   std::vector<ImpactRefit> list;
   for (auto& own : done) {
     if (own) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -48,9 +49,10 @@ class ImpactSearch {
 
  private:
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
-  [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, std::size_t worker);
+  [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor);
   [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
                                                      Composition composition, ModelFit fit) const;
+  void share_out(std::size_t count, const std::function<void(std::size_t, const Workers&)>& work);
   void refine(std::vector<ImpactRefit>& list);
   void rate(std::vector<ImpactRefit>& list);
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "processing/base/workers.hpp"
 #include "processing/criticism/composition.hpp"
 
 namespace kolsky {
@@ -22,6 +23,12 @@ class ShotResiduals {
   [[nodiscard]] virtual Eigen::VectorXd evaluate(const Composition& composition,
                                                  const std::vector<double>& theta,
                                                  std::size_t worker) = 0;
+  /// The same, its work shared out where that is worth it.
+  [[nodiscard]] virtual Eigen::VectorXd evaluate_on(const Workers& executor,
+                                                    const Composition& composition,
+                                                    const std::vector<double>& theta) {
+    return evaluate(composition, theta, executor.first);
+  }
   /// Those of one shot. @pre not shots_hang_together()
   [[nodiscard]] virtual Eigen::VectorXd evaluate_shot(const Composition& composition,
                                                       const std::vector<double>& theta,
