@@ -1,5 +1,6 @@
 // Comparing a shot with a model, and asking eight bar shots or six split-bar shots what a model
-// lacks: each beside one forward evaluation of all their records, which any fit is made of.
+// lacks: each beside one forward evaluation of all their records, which any fit is made of. Then
+// fifteen impacts at three speeds, made by another code.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -8,9 +9,11 @@
 
 #include "processing/criticism/comparison.hpp"
 #include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/impact_diagnosis.hpp"
 #include "tests/bench/bound.hpp"
 #include "tests/bench/two_threads.hpp"
 #include "tests/generators/campaign.hpp"
+#include "tests/generators/impact_campaign.hpp"
 
 namespace kolsky {
 namespace {
@@ -100,6 +103,54 @@ BENCHMARK_CAPTURE(diagnose_shots, shpb_nothing_hidden, Kind::shpb, 6, nullptr)
     ->UseRealTime();
 BENCHMARK_CAPTURE(diagnose_shots, shpb_friction, Kind::shpb, 6, "interface-friction=0.3")
     ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A ball whose materials are known to 1.5 %.
+Model known_ball() {
+  constexpr double kKnown = 0.015;
+  Model model = paper_model(BenchKind::impact, true);
+  for (const auto& [id, paper] : {std::pair{"three-element-core", paper_golf_core()},
+                                  std::pair{"three-element-cover", paper_golf_cover()}}) {
+    Material material = paper;
+    for (Measured* const number : {&material.E1_Pa, &material.E2_Pa, &material.eta2_Pa_s}) {
+      number->sd = kKnown * number->value;
+    }
+    take_layer(material, *model.find(id));
+  }
+  return model;
+}
+
+void diagnose_fifteen_impacts(benchmark::State& state, double core_b, double bridge_b) {
+  testing::ImpactWishes wishes;
+  wishes.seed = 77;
+  wishes.speed_error = 1e-3;
+  wishes.across = 15;
+  wishes.core_b = core_b;
+  wishes.bridge_b = bridge_b;
+  const Campaign campaign = read_campaign(testing::impact_shots(wishes));
+  std::string found;
+  for (auto _ : state) {
+    ImpactStudy study(campaign, false, 0.0, two_threads());
+    const Diagnosis diagnosis = diagnose_impacts(study, known_ball(), {});
+    found = name_of(diagnosis.verdict);
+    for (const std::string& id : diagnosis.effects) {
+      found += " " + id;
+    }
+  }
+  hold_to(state, 60.0);
+  state.SetLabel(found);
+}
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, nothing_hidden, 0.0, 0.0)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, one_effect, 0.9, 0.0)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, two_effects, 0.6, 240.0)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
     ->UseRealTime();
 
 }  // namespace
