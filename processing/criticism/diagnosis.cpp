@@ -34,7 +34,9 @@ HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
 }
 
 /// Whether an effect is so strong that nothing is built so: then noise was fitted with it.
-bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign) {
+/// @param slack  while effects beside it are still missing, it stands for a part of these, too
+bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,
+                   double slack) {
   const EffectUse* use = studied.model.find(id);
   if (use == nullptr) {
     return false;
@@ -46,7 +48,7 @@ bool beyond_belief(const Studied& studied, const std::string& id, const Campaign
   const auto& parameters = use->effect->about().parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const double size = std::abs(use->values[p].value);
-    const auto beyond = [](double own, double most) { return most > 0.0 && own > most; };
+    const auto beyond = [&](double own, double most) { return most > 0.0 && own > slack * most; };
     if (beyond(size, parameters[p].most) || beyond(size * peak, parameters[p].most_times_peak)) {
       return true;
     }
@@ -88,6 +90,10 @@ class Diagnostician {
     diagnosis_.before = first.misfit;
     Studied current = first;
     while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
+    }
+    if (diagnosis_.effects.size() == 1 && any_beyond_belief(current)) {
+      // Nothing was found beside it that takes its part.
+      drop(0, "rejected", without(current, diagnosis_.effects[0]), current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
       drop_unneeded(current, 1);  // the last was certified beside all others
@@ -155,10 +161,11 @@ class Diagnostician {
       // Products of what each shot and each gauge has of its own are foretold by each other.
       const bool foretold = refit.products || (held_out[i].gain > 0.0 && held_out[i].share > 0.5);
       const Safeguards& safeguards = options_.safeguards;
+      constexpr double kSlack = 1.5;
       if ((safeguards.held_out && !foretold) ||
           (safeguards.shot_agreement &&
            !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) ||
-          beyond_belief(refit.studied, id, study_.campaign())) {
+          beyond_belief(refit.studied, id, study_.campaign(), kSlack)) {
         set_verdict(id, "rejected");
         continue;
       }
@@ -281,15 +288,21 @@ class Diagnostician {
       if (equivalent_square(log_gain_tail(loss, 1.0, false)) < 16.0 ||
           (options_.safeguards.own_strengths &&
            !own_strengths_confirmed(current, id, study_.campaign(), Claim::standing))) {
-        current = std::move(left);
-        std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });
-        diagnosis_.tied_with.erase(id);
-        diagnosis_.effects.erase(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(i));
-        set_verdict(id, "not needed");
+        drop(i, "not needed", std::move(left), current);
       } else {
         ++i;
       }
     }
+  }
+
+  /// @param left  the fit without it
+  void drop(std::size_t i, const std::string& verdict, Studied left, Studied& current) {
+    const std::string id = diagnosis_.effects[i];
+    current = std::move(left);
+    std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });
+    diagnosis_.tied_with.erase(id);
+    diagnosis_.effects.erase(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(i));
+    set_verdict(id, verdict);
   }
 
   void conclude(const Studied& first, const Studied& current) {
@@ -354,7 +367,7 @@ class Diagnostician {
   [[nodiscard]] bool any_beyond_belief(const Studied& current) const {
     return std::any_of(
         diagnosis_.effects.begin(), diagnosis_.effects.end(),
-        [&](const std::string& id) { return beyond_belief(current, id, study_.campaign()); });
+        [&](const std::string& id) { return beyond_belief(current, id, study_.campaign(), 1.0); });
   }
 
   [[nodiscard]] double repeated_excess(const Misfit& misfit) const {
