@@ -61,6 +61,17 @@ int read_count(const TomlTable& table, const std::string& key, int otherwise) {
   return static_cast<int>(count);
 }
 
+/// Of the gain that a shunt's step gives: its two resistances make the step, and it was read.
+double relative_sd_of_shunt(const TomlTable& table) {
+  double variance = 0.0;
+  for (const std::string key :
+       {"shunt_resistance_ohm", "shunt_reading_V", "gauge_resistance_ohm"}) {
+    const Measured number = table.optional_measured(key).value_or(Measured{});
+    variance += std::pow(relative_sd(number), 2);
+  }
+  return std::sqrt(variance);
+}
+
 Bridge read_bridge(const TomlTable& table) {
   constexpr std::array kWirings{BridgeWiring::quarter, BridgeWiring::half,
                                 BridgeWiring::half_poisson, BridgeWiring::full_poisson,
@@ -83,7 +94,9 @@ Bridge read_bridge(const TomlTable& table) {
     throw table.error("gain", "is given beside a shunt calibration, which takes its place",
                       "keep one of them");
   }
-  if (!has_shunt) {
+  if (has_shunt) {
+    bridge.shunt_gain.sd = relative_sd_of_shunt(table);
+  } else {
     bridge.gain = table.measured("gain");
   }
   return bridge;
@@ -145,7 +158,7 @@ Gauge read_gauge(const TomlTable& table) {
                         "give unit = \"V\" and the bridge, or remove it");
     }
     if (gauge.unit == "strain") {
-      gauge.gain_sd = read_gain_sd(table);
+      gauge.strain_gain.sd = read_gain_sd(table);
     }
   }
   return gauge;

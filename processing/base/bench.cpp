@@ -1,5 +1,6 @@
 #include "processing/base/bench.hpp"
 
+#include <cmath>
 #include <numbers>
 
 namespace kolsky {
@@ -21,6 +22,21 @@ double Bar::dispersion_radius_m() const {
     return *side_m / (2.0 * std::numbers::sqrt3);
   }
   return diameter_m / 2.0;
+}
+
+double gain_sd(const Gauge& gauge) {
+  if (gauge.strain_per_V) {
+    return relative_sd(*gauge.strain_per_V);
+  }
+  if (gauge.bridge) {
+    const Bridge& bridge = *gauge.bridge;
+    // A shunt's step has the excitation in it.
+    const double amplified = bridge.shunt_reading_V ? relative_sd(bridge.shunt_gain)
+                                                    : std::hypot(relative_sd(bridge.excitation_V),
+                                                                 relative_sd(bridge.gain));
+    return std::hypot(relative_sd(bridge.gauge_factor), amplified);
+  }
+  return relative_sd(gauge.strain_gain);
 }
 
 double Specimen::area_m2() const {

@@ -55,6 +55,8 @@ struct Bridge {
   int gauges_in_series = 1;  ///< 2: a diametrically opposite pair in one arm, cancels bending
   std::optional<double> shunt_resistance_ohm{};  ///< resistor put across the active arm
   std::optional<double> shunt_reading_V{};       ///< the step it gave; replaces `gain`
+  /// Gain over what the shunt makes it, as well as its resistances and its step are known.
+  Measured shunt_gain{1.0, 0.0};
 };
 
 /// One strain-gauge station, in the order of the capture's channels.
@@ -66,10 +68,13 @@ struct Gauge {
   std::optional<Measured> length_m{};
   std::optional<Bridge> bridge{};          ///< unit "V": either this ...
   std::optional<Measured> strain_per_V{};  ///< ... or a plain factor
-  /// Of samples that are strain already: relative standard deviation of what made them so, from the
-  /// gauge factor, excitation and gain filed beside them.
-  double gain_sd = 0.0;
+  /// Of samples that are strain already: over what made them so, as well as gauge factor, excitation
+  /// and gain filed beside them say that it is known.
+  Measured strain_gain{1.0, 0.0};
 };
+
+/// Relative standard deviation of what turns a gauge's reading into strain.
+[[nodiscard]] double gain_sd(const Gauge& gauge);
 
 /// A light beam across the ball's way, a channel of its own behind the gauges: bright, and dark or
 /// at least another voltage while the ball is in it.

@@ -220,9 +220,9 @@ void check_gauge(const std::string& place, const Gauge& gauge, const Bench& benc
   check_position(place, gauge, bench.bar_of(gauge));
   check_number(place + ".length_m", gauge.length_m, kGaugeLength);
   check_unit(place, gauge);
-  if (gauge.gain_sd > 0.1) {
+  if (gauge.strain_gain.sd > 0.1) {
     throw InputError(place + ".gauge_factor_sd",
-                     "makes a strain uncertain by " + in_words(100.0 * gauge.gain_sd, "%"),
+                     "makes a strain uncertain by " + in_words(100.0 * gauge.strain_gain.sd, "%"),
                      "give the standard deviation in the same unit as the number");
   }
   if (gauge.bridge) {

@@ -98,14 +98,15 @@ double gain_from_shunt(const Bridge& bridge) {
 BridgeConversion::BridgeConversion(const Gauge& gauge, const Bar& bar, PositiveSense positive)
     : sign_(positive == PositiveSense::compression ? -1.0 : 1.0) {
   if (gauge.unit == "strain") {
-    // reading = 1 * e
+    full_scale_ = 1.0 / gauge.strain_gain;
   } else if (gauge.strain_per_V) {
     require(*gauge.strain_per_V != 0.0, "strain_per_V", "is zero", "give strain per volt");
     full_scale_ = 1.0 / *gauge.strain_per_V;
   } else if (gauge.bridge) {
     const Bridge& bridge = *gauge.bridge;
     check(bridge);
-    gain_ = bridge.shunt_resistance_ohm ? gain_from_shunt(bridge) : bridge.gain.value;
+    gain_ = bridge.shunt_resistance_ohm ? gain_from_shunt(bridge) * bridge.shunt_gain
+                                        : bridge.gain.value;
     const double share = active_share(bridge);
     const Equation equation =
         equation_of(bridge.wiring, bridge.gauge_factor * share,

@@ -4,21 +4,6 @@
 
 namespace kolsky {
 
-double relative_sd(const Measured& number) {
-  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
-}
-
-double gain_sd(const Gauge& gauge) {
-  if (gauge.strain_per_V) {
-    return relative_sd(*gauge.strain_per_V);
-  }
-  if (gauge.bridge) {
-    return std::hypot(relative_sd(gauge.bridge->gauge_factor),
-                      relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
-  }
-  return gauge.gain_sd;
-}
-
 std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& records) {
   using Of = KnownUnknown::Of;
   std::vector<KnownUnknown> list;

@@ -18,12 +18,6 @@ struct KnownUnknown {
   double sd = 0.0;        ///< metres for position and length, else relative
 };
 
-/// 0 for a number without a deviation, or a number that is 0.
-[[nodiscard]] double relative_sd(const Measured& number);
-
-/// Relative standard deviation of what turns a gauge's reading into strain.
-[[nodiscard]] double gain_sd(const Gauge& gauge);
-
 /// Those of a bench of kind "bar". Gains combine gauge factor, excitation and amplifier; that of a
 /// gauge which stands for two does not matter.
 [[nodiscard]] std::vector<KnownUnknown> known_unknowns(const Bench& bench,

@@ -41,17 +41,12 @@ std::string names_of(const Station& station, const Bench& bench) {
 }
 
 double gain_sd(const Gauge& gauge, double strain) {
-  if (gauge.strain_per_V) {
-    return relative_sd(*gauge.strain_per_V);
+  if (!gauge.bridge) {
+    return gain_sd(gauge);
   }
-  if (gauge.bridge) {
-    const Bridge& bridge = *gauge.bridge;
-    const double bend = bridge.gauge_factor_per_strain.sd * strain / bridge.gauge_factor;
-    return std::sqrt(std::pow(relative_sd(bridge.gauge_factor), 2) +
-                     std::pow(relative_sd(bridge.excitation_V), 2) +
-                     std::pow(relative_sd(bridge.gain), 2) + bend * bend);
-  }
-  return gauge.gain_sd;
+  const Bridge& bridge = *gauge.bridge;
+  return std::hypot(gain_sd(gauge),
+                    bridge.gauge_factor_per_strain.sd * strain / bridge.gauge_factor);
 }
 
 }  // namespace kolsky

@@ -15,10 +15,6 @@ namespace kolsky {
 /// "g1+g2"
 [[nodiscard]] std::string names_of(const Station& station, const Bench& bench);
 
-[[nodiscard]] inline double relative_sd(const Measured& number) {
-  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
-}
-
 /// Relative deviation of a gauge's strain, from what converts it. @param strain  its largest
 [[nodiscard]] double gain_sd(const Gauge& gauge, double strain);
 

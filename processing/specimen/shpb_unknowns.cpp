@@ -9,22 +9,6 @@ namespace {
 
 using Of = ShpbUnknown::Of;
 
-double relative_sd(const Measured& number) {
-  return number.value != 0.0 ? number.sd / std::abs(number.value) : 0.0;
-}
-
-/// Relative standard deviation of what turns a gauge's reading into strain.
-double gain_sd(const Gauge& gauge) {
-  if (gauge.strain_per_V) {
-    return relative_sd(*gauge.strain_per_V);
-  }
-  if (gauge.bridge) {
-    return std::hypot(relative_sd(gauge.bridge->gauge_factor),
-                      relative_sd(gauge.bridge->excitation_V), relative_sd(gauge.bridge->gain));
-  }
-  return 0.0;
-}
-
 /// Square root of the covariance: its columns are the directions the moduli may move in.
 Eigen::Matrix3d directions(const BarPrior& prior) {
   Eigen::Matrix3d covariance;

@@ -1,5 +1,6 @@
 #include "processing/uncertainty/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -49,8 +50,13 @@ NoiseMaker::NoiseMaker(std::span<const double> quiet, std::size_t samples)
   }
   transform_.emplace(samples, 1.0, 1.0);
   spectrum_.resize(transform_->bins());
+  // Nothing slower than the stretch is long shows in it: there noise is taken to be as strong as
+  // at the slowest that does. Slow parts drawn out beyond that made equal shots' bands differ
+  // threefold, by what a few samples happened to do.
+  const double slowest = 1.0 / static_cast<double>(std::max<std::size_t>(quiet.size(), 1));
   for (std::size_t k = 0; k < transform_->bins(); ++k) {
-    gain_.push_back(std::sqrt(spectrum.power(transform_->s(k).imag() / (2.0 * std::numbers::pi))));
+    const double cycles = transform_->s(k).imag() / (2.0 * std::numbers::pi);
+    gain_.push_back(std::sqrt(spectrum.power(std::max(cycles, slowest))));
   }
 }
 

@@ -33,6 +33,10 @@ void add_gauge(Sources& sources, const Bench& bench, std::size_t i) {
     add(sources, bench, name + "strain_per_V", "gauge factors",
         [i](Bench& b) -> Measured& { return *b.gauges[i].strain_per_V; });
   }
+  if (!gauge.strain_per_V && !gauge.bridge) {
+    add(sources, bench, name + "strain", "gauge factors",
+        [i](Bench& b) -> Measured& { return b.gauges[i].strain_gain; });
+  }
   if (gauge.bridge) {
     add(sources, bench, name + "gauge_factor", "gauge factors",
         [i](Bench& b) -> Measured& { return b.gauges[i].bridge->gauge_factor; });
@@ -42,6 +46,8 @@ void add_gauge(Sources& sources, const Bench& bench, std::size_t i) {
         [i](Bench& b) -> Measured& { return b.gauges[i].bridge->excitation_V; });
     add(sources, bench, name + "gain", "gauge factors",
         [i](Bench& b) -> Measured& { return b.gauges[i].bridge->gain; });
+    add(sources, bench, name + "shunt", "gauge factors",
+        [i](Bench& b) -> Measured& { return b.gauges[i].bridge->shunt_gain; });
   }
 }
 
@@ -126,6 +132,15 @@ Sources uncertainty_sources(const Bench& bench, const Material& bars,
       [](Bench& b) -> Measured& { return b.specimen->length_m; });
   add(sources, bench, "specimen.diameter_m", "specimen diameter",
       [](Bench& b) -> Measured& { return b.specimen->diameter_m; });
+  // Of corrections for inertia, where these are asked for.
+  if (bench.specimen->density_kg_m3) {
+    add(sources, bench, "specimen.density_kg_m3", "specimen inertia",
+        [](Bench& b) -> Measured& { return *b.specimen->density_kg_m3; });
+  }
+  if (bench.specimen->poisson_ratio) {
+    add(sources, bench, "specimen.poisson_ratio", "specimen inertia",
+        [](Bench& b) -> Measured& { return *b.specimen->poisson_ratio; });
+  }
   return sources;
 }
 

@@ -165,6 +165,19 @@ TEST(Bridge, TheShuntGivesTheGainThatMakesItsStepRight) {
   EXPECT_NEAR(bridge.gain(), kGain, 1e-9);
 }
 
+TEST(Bridge, AShuntsDeviationTakesThePlaceOfExcitationAndGain) {
+  Gauge gauge = gauge_with({.shunt_resistance_ohm = 100e3, .shunt_reading_V = 1.0});
+  gauge.bridge->gauge_factor = {2.0, 0.02};
+  gauge.bridge->excitation_V = {5.0, 0.5};
+  gauge.bridge->gain = {500.0, 50.0};
+  gauge.bridge->shunt_gain.sd = 0.03;
+  EXPECT_NEAR(gain_sd(gauge), std::hypot(0.01, 0.03), 1e-12);
+  const double before = BridgeConversion(gauge, pmma_bar(), PositiveSense::tension).gain();
+  gauge.bridge->shunt_gain.value = 1.02;
+  EXPECT_NEAR(BridgeConversion(gauge, pmma_bar(), PositiveSense::tension).gain(), 1.02 * before,
+              1e-9 * before);
+}
+
 TEST(Bridge, ConvertsWholeRecordsLessTheUnstrainedReading) {
   Gauge gauge;
   gauge.unit = "V";

@@ -260,7 +260,7 @@ TEST(Ball, DeviationsOfBarAndGaugeCount) {
   Bench bench = ball_bench({0.25, 0.5});
   bench.input.youngs_modulus_Pa->sd = 113e7;
   bench.input.diameter_m.sd = 0.027e-2;
-  bench.gauges[0].gain_sd = 0.02;
+  bench.gauges[0].strain_gain.sd = 0.02;
   const BallImpact ball = reduced(ball_shot(bench, force_of({})));
   // One per cent of the modulus, two of the area, half of the gauge's two.
   EXPECT_NEAR(ball.peak_force_N.sd / ball.peak_force_N, std::sqrt(1e-4 + 4e-4 + 1e-4) * 1.0, 2e-5);

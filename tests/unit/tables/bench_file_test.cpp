@@ -196,7 +196,8 @@ TEST(BenchFile, ReadsLeadsSeriesAndShunt) {
   const Bench bench = parse_bench(
       replaced(kShpb, "gain = 500",
                "gauge_resistance_ohm = 350\nlead_resistance_ohm = 0.5\nlead_wires = 3\n"
-               "gauges_in_series = 2\nshunt_resistance_ohm = 100e3\nshunt_reading_V = -1.25"),
+               "gauges_in_series = 2\nshunt_resistance_ohm = 100e3\nshunt_reading_V = -1.25\n"
+               "shunt_resistance_ohm_sd = 3e3\nshunt_reading_V_sd = 0.05"),
       "b.toml");
   const Bridge& bridge = *bench.gauges[0].bridge;
   EXPECT_EQ(bridge.gauge_resistance_ohm, 350.0);
@@ -205,6 +206,7 @@ TEST(BenchFile, ReadsLeadsSeriesAndShunt) {
   EXPECT_EQ(bridge.gauges_in_series, 2);
   EXPECT_EQ(*bridge.shunt_resistance_ohm, 100e3);
   EXPECT_EQ(*bridge.shunt_reading_V, -1.25);
+  EXPECT_NEAR(bridge.shunt_gain.sd, 0.05, 1e-12);
 }
 
 TEST(BenchFile, KnowsTheBridges) {

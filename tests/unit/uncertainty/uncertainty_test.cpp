@@ -37,6 +37,15 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(squares);
 }
 
+double rms_about_mean(std::vector<double> values) {
+  const double mean =
+      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  for (double& value : values) {
+    value -= mean;
+  }
+  return rms(values);
+}
+
 TEST(Uncertainty, OfNoiseIsTheScatterOfRepeatedShots) {
   const ElasticShpb model;
   const auto records = model.solve();
@@ -118,6 +127,18 @@ TEST(Uncertainty, OfOneGainIsThatShareOfItsForce) {
   EXPECT_EQ(u.budget.front().source, "gauge factors");
   EXPECT_GT(u.budget.front().share.front(), 0.95);
   EXPECT_NEAR(u.budget.front().sd.front() / figure(u, "peak_stress_Pa").sd, 1.0, 0.15);
+}
+
+TEST(Uncertainty, OfOneGainCountsWhereSamplesAreStrainAlready) {
+  const ElasticShpb model;
+  Shot strain = model.shot(model.solve(), 0.2e-6, 24, 0.01, 1);
+  strain.bench.gauges[1].strain_gain.sd = 0.01;
+  const Uncertainty of_strain = propagated(strain, 600);
+  ASSERT_FALSE(of_strain.budget.empty());
+  EXPECT_EQ(of_strain.budget.front().source, "gauge factors");
+  const Reduction r = Reducer().reduce(strain);
+  const double peak = *std::max_element(r.stress_Pa.begin(), r.stress_Pa.end());
+  EXPECT_NEAR(figure(of_strain, "peak_stress_Pa").sd / peak, 0.005, 0.0006);
 }
 
 TEST(Uncertainty, TheBudgetAddsUpToTheWhole) {
@@ -224,6 +245,22 @@ TEST(NoiseMaker, MakesNoiseOfTheSpectrumItWasShown) {
   std::generate(white.begin(), white.end(), [&] { return 3.0 * normal(engine); });
   NoiseMaker(white, 8000).make(random, made);
   EXPECT_NEAR(rms(made), 3.0, 0.15);
+}
+
+// A quiet stretch that happens to drift says nothing of what noise does in a record many times as
+// long.
+TEST(NoiseMaker, DrawsNothingOutBeyondItsStretch) {
+  std::mt19937 engine(6);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<double> drifting(500);
+  for (std::size_t n = 0; n < drifting.size(); ++n) {
+    drifting[n] = normal(engine) + 2.0 * static_cast<double>(n) / 500.0;
+  }
+  NoiseMaker maker(drifting, 16000);
+  RandomStream random(1, 3);
+  std::vector<double> made(16000);
+  maker.make(random, made);
+  EXPECT_NEAR(rms(made), rms_about_mean(drifting), 0.3);
 }
 
 }  // namespace
