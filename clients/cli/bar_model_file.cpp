@@ -76,6 +76,27 @@ void require_temperature(const BarModelFile& model, const Shot& shot) {
   }
 }
 
+void require_density(const BarModelFile& model, const Bench& bench) {
+  constexpr double kApart = 0.01;
+  constexpr double kDeviations = 3.0;
+  const Measured& identified = model.prior.material.density_kg_m3;
+  for (const Bar* const bar : {&bench.input, bench.output ? &*bench.output : nullptr}) {
+    if (bar == nullptr || bar->youngs_modulus_Pa) {
+      continue;
+    }
+    const double apart = std::abs(identified - bar->density_kg_m3);
+    if (apart > kApart * bar->density_kg_m3 &&
+        apart > kDeviations * std::hypot(identified.sd, bar->density_kg_m3.sd)) {
+      throw InputError(
+          model.name,
+          fmt::format("is of bars of {:.0f} kg/m3, and the bench's have {:.0f}", identified.value,
+                      bar->density_kg_m3.value),
+          "file the same density in both: moduli give the wave speed with the one they "
+          "were identified with");
+    }
+  }
+}
+
 void require_band(const BarModelFile& model, std::optional<double> asked_Hz) {
   if (model.band_limit_Hz && asked_Hz && *asked_Hz > *model.band_limit_Hz) {
     throw InputError(model.name,

@@ -32,6 +32,11 @@ struct BarModelFile {
 /// @throws InputError
 void require_temperature(const BarModelFile& model, const Shot& shot);
 
+/// Refuses a bar model of another density than a viscoelastic bar of the bench: moduli tell a
+/// wave's speed only with the density they were identified with.
+/// @throws InputError where they are more than 1 % and three filed deviations apart
+void require_density(const BarModelFile& model, const Bench& bench);
+
 /// The band limit to work with: what was asked for, which must lie within the model's band; else
 /// none. @throws InputError
 void require_band(const BarModelFile& model, std::optional<double> asked_Hz);

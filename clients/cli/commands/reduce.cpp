@@ -217,6 +217,7 @@ int run(const Settings& settings, Context& context) {
   }
   if (bars.has_value()) {
     require_temperature(*bars, reduced.shot);
+    require_density(*bars, reduced.shot.bench);
   }
   reduced.stress = settings.stress.value_or(reduced.stress);
   reduced.corrections = names_of(options.corrections);
