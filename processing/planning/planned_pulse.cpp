@@ -5,7 +5,9 @@
 #include <numbers>
 
 #include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/waves/bar_modes.hpp"
+#include "processing/waves/transform.hpp"
 
 namespace kolsky {
 
@@ -22,6 +24,44 @@ double edge(double to_edge_s, double rise_s) {
     return 1.0;
   }
   return 0.5 * (1.0 - std::cos(std::numbers::pi * to_edge_s / rise_s));
+}
+
+/// Of the input bar's gauge that the pulse reaches first; without one the struck end.
+double first_gauge_m(const Bench& bench) {
+  double nearest_m = bench.input.length_m;
+  bool found = false;
+  for (const Gauge& gauge : bench.gauges) {
+    if (gauge.bar != "output") {
+      nearest_m = std::min<double>(nearest_m, gauge.position_m);
+      found = true;
+    }
+  }
+  return found ? nearest_m : 0.0;
+}
+
+/// The largest strain that a pulse makes on its way past a place, by elementary waves:
+/// strain = J exp(-s sqrt(rho J) x) F / A.
+double largest_strain(const PlannedPulse& pulse, const Bar& bar, const Compliance& compliance,
+                      double place_m) {
+  constexpr double kSamplesInPulse = 2000.0;
+  const double period_s = pulse.duration_s() / kSamplesInPulse;
+  const double passed_s =
+      pulse.duration_s() + pulse.rise_s + 1.5 * place_m / front_speed_m_per_s(bar, compliance);
+  DampedTransform transform(static_cast<std::size_t>(passed_s / period_s) + 1, period_s);
+  std::vector<double> record(transform.length(), 0.0);
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    record[n] = pulse.force_N(static_cast<double>(n) * period_s);
+  }
+  std::vector<Complex> spectrum(transform.bins());
+  transform.forward(record, spectrum);
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    const Complex s = transform.s(k);
+    const Complex J = compliance.at(s);
+    spectrum[k] *=
+        J * std::exp(-s * std::sqrt(bar.density_kg_m3.value * J) * place_m) / bar.area_m2();
+  }
+  transform.inverse(spectrum, record);
+  return *std::max_element(record.begin(), record.end());
 }
 
 }  // namespace
@@ -68,12 +108,20 @@ PlannedPulse pulse_of_strain(const Bench& bench, const Material& bars, double st
                              double duration_s, double rise_s) {
   const auto compliance = compliance_of(bench.input, bars);
   PlannedPulse pulse;
-  pulse.step_force_N = {strain * bench.input.area_m2() / compliance->instantaneous()};
+  pulse.step_force_N = {1.0};
   pulse.rise_s = rise_s > 0.0
                      ? rise_s
                      : bench.input.diameter_m / front_speed_m_per_s(bench.input, *compliance);
+  if (2.0 * pulse.rise_s > duration_s) {
+    throw InputError("--rise",
+                     in_words(pulse.rise_s, "s") + " and the fall are longer than a pulse of " +
+                         in_words(duration_s, "s"),
+                     "give at most half of --pulse-duration");
+  }
   // The pulse is as long as it lasts from foot to foot.
-  pulse.step_s = std::max(duration_s - pulse.rise_s, pulse.rise_s);
+  pulse.step_s = duration_s - pulse.rise_s;
+  pulse.step_force_N = {strain /
+                        largest_strain(pulse, bench.input, *compliance, first_gauge_m(bench))};
   return pulse;
 }
 

@@ -28,7 +28,9 @@ struct PlannedPulse {
 [[nodiscard]] PlannedPulse pulse_of_striker(const Bench& bench, const Material& bars,
                                             double speed_m_per_s, double rise_s);
 
-/// From the strain it makes in the input bar, and its length.
+/// From the largest strain it makes as it passes the input bar's first gauge, which a viscoelastic
+/// bar creeps to and damps on the way, and its length.
+/// @throws InputError where rise and fall are longer than that
 [[nodiscard]] PlannedPulse pulse_of_strain(const Bench& bench, const Material& bars, double strain,
                                            double duration_s, double rise_s);
 

@@ -25,8 +25,10 @@ Material core() {
 }
 
 ShotPlan planned(const LinearShpb& model, const Bench& bench) {
+  const std::vector<double> first = model.solve().front();
   const PlannedPulse pulse =
-      pulse_of_strain(bench, paper_pmma(), model.peak_strain, model.pulse_s, model.ramp_s);
+      pulse_of_strain(bench, paper_pmma(), *std::max_element(first.begin(), first.end()),
+                      model.pulse_s, model.ramp_s);
   return plan_shot(bench, paper_pmma(), core(), pulse, {});
 }
 
