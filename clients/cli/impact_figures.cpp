@@ -27,10 +27,13 @@ constexpr std::array kSpeeds_m_per_s = {31.1, 40.3, 51.0};
 constexpr std::array kFrictions = {0.0, 0.1, 0.2, 0.3};
 constexpr std::array kReadings = {Reading::full, Reading::bulk_E1, Reading::bulk_Einf,
                                   Reading::exact};
-constexpr std::array kCores_m = {0.03565, 0.038};  // 43.4 g by geometry; the usual construction
-constexpr std::size_t kTellEvery = 5;              // runs
+constexpr double kOtherCore_m = 0.038;       // the usual construction, beside the bench's
+constexpr double kLeastDifference_m = 1e-4;  // of cores that are worth a row of their own
+constexpr std::size_t kTellEvery = 5;        // runs
 constexpr std::size_t kElements = 2048;
 constexpr std::size_t kFineElements = 8192;
+constexpr std::array kFiles = {"fig11.svg", "fig12.svg", "fig13.svg",
+                               "fig14.svg", "fig15.svg", "table.md"};
 
 /// A run and the same on a mesh of half the element size.
 struct Pair {
@@ -58,7 +61,15 @@ void run_all(std::vector<Pair>& pairs) {
 class Paper {
  public:
   Paper(Bench bench, impact::BallMaterial core, impact::BallMaterial cover)
-      : bench_(std::move(bench)), core_(std::move(core)), cover_(std::move(cover)) {
+      : bench_(std::move(bench)),
+        core_(std::move(core)),
+        cover_(std::move(cover)),
+        own_core_m_(bench_.ball->core_diameter_m.value),
+        cores_m_{own_core_m_} {
+    if (std::abs(kOtherCore_m - own_core_m_) > kLeastDifference_m &&
+        kOtherCore_m < bench_.ball->outer_diameter_m) {
+      cores_m_.push_back(kOtherCore_m);
+    }
     plan();
     run_all(pairs_);
   }
@@ -100,7 +111,7 @@ class Paper {
     pair.model = impact_on(bench, core, cover, impact::TargetKind::dashpot, speed_m_per_s);
     pair.model.friction = friction;
     pair.model.elements = kElements;
-    const bool pictured = core_m == kCores_m[0] && reading == Reading::full && friction == 0.3 &&
+    const bool pictured = core_m == own_core_m_ && reading == Reading::full && friction == 0.3 &&
                           speed_m_per_s == 40.3;
     if (pictured) {
       pair.model.field_at_turn = true;
@@ -113,7 +124,7 @@ class Paper {
   }
 
   void plan() {
-    for (const double core_m : kCores_m) {
+    for (const double core_m : cores_m_) {
       for (const Reading reading : kReadings) {
         for (const double speed : kSpeeds_m_per_s) {
           add(core_m, reading, 0.3, speed);
@@ -122,7 +133,7 @@ class Paper {
     }
     for (const double speed : kSpeeds_m_per_s) {
       for (const double friction : {0.0, 0.1, 0.2}) {
-        add(kCores_m[0], Reading::full, friction, speed);
+        add(own_core_m_, Reading::full, friction, speed);
       }
     }
   }
@@ -157,13 +168,15 @@ class Paper {
 
   // What the paper says, and what comes out, each beside the largest change by the finer mesh.
   [[nodiscard]] std::string trends() const {
-    std::string text =
-        "\nFriction from 0 to 0.3 (35.65 mm core, full); in brackets the mesh's share.\n\n"
+    std::string text = fmt::format(
+        "\nFriction from 0 to 0.3 ({:.2f} mm core, full); in brackets the mesh's share.\n\n",
+        1e3 * own_core_m_);
+    text +=
         "| speed m/s | peak % | peak earlier us | contact us | restitution |\n"
         "|---|---|---|---|---|\n";
     for (const double speed : kSpeeds_m_per_s) {
-      const Pair& without = at({kCores_m[0], Reading::full, 0.0, speed});
-      const Pair& with = at({kCores_m[0], Reading::full, 0.3, speed});
+      const Pair& without = at({own_core_m_, Reading::full, 0.0, speed});
+      const Pair& with = at({own_core_m_, Reading::full, 0.3, speed});
       const auto change = [&](auto number) {
         const double coarse = number(with.coarse) - number(without.coarse);
         const double fine = number(with.fine) - number(without.fine);
@@ -184,7 +197,7 @@ class Paper {
     return text;
   }
 
-  [[nodiscard]] const Pair& pictured() const { return at({kCores_m[0], Reading::full, 0.3, 40.3}); }
+  [[nodiscard]] const Pair& pictured() const { return at({own_core_m_, Reading::full, 0.3, 40.3}); }
 
   [[nodiscard]] std::string stress_picture() const {
     Figure figure{"Fig. 11: axial stress at the largest deformation, 40.3 m/s", {}, {}};
@@ -206,7 +219,7 @@ class Paper {
     for (const double speed : kSpeeds_m_per_s) {
       Panel panel{fmt::format("{:.1f} m/s", speed), {"time", "s"}, {"force", "N"}, {}};
       for (const double friction : kFrictions) {
-        const ImpactHistory& h = at({kCores_m[0], Reading::full, friction, speed}).coarse;
+        const ImpactHistory& h = at({own_core_m_, Reading::full, friction, speed}).coarse;
         panel.series.push_back({fmt::format("{:.1f}", friction), h.time_s, h.force_N});
       }
       panels.push_back(std::move(panel));
@@ -215,21 +228,25 @@ class Paper {
   }
 
   [[nodiscard]] Panel speeds() const {
-    Panel panel{"35.65 mm core, full", {"time", "s"}, {"force", "N"}, {}};
+    Panel panel{
+        fmt::format("{:.2f} mm core, full", 1e3 * own_core_m_), {"time", "s"}, {"force", "N"}, {}};
     for (const double speed : kSpeeds_m_per_s) {
-      const ImpactHistory& h = at({kCores_m[0], Reading::full, 0.3, speed}).coarse;
+      const ImpactHistory& h = at({own_core_m_, Reading::full, 0.3, speed}).coarse;
       panel.series.push_back({fmt::format("{:.1f} m/s", speed), h.time_s, h.force_N});
     }
     return panel;
   }
 
   [[nodiscard]] Panel restitution() const {
-    Panel panel{"35.65 mm core, friction 0.3", {"speed", "m/s"}, {"restitution", "1"}, {}};
+    Panel panel{fmt::format("{:.2f} mm core, friction 0.3", 1e3 * own_core_m_),
+                {"speed", "m/s"},
+                {"restitution", "1"},
+                {}};
     for (const Reading reading : kReadings) {
       Series series{impact::name_of(reading), {}, {}};
       for (const double speed : kSpeeds_m_per_s) {
         series.x.push_back(speed);
-        series.y.push_back(at({kCores_m[0], reading, 0.3, speed}).coarse.restitution);
+        series.y.push_back(at({own_core_m_, reading, 0.3, speed}).coarse.restitution);
       }
       panel.series.push_back(std::move(series));
     }
@@ -239,21 +256,60 @@ class Paper {
   Bench bench_;
   impact::BallMaterial core_;
   impact::BallMaterial cover_;
+  double own_core_m_;            // the bench's
+  std::vector<double> cores_m_;  // the bench's and, where it is another, the usual one
   std::vector<Pair> pairs_;
   std::vector<Key> keys_;
+};
+
+/// A folder to fill: made new, or empty until now, and as it was again unless it is kept.
+class FolderToFill {
+ public:
+  explicit FolderToFill(std::filesystem::path path) : path_(std::move(path)) {
+    std::error_code problem;
+    made_ = std::filesystem::create_directory(path_, problem);
+    if (!made_ && (problem || !std::filesystem::is_empty(path_, problem) || problem)) {
+      throw InputError(path_.string(), problem ? problem.message() : "is there already",
+                       "give a folder that can be made new, or an empty one");
+    }
+  }
+  FolderToFill(const FolderToFill&) = delete;
+  FolderToFill& operator=(const FolderToFill&) = delete;
+  FolderToFill(FolderToFill&&) = delete;
+  FolderToFill& operator=(FolderToFill&&) = delete;
+  ~FolderToFill() {
+    if (!kept_) {
+      clear();
+    }
+  }
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  void keep() { kept_ = true; }
+
+ private:
+  void clear() const {
+    std::error_code ignored;
+    for (const char* const name : kFiles) {
+      std::filesystem::remove(path_ / name, ignored);
+    }
+    if (made_) {
+      std::filesystem::remove(path_, ignored);
+    }
+  }
+
+  std::filesystem::path path_;
+  bool made_ = false;
+  bool kept_ = false;
 };
 
 }  // namespace
 
 std::string write_paper_figures(const Bench& bench, const impact::BallMaterial& core,
                                 const impact::BallMaterial& cover, const std::string& folder) {
-  std::error_code problem;
-  if (!std::filesystem::create_directory(folder, problem)) {
-    throw InputError(folder, problem ? problem.message() : "is there already",
-                     "give a folder that can be made new");
-  }
+  FolderToFill fresh{folder};
   const Paper paper(bench, core, cover);
-  paper.write(folder);
+  paper.write(fresh.path());
+  fresh.keep();
   return paper.table() + "\nfigures 11 to 15 and table.md are in " + folder + "\n";
 }
 

@@ -40,8 +40,9 @@ struct ImpactRun {
 [[nodiscard]] std::string page(const ImpactRun& run);
 
 /// Writes the paper's figures 11 to 15 into a folder that is made for them: pictures, a table of
-/// every run, and the mesh error beside each trend. Runs on all processors.
-/// @throws InputError if the folder is there already
+/// every run, and the mesh error beside each trend. The ball is the bench's, and with the usual
+/// core of 38 mm. Runs on all processors. Where it fails nothing is left of the folder.
+/// @throws InputError if the folder is there already and not empty
 /// @return what to print
 [[nodiscard]] std::string write_paper_figures(const Bench& bench, const impact::BallMaterial& core,
                                               const impact::BallMaterial& cover,

@@ -153,7 +153,7 @@ class CommandLine {
       const auto* const* number = std::get_if<std::optional<double>*>(&argument.target);
       if (number != nullptr && (*number)->has_value() && !std::isfinite(***number)) {
         throw InputError(place_of(command_) + ": " + argument.name, "not a finite number",
-                         "give a number in " + argument.value);
+                         "give a finite number");
       }
     }
   }

@@ -64,9 +64,28 @@ double covered_share(double r_m, double disc_m, double offset_m) {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) / std::numbers::pi;
 }
 
+Support support_of(double r_m, const Edge& edge, double stiffness_Pa_per_m) {
+  const double share = covered_share(r_m, edge.disc_m, edge.offset_m);
+  if (share == 1.0 || share == 0.0) {
+    return {share * stiffness_Pa_per_m, 0.0};
+  }
+  constexpr double kLeast = 1e-12;  // the share's slope is infinite where a circle meets the edge
+  const double cosine = std::cos(std::numbers::pi * share);
+  const double share_slope =
+      -(1.0 / edge.offset_m - cosine / r_m) /
+      (std::numbers::pi * std::sqrt(std::max(1.0 - cosine * cosine, kLeast)));
+  const double overhang_m = r_m + edge.offset_m - edge.disc_m;
+  const double free_by_held = (1.0 - share) / share;
+  const double yielding = free_by_held * overhang_m / edge.modulus_Pa;
+  const double yielding_slope =
+      (free_by_held - share_slope * overhang_m / (share * share)) / edge.modulus_Pa;
+  const double stiffness = 1.0 / (1.0 / stiffness_Pa_per_m + yielding);
+  return {stiffness, -stiffness * stiffness * yielding_slope};
+}
+
 Contact::Contact(const Body& ball, std::span<const std::size_t> nodes, double friction,
-                 double disc_m, double offset_m)
-    : friction_(friction), disc_m_(disc_m), offset_m_(offset_m) {
+                 const Edge& edge)
+    : friction_(friction), edge_(edge) {
   std::vector<double> area(nodes.size(), 0.0);
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
     const double length_m = std::hypot(ball.r_m(nodes[k + 1]) - ball.r_m(nodes[k]),
@@ -126,8 +145,8 @@ ContactSums Contact::push_on(Body& ball, const Face& face) {
     const double z_m = at_a * ball.z_m(point.a) + point.at_b * ball.z_m(point.b);
     const double r_m = at_a * ball.r_m(point.a) + point.at_b * ball.r_m(point.b);
     const double depth_m = face.sense() * (face.z_at(r_m) - z_m);
-    const double share = depth_m > 0.0 ? covered_share(r_m, disc_m_, offset_m_) : 0.0;
-    if (share == 0.0) {
+    const Support support = depth_m > 0.0 ? support_of(r_m, edge_, stiffness_) : Support{};
+    if (support.stiffness_Pa_per_m == 0.0) {
       if (inner_depth_m > 0.0 && depth_m < 0.0) {
         // The patch ends where the gap opens, between this point and the one before.
         sums.radius_m += (r_m - sums.radius_m) * inner_depth_m / (inner_depth_m - depth_m);
@@ -140,13 +159,16 @@ ContactSums Contact::push_on(Body& ball, const Face& face) {
       }
       continue;
     }
-    const double normal_N = stiffness_ * point.area_m2 * share * depth_m;
-    const double radial_N = friction_ > 0.0 ? drag(point, r_m, normal_N, sums) : 0.0;
+    const double normal_N = support.stiffness_Pa_per_m * point.area_m2 * depth_m;
+    const double drag_N = friction_ > 0.0 ? drag(point, r_m, normal_N, sums) : 0.0;
+    // The edge presses outwards on what yields over it: by its slope, so that energy is a state.
+    const double edge_N = -0.5 * support.slope_Pa_per_m2 * point.area_m2 * depth_m * depth_m;
+    const double radial_N = drag_N + edge_N;
     const double axial_N = face.sense() * normal_N;
     point.touching = true;
     ball.push(point.a, at_a * radial_N, at_a * axial_N);
     ball.push(point.b, point.at_b * radial_N, point.at_b * axial_N);
-    face.push(r_m, -radial_N, -axial_N);
+    face.push(r_m, -drag_N, -axial_N);
     sums.force_N += normal_N;
     sums.energy_J += 0.5 * normal_N * depth_m;
     sums.radius_m = std::max(sums.radius_m, r_m);

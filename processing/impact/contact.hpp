@@ -25,15 +25,35 @@ struct ContactSums {
 /// axis is `offset_m` away.
 [[nodiscard]] double covered_share(double r_m, double disc_m, double offset_m);
 
+/// Where a plane ends, and what of a ball beyond it gives way to.
+struct Edge {
+  double disc_m = 0.0;    ///< its radius; 0: endless
+  double offset_m = 0.0;  ///< of the ball's axis
+  double modulus_Pa =
+      0.0;  ///< E/(1 - nu^2) of the ball's outer layer; used where part of a circle overhangs
+};
+
+/// A circle's resistance, per area, to its mean depth in the plane.
+struct Support {
+  double stiffness_Pa_per_m = 0.0;
+  double slope_Pa_per_m2 = 0.0;  ///< by the circle's radius
+};
+
+/// The resistance of a circle of radius r of which a share s lies on the plane, with a penalty of
+/// `stiffness`: the supported arc stays at the plane, the overhanging one moves on by what its
+/// pressure p would have held back, p l / E*, l being how far the circle stands out over the edge.
+/// Their mean makes the penalty one of two springs in series; the other is s / (1 - s) E* / l.
+/// An estimate, good to a factor of two: the circle is one of three dimensions here as its mean.
+[[nodiscard]] Support support_of(double r_m, const Edge& edge, double stiffness_Pa_per_m);
+
 /// Penalty contact with Coulomb friction: pressure proportional to penetration at points along the
 /// ball's surface, each with its share of the undeformed area, so that the patch grows smoothly and
 /// not node by node.
 class Contact {
  public:
   /// @param nodes  the ball's surface, in order
-  /// @param disc_m, offset_m  the plane ends there; 0: endless
-  Contact(const Body& ball, std::span<const std::size_t> nodes, double friction, double disc_m,
-          double offset_m);
+  Contact(const Body& ball, std::span<const std::size_t> nodes, double friction,
+          const Edge& edge = {});
 
   /// Least of nodal mass per area of the surface's nodes [kg/m2].
   [[nodiscard]] double least_mass_per_area() const { return least_mass_per_area_; }
@@ -65,8 +85,7 @@ class Contact {
 
   std::vector<Point> points_;
   double friction_ = 0.0;
-  double disc_m_ = 0.0;
-  double offset_m_ = 0.0;
+  Edge edge_;
   double stiffness_ = 0.0;
   double least_mass_per_area_ = 0.0;
 };

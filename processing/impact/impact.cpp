@@ -22,6 +22,9 @@ constexpr int kClosely = 32;              // within a thousandth, for the step
 constexpr std::size_t kSurveyEvery = 10;  // steps
 constexpr double kLeftAfter_s = 20e-6;    // without a touch
 constexpr double kLongest_s = 5e-3;
+constexpr double kClosesWithin = 2e-3;    // of the start's energy: as good as all usual impacts
+constexpr double kNoResultBeyond = 5e-2;  // force and restitution are off by as much and more
+constexpr double kAtTheEdge = 0.95;       // of the way to it: where a patch begins to cross it
 
 Body make_ball(const ImpactModel& model) {
   std::vector<double> diameters_m;
@@ -60,16 +63,23 @@ std::vector<std::size_t> half_surface(const Body& ball, bool front) {
   return half;
 }
 
+// The cover relaxes within the first tenth of a contact: what overhangs yields as relaxed.
+Edge edge_of(const ImpactModel& model) {
+  if (model.target.kind == TargetKind::rigid) {
+    return {};
+  }
+  return {0.5 * model.target.diameter_m, model.offset_m,
+          model.layers.back().solid.plane_modulus_relaxed_Pa()};
+}
+
 class Run {
  public:
   explicit Run(const ImpactModel& model)
       : model_(model),
         ball_(make_ball(model)),
         bar_(make_bar(model)),
-        contact_(ball_, half_surface(ball_, true), model.friction,
-                 model.target.kind == TargetKind::rigid ? 0.0 : 0.5 * model.target.diameter_m,
-                 model.offset_m),
-        rear_contact_(ball_, half_surface(ball_, false), 0.0, 0.0, 0.0),
+        contact_(ball_, half_surface(ball_, true), model.friction, edge_of(model)),
+        rear_contact_(ball_, half_surface(ball_, false), 0.0),
         observer_(model, ball_, longest_s()) {
     ball_.set_axial_velocity(-model.speed_m_per_s);
     rear_.sense = -1.0;
@@ -276,22 +286,86 @@ class Run {
     history.steps = steps_;
     history.first_step_s = first_s_;
     history.least_step_s = least_s_;
+    refuse_open_energy(history);
     remark(history);
     return history;
   }
 
-  void remark(ImpactHistory& history) const {
-    const double edge_m = 0.5 * model_.target.diameter_m - model_.offset_m;
-    if (model_.target.kind != TargetKind::rigid &&
-        history.largest_contact_radius_m > 0.95 * edge_m) {
-      history.remarks.push_back(
-          "the contact patch comes to " + in_words(1e3 * history.largest_contact_radius_m, "mm") +
-          " from the ball's axis and the bar's edge lies at " + in_words(1e3 * edge_m, "mm"));
+  [[nodiscard]] double nearest_edge_m() const {
+    return model_.target.kind == TargetKind::rigid
+               ? std::numeric_limits<double>::infinity()
+               : 0.5 * model_.target.diameter_m - model_.offset_m;
+  }
+
+  [[nodiscard]] bool crosses_edge(const ImpactHistory& history) const {
+    return history.largest_contact_radius_m > kAtTheEdge * nearest_edge_m();
+  }
+
+  // What to do about energy that does not close.
+  [[nodiscard]] std::string closing_mend(const ImpactHistory& history) const {
+    return crosses_edge(history)
+               ? "take a rigid target, which has no edge, a wider bar or a lower speed; more "
+                 "elements help a little"
+               : "take more elements or a smaller time step";
+  }
+
+  [[nodiscard]] std::string closing_cause(const ImpactHistory& history) const {
+    return crosses_edge(history) ? "the patch crosses the bar's edge, where points lose contact "
+                                   "one by one"
+                                 : "the mesh or the step is too coarse for this deformation";
+  }
+
+  [[nodiscard]] std::string closing_words() const {
+    return "energy closes to " +
+           in_words(1e-2 * std::round(1e4 * std::abs(energy_.worst_closure)), "%") + " only";
+  }
+
+  void refuse_open_energy(const ImpactHistory& history) const {
+    if (std::abs(energy_.worst_closure) > kNoResultBeyond) {
+      throw InputError("impact", closing_words() + ": " + closing_cause(history),
+                       closing_mend(history));
     }
+  }
+
+  void remark_energy(ImpactHistory& history) const {
+    if (std::abs(energy_.worst_closure) > kClosesWithin) {
+      history.remarks.push_back(closing_words() + ", where " + in_words(1e2 * kClosesWithin, "%") +
+                                " are usual: " + closing_cause(history) +
+                                ", and the force may have spikes that are none; " +
+                                closing_mend(history));
+    }
+  }
+
+  // A dashpot stands for a bar without end: where the far end speaks while the ball touches, no
+  // more.
+  void remark_reflection(ImpactHistory& history) const {
+    const Target& target = model_.target;
+    if (target.kind != TargetKind::dashpot || !(target.length_m > 0.0)) {
+      return;
+    }
+    const double back_s = 2.0 * target.length_m / target.wave_speed_m_per_s();
+    if (back_s < history.release_time_s) {
+      history.remarks.push_back(
+          "the wave from the far end of a bar of " + in_words(target.length_m, "m") +
+          " is back at its face after " + in_words(std::round(1e6 * back_s), "us") +
+          ", while the ball still touches it: a dashpot stands for a bar without end, so force and "
+          "restitution are not this bar's; take target bar");
+    }
+  }
+
+  void remark(ImpactHistory& history) const {
+    if (crosses_edge(history)) {
+      history.remarks.push_back("the contact patch comes to " +
+                                in_words(1e3 * history.largest_contact_radius_m, "mm") +
+                                " from the ball's axis and the bar's edge lies at " +
+                                in_words(1e3 * nearest_edge_m(), "mm"));
+    }
+    remark_energy(history);
+    remark_reflection(history);
     if (model_.offset_m > 0.0) {
       history.remarks.emplace_back(
-          "off-centre contact as its mean round the axis: what overhangs carries no load; the "
-          "bending it puts into the bar is not computed");
+          "off-centre contact as its mean round the axis, an estimate good to perhaps a factor of "
+          "two of what it changes; the bending it puts into the bar is not computed");
     }
     for (std::size_t i = 0; i < history.falling_share.size(); ++i) {
       const Solid& solid = model_.layers[i].solid;

@@ -7,13 +7,15 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/impact/mesh.hpp"
 
 namespace kolsky::impact {
 namespace {
 
 constexpr std::array kTargetNames = {"rigid", "dashpot", "bar"};
 constexpr double kFastest_m_per_s = 500.0;  // shells of the ball would be shocks long before
-constexpr double kMostNonlinear = 1e3;      // the step would shrink with its root, and on
+constexpr std::size_t kMostElements = 1'000'000;
+constexpr double kMostNonlinear = 1e3;  // the step would shrink with its root, and on
 
 void require(bool good, const std::string& place, const std::string& what,
              const std::string& mend) {
@@ -111,8 +113,11 @@ void check(const ImpactModel& model) {
           "give kilograms, 0 for none");
   require(not_negative(model.offset_m), "offset_m", "is not a distance", "give metres, 0 or more");
   check_target(model.target, model.offset_m);
-  require(model.elements >= 64 && model.elements <= 1'000'000, "elements",
-          std::to_string(model.elements) + " cannot mesh a ball", "give 64 to 1000000");
+  const std::size_t least = least_elements(model.layers.size());
+  require(model.elements >= least && model.elements <= kMostElements, "elements",
+          std::to_string(model.elements) + " cannot mesh a ball of " +
+              std::to_string(model.layers.size()) + " layers",
+          "give " + std::to_string(least) + " to " + std::to_string(kMostElements));
   require(model.bar_elements_across >= 2 && model.bar_elements_across <= 200, "bar_elements_across",
           "is out of range", "give 2 to 200");
   require(not_negative(model.time_step_s), "time_step_s", "is not a time",

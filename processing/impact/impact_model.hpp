@@ -52,7 +52,7 @@ struct ImpactModel {
   double speed_m_per_s = 0.0;
   double friction = 0.3;       ///< Coulomb
   double sabot_mass_kg = 0.0;  ///< a rigid mass that follows and touches the rear pole
-  double offset_m = 0.0;       ///< ball's axis off the bar's: what overhangs carries no load
+  double offset_m = 0.0;       ///< ball's axis off the bar's, as its mean round the axis
 
   std::size_t elements = 2048;          ///< of the ball, about
   std::size_t bar_elements_across = 8;  ///< over the bar's radius; the mesh along it is as fine

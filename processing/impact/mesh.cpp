@@ -51,17 +51,30 @@ struct Pattern {
   std::vector<std::size_t> rings;
 };
 
+// Of the inner square, n x 2n.
+std::size_t square_for(std::size_t elements) {
+  const auto n =
+      static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(elements) / 8.0)));
+  return std::max<std::size_t>(n, 2);
+}
+
+std::size_t rings_for(std::size_t elements) {
+  const std::size_t n = square_for(elements);
+  return (elements - std::min(2 * n * n, elements)) / (4 * n);
+}
+
+std::size_t least_rings(std::size_t layers) {
+  return kLeastCoreRings + kLeastRings * (layers - 1);
+}
+
 Pattern pattern_for(std::span<const double> diameters_m, std::size_t elements) {
   Pattern pattern;
-  pattern.n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(elements) / 8.0)));
-  pattern.n = std::max<std::size_t>(pattern.n, 2);
-  const std::size_t inside = 2 * pattern.n * pattern.n;
-  const std::size_t least = kLeastCoreRings + kLeastRings * (diameters_m.size() - 1);
-  const std::size_t all = (elements - std::min(inside, elements)) / (4 * pattern.n);
-  if (all < least) {
-    throw InputError(
-        "elements", std::to_string(elements) + " are too few for the ball's layers",
-        "give at least " + std::to_string(8 * least * least) + ": every shell needs four rings");
+  pattern.n = square_for(elements);
+  const std::size_t all = rings_for(elements);
+  if (all < least_rings(diameters_m.size())) {
+    throw InputError("elements", std::to_string(elements) + " are too few for the ball's layers",
+                     "give at least " + std::to_string(least_elements(diameters_m.size())) +
+                         ": every shell needs four rings");
   }
   std::size_t left = all;
   pattern.rings.resize(diameters_m.size());
@@ -69,7 +82,7 @@ Pattern pattern_for(std::span<const double> diameters_m, std::size_t elements) {
     const double share =
         (diameters_m[layer] - diameters_m[layer - 1]) / (0.72 * diameters_m.back());
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(all)));
-    const std::size_t keep = kLeastCoreRings + kLeastRings * (layer - 1);
+    const std::size_t keep = least_rings(layer);
     pattern.rings[layer] = std::clamp(wanted, kLeastRings, left - keep);
     left -= pattern.rings[layer];
   }
@@ -167,6 +180,16 @@ std::size_t Mesh::elements() const {
     count += block.columns * block.rows;
   }
   return count;
+}
+
+std::size_t least_elements(std::size_t layers) {
+  // Not one by one: as the square grows by a row, a ring may go. With so many, none is missing.
+  const std::size_t least = least_rings(layers);
+  std::size_t enough = 8 * least * least;
+  while (rings_for(enough - 1) >= least) {
+    --enough;
+  }
+  return enough;
 }
 
 Mesh ball_mesh(std::span<const double> outer_diameters_m, std::size_t elements) {

@@ -48,6 +48,9 @@ struct Mesh {
   [[nodiscard]] std::size_t elements() const;
 };
 
+/// From this number of elements on, every one meshes a ball of so many layers.
+[[nodiscard]] std::size_t least_elements(std::size_t layers);
+
 /// A ball whose struck pole is at the origin and whose centre is at Z = +radius: a rounded square
 /// of n x 2n inside, rings of 4n elements round it, at least four rings in every layer outside the
 /// core.

@@ -214,6 +214,12 @@ double Solid::bulk_instantaneous_Pa() const {
   return modulus;
 }
 
+double Solid::plane_modulus_relaxed_Pa() const {
+  const double G = shear_relaxed_Pa;
+  const double K = bulk_relaxed_Pa;
+  return 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G);
+}
+
 double Solid::falls_beyond_strain() const {
   // (1 + b e) e is steepest at no strain and level here.
   return nonlinearity < 0.0 ? -0.5 / nonlinearity : std::numeric_limits<double>::infinity();

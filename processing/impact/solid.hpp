@@ -85,6 +85,8 @@ struct Solid {
 
   [[nodiscard]] double shear_instantaneous_Pa() const;
   [[nodiscard]] double bulk_instantaneous_Pa() const;
+  /// E / (1 - nu^2) once relaxed: of a half-space under pressure.
+  [[nodiscard]] double plane_modulus_relaxed_Pa() const;
   /// Equivalent strain from which on the deviatoric stress falls, 1 / (2 |b|) of a solid that
   /// softens: nothing holds its shape there. Of others, infinite.
   [[nodiscard]] double falls_beyond_strain() const;

@@ -203,6 +203,12 @@ class Strike {
     }
     surface_ = rings_.back();
     plane_m_ = z_[surface_.front()];
+    for (std::size_t i = 0; i < surface_.size(); ++i) {
+      const std::size_t before = surface_[i == 0 ? i : i - 1];
+      const std::size_t after = surface_[std::min(i + 1, surface_.size() - 1)];
+      const double length_m = 0.5 * std::hypot(r_[after] - r_[before], z_[after] - z_[before]);
+      area_m2_.push_back(2.0 * kPi * r_[surface_[i]] * length_m);
+    }
   }
 
   void cut(std::array<std::size_t, 4> quad, bool core) {
@@ -366,16 +372,38 @@ class Strike {
     return static_cast<double>(on) / kPoints;
   }
 
+  /// How far a pressure of one presses the cover together where it relaxes and cannot spread.
+  [[nodiscard]] double cover_gives_m_per_Pa() const {
+    const BallSolid& cover = impact_.cover;
+    const double relaxed_Pa = 1.0 / (1.0 / cover.E1_Pa + 1.0 / cover.E2_Pa + cover.D_per_Pa);
+    const double nu = cover.poisson_ratio;
+    const double thickness_m = 0.5 * (impact_.outer_diameter_m - impact_.core_diameter_m);
+    return thickness_m * (1.0 + nu) * (1.0 - 2.0 * nu) / ((1.0 - nu) * relaxed_Pa);
+  }
+
+  /// The force on a circle of the surface whose mean lies `depth_m` in the plane: what overhangs is
+  /// a bed of springs, the cover in its thickness, that is let go. (The solver's free arc moves as
+  /// a half-space does over the width of its overhang, and its edge presses outwards as it yields.)
+  [[nodiscard]] double push_N(std::size_t i, double depth_m) const {
+    const std::size_t n = surface_[i];
+    const double share = share_on_target(r_[n]);
+    const double held_N = penalty_per_s2_ * mass_[n] * depth_m;
+    if (share == 1.0 || share == 0.0 || held_N <= 0.0) {
+      return share * held_N;
+    }
+    const double let_go_m = (1.0 - share) / share * cover_gives_m_per_Pa() * held_N / area_m2_[i];
+    return held_N * depth_m / (depth_m + let_go_m);
+  }
+
   double contact() {
     double force = 0.0;
     for (std::size_t i = 0; i < surface_.size() / 2; ++i) {
       const std::size_t n = surface_[i];
       const double depth = plane_m_ - z_[n];
-      const double share = share_on_target(r_[n]);
-      if (depth <= 0.0 || share == 0.0) {
+      const double push = depth > 0.0 ? push_N(i, depth) : 0.0;
+      if (push == 0.0) {
         continue;
       }
-      const double push = share * penalty_per_s2_ * mass_[n] * depth;
       fz_[n] += push;
       force += push;
       // Coulomb, as much as stops the slip at most.
@@ -393,6 +421,7 @@ class Strike {
   std::vector<std::vector<std::size_t>> rings_;
   std::size_t core_rings_ = 0;
   std::vector<std::size_t> surface_;
+  std::vector<double> area_m2_;  ///< of each of the surface's nodes, undeformed
   std::vector<Triangle> triangles_;
   double plane_m_ = 0.0;
   double penalty_per_s2_ = 0.0;

@@ -75,7 +75,8 @@ Command fit_command() {
   command.name = "fit";
   command.purpose =
       "fits a model to captures\n"
-      "Every shot's source is free; the bench's filed deviations bound what may move besides.";
+      "On bars every shot's source is free; of an impact the force is calculated, and each shot's\n"
+      "arrival and offset are free. Filed deviations bound what may move besides.";
   command.examples = "  kolsky fit shots/*.h5 --model m.toml -o m2.toml\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),

@@ -92,6 +92,28 @@ double speed_of(const Settings& settings) {
   return *settings.speed;
 }
 
+// The figures have speeds, frictions, readings and meshes of their own.
+void refuse_beside_figures(const Settings& settings) {
+  const std::pair<const char*, bool> options[] = {{"--speed", settings.speed.has_value()},
+                                                  {"--friction", settings.friction.has_value()},
+                                                  {"--target", settings.target.has_value()},
+                                                  {"--reading", settings.reading.has_value()},
+                                                  {"--elements", settings.elements.has_value()},
+                                                  {"--sabot-mass", settings.sabot_mass.has_value()},
+                                                  {"--offset", settings.offset.has_value()},
+                                                  {"--time-step", settings.time_step.has_value()},
+                                                  {"--field", !settings.fields.empty()},
+                                                  {"--svg", settings.svg.has_value()}};
+  for (const auto& [name, given] : options) {
+    if (given) {
+      throw InputError(std::string(kPlace) + name,
+                       "does not go with --figures, which has the paper's speeds, frictions and "
+                       "readings on meshes of its own",
+                       std::string("leave out ") + name + ", or --figures");
+    }
+  }
+}
+
 // What the simulation names by its members, as the user gave it.
 std::string option_for(const std::string& member) {
   const std::pair<const char*, const char*> options[] = {
@@ -199,6 +221,9 @@ int run_command(const Settings& settings, Context& context) {
   if (!run.bench.ball) {
     throw InputError(settings.bench + ": kind", "is not \"impact\"", "give a bench with a [ball]");
   }
+  if (settings.figures.has_value()) {
+    refuse_beside_figures(settings);
+  }
   run.core = material(settings.core, settings, true);
   run.cover = material(settings.cover, settings, false);
   if (settings.figures.has_value()) {
@@ -270,7 +295,9 @@ Command impact_command() {
       option("--cover-relaxation", "D,TAU", "the same in the cover", &s.cover_relaxation),
       option("--sabot-mass", "KG", "a rigid mass that follows and touches the rear pole",
              &s.sabot_mass),
-      option("--offset", "M", "ball's axis off the bar's, in m: what overhangs carries no load",
+      option("--offset", "M",
+             "ball's axis off the bar's, in m: what overhangs yields; an axisymmetric estimate, "
+             "good to perhaps a factor of two, without the bar's bending",
              &s.offset),
       option("--time-step", "S", "largest step in s; else what is stable", &s.time_step),
       option("--field", "S",
@@ -278,7 +305,9 @@ Command impact_command() {
              &s.fields),
       option("--svg", "FILE", "a page to write: deformed ball with axial stress, and histories",
              &s.svg),
-      option("--figures", "FOLDER", "the paper's figures 11 to 15 and their tables to write",
+      option("--figures", "FOLDER",
+             "the paper's figures 11 to 15 and their tables to write, for the bench's ball and one "
+             "with a core of 38 mm; --law, nonlinearities and relaxations go with it",
              &s.figures)};
   command.run = [settings](Context& context) { return run_command(*settings, context); };
   return command;

@@ -10,7 +10,8 @@ class OffCentreContact final : public Effect {
       : Effect({
             .id = "off-centre-contact",
             .stage = Stage::boundary,
-            .definition = "the ball's axis off the bar's by delta: what overhangs carries no load",
+            .definition =
+                "the ball's axis off the bar's by delta: what overhangs yields, an estimate",
             .reference = "effects.md; docs/impact.md",
             .kinds = {BenchKind::impact},
             .parameters = {{"delta", "m", 0.0, 0.0, 0.01, 1e-3, {}, false, 1.0}},

@@ -116,6 +116,24 @@ TEST(Impact, DensitiesAreScaledOnlyWhenTheBenchSaysSo) {
   EXPECT_NEAR(json.at("mass_kg").get<double>(), 0.0434, 1e-5);
 }
 
+TEST(Impact, FiguresRefuseWhatTheyDoNotTakeAndLeaveNothingWhereTheyFail) {
+  const Folder folder;
+  const std::string figures = folder / "figures";
+  for (const auto& [option, value] :
+       {std::pair{"--speed", "40"}, std::pair{"--friction", "0.1"}, std::pair{"--reading", "exact"},
+        std::pair{"--elements", "512"}, std::pair{"--offset", "0.004"}}) {
+    EXPECT_TRUE(refused(scene::kolsky(impact({"--figures", figures, option, value})),
+                        {option, "does not go with --figures"}));
+  }
+  // A core so soft that its elements turn inside out.
+  const std::vector<std::string> failing =
+      impact({"--figures", figures, "--core-nonlinearity", "-3"});
+  EXPECT_TRUE(refused(scene::kolsky(failing), {"inside out"}));
+  EXPECT_FALSE(std::filesystem::exists(figures));
+  folder.write("other", "");
+  EXPECT_TRUE(refused(scene::kolsky(impact({"--figures", folder / "."})), {"is there already"}));
+}
+
 TEST(Impact, RefusesWhatCannotBe) {
   const Folder folder;
   std::string core = text_of(kBenches + "../materials/golf-core.toml");
@@ -139,7 +157,10 @@ TEST(Impact, RefusesWhatCannotBe) {
   refuses(impact({"--speed", "40", "--target", "wall"}), {"--target", "wall", "dashpot"});
   refuses(impact({"--speed", "40", "--reading", "half"}), {"--reading", "half", "bulk-E1"});
   refuses(impact({"--speed", "40", "--law", "green"}), {"--law", "green", "cauchy"});
-  refuses(impact({"--speed", "40", "--elements", "10"}), {"--elements", "10"});
+  refuses(impact({"--speed", "40", "--elements", "10"}),
+          {"--elements", "10", "give 170 to 1000000"});
+  refuses(impact({"--speed", "40", "--elements", "64"}), {"--elements", "give 170 to 1000000"});
+  refuses(impact({"--speed", "nan"}), {"--speed", "give a finite number"});
   refuses(impact({"--speed", "40", "--time-step", "1e-5"}), {"--time-step", "stability"});
   refuses(impact({"--speed", "40", "--core-relaxation", "1e-9"}), {"--core-relaxation", "comma"});
   refuses(impact({"--speed", "40", "--core-relaxation", "-1e-9,1e-4"}), {"compliance"});

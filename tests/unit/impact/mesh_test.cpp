@@ -64,6 +64,14 @@ TEST(BallMesh, RefusesTooFewElementsForItsLayers) {
   EXPECT_THROW((void)ball_mesh(kFour, 300), InputError);
 }
 
+TEST(BallMesh, OneLimitHoldsForEveryNumberFromItOn) {
+  EXPECT_EQ(least_elements(2), 170U);
+  for (std::size_t elements = least_elements(2); elements < 600; ++elements) {
+    EXPECT_NO_THROW((void)ball_mesh(kTwoPiece, elements)) << elements;
+  }
+  EXPECT_THROW((void)ball_mesh(kTwoPiece, least_elements(2) - 1), InputError);
+}
+
 TEST(CoveredShare, IsTheArcThatLiesOnTheDisc) {
   EXPECT_EQ(covered_share(0.012, 0.0135, 0.0), 1.0);
   EXPECT_EQ(covered_share(0.014, 0.0135, 0.0), 0.0);
@@ -78,6 +86,35 @@ TEST(CoveredShare, IsTheArcThatLiesOnTheDisc) {
     inside += std::hypot(r * std::cos(angle) - 0.001, r * std::sin(angle)) < 0.0135 ? 1 : 0;
   }
   EXPECT_NEAR(covered_share(r, 0.0135, 0.001), static_cast<double>(inside) / kCount, 1e-4);
+}
+
+TEST(SupportOf, IsThePenaltysWhereTheCircleLiesOnTheDisc) {
+  const Edge edge{0.0135, 0.004, 345e6};
+  for (const double r_m : {0.001, 0.0095}) {
+    EXPECT_EQ(support_of(r_m, edge, 1.7e13).stiffness_Pa_per_m, 1.7e13);
+    EXPECT_EQ(support_of(r_m, edge, 1.7e13).slope_Pa_per_m2, 0.0);
+  }
+  EXPECT_EQ(support_of(0.018, edge, 1.7e13).stiffness_Pa_per_m, 0.0);
+}
+
+TEST(SupportOf, YieldsByTheOverhangWhateverThePenalty) {
+  const Edge edge{0.0135, 0.004, 345e6};
+  double before = 1e300;
+  for (const double r_m : {0.0097, 0.011, 0.0125, 0.015, 0.0174}) {
+    const double s = covered_share(r_m, edge.disc_m, edge.offset_m);
+    const double expected = s / (1.0 - s) * edge.modulus_Pa / (r_m - 0.0095);
+    const double hard = support_of(r_m, edge, 1e20).stiffness_Pa_per_m;
+    EXPECT_NEAR(hard, expected, 1e-4 * expected) << r_m;
+    const double soft = support_of(r_m, edge, 1e12).stiffness_Pa_per_m;
+    EXPECT_LT(soft, before);
+    // Its slope is that of its stiffness.
+    constexpr double kStep_m = 1e-9;
+    const double slope = (support_of(r_m + kStep_m, edge, 1e12).stiffness_Pa_per_m -
+                          support_of(r_m - kStep_m, edge, 1e12).stiffness_Pa_per_m) /
+                         (2.0 * kStep_m);
+    EXPECT_NEAR(support_of(r_m, edge, 1e12).slope_Pa_per_m2, slope, 1e-5 * std::abs(slope)) << r_m;
+    before = soft;
+  }
 }
 
 }  // namespace

@@ -58,6 +58,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"NegativeSabot", [](ImpactModel& m) { m.sabot_mass_kg = -1.0; }, "sabot"},
         Refusal{"TooFewElements", [](ImpactModel& m) { m.elements = 3; }, "elements"},
         Refusal{"NoRoomForRings", [](ImpactModel& m) { m.elements = 64; }, "elements"},
+        Refusal{"EnergyThatDoesNotClose",
+                [](ImpactModel& m) {
+                  m.target.diameter_m = 0.008;
+                  m.elements = 512;
+                },
+                "impact"},
         Refusal{"GaugeWithoutABar", [](ImpactModel& m) { m.gauge_positions_m = {0.25}; }, "gauge"},
         Refusal{"ProbeOutside",
                 [](ImpactModel& m) {
