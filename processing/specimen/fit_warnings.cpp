@@ -1,14 +1,36 @@
 #include "processing/specimen/fit_warnings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "processing/reduction/formatted.hpp"
+
 namespace kolsky {
+
+namespace {
+
+/// What a family has more than three elements.
+const char* surplus_of(SolidKind solid) {
+  switch (solid) {
+    case SolidKind::fractional:
+      return "beta below 1";
+    case SolidKind::two_kelvin:
+      return "a second branch";
+    case SolidKind::four_element_fluid:
+      return "a flow, eta2_Pa_s";
+    case SolidKind::three_element:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
 
 std::vector<std::string> warnings_of(const std::vector<FittedNumber>& parameters) {
   constexpr double kHardly = 0.3;
   std::vector<std::string> warnings;
   for (const FittedNumber& p : parameters) {
-    if (p.sd > kHardly * p.value) {
+    if (!(p.sd <= kHardly * p.value)) {
       warnings.push_back(p.name + " is hardly determined by these shots: its deviation is " +
                          std::to_string(std::lround(100.0 * p.sd / p.value)) + " %");
     }
@@ -25,6 +47,39 @@ std::vector<std::string> warnings_of(const std::vector<CompliancePoint>& spectru
     }
   }
   return {};
+}
+
+std::string no_more_than_three_elements(const SpecimenFit& fit) {
+  return formatted(
+      "%s takes %.1f off the chi2 of three elements, which chance does too: these shots show no "
+      "need of %s",
+      name_of(fit.solid).c_str(), std::max(0.0, fit.three_element->chi2_gain),
+      surplus_of(fit.solid));
+}
+
+std::vector<std::string> contradiction(const SpecimenFit& fit,
+                                       const std::vector<FittedNumber>& spectral) {
+  constexpr double kFarMore = 4.0;
+  constexpr double kPoor = 1.5;
+  const std::vector<FittedNumber> none;
+  const std::vector<FittedNumber>& direct = fit.solid == SolidKind::three_element ? fit.parameters
+                                            : fit.three_element ? fit.three_element->parameters
+                                                                : none;
+  double furthest = kFarMore;
+  std::vector<std::string> warning;
+  for (std::size_t i = 0; i < std::min(direct.size(), spectral.size()); ++i) {
+    const double off =
+        std::abs(spectral[i].value - direct[i].value) / std::hypot(spectral[i].sd, direct[i].sd);
+    if (off > furthest) {
+      furthest = off;
+      warning = {formatted("%s is %.4g, %.0f deviations from the direct fit's %.4g: ",
+                           spectral[i].name.c_str(), spectral[i].value, off, direct[i].value) +
+                 "strain over stress is biased by the pulse's foot, the window and the specimen's "
+                 "mass, of which its deviations know nothing; quote the direct fit" +
+                 (fit.chi2_reduced > kPoor ? ", whose model leaves more than noise, too" : "")};
+    }
+  }
+  return warning;
 }
 
 }  // namespace kolsky

@@ -14,4 +14,13 @@ namespace kolsky {
 /// A loss that is clearly negative, where it first is: no passive material does that.
 [[nodiscard]] std::vector<std::string> warnings_of(const std::vector<CompliancePoint>& spectrum);
 
+/// Of a family that takes nothing worth having off the chi2 of three elements: what it has more is
+/// not determined.
+[[nodiscard]] std::string no_more_than_three_elements(const SpecimenFit& fit);
+
+/// Where a three-element solid through strain over stress contradicts that of the direct fit by far
+/// more than the deviations of both: which to quote. Empty where it does not.
+[[nodiscard]] std::vector<std::string> contradiction(const SpecimenFit& fit,
+                                                     const std::vector<FittedNumber>& spectral);
+
 }  // namespace kolsky

@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/formatted.hpp"
 #include "processing/specimen/fit_warnings.hpp"
-#include "processing/specimen/specimen_search.hpp"
+#include "processing/specimen/specimen_family.hpp"
 
 namespace kolsky {
 
 namespace {
 
-/// A set of assumptions replaces a simpler one when it takes this much more off chi2: odds of 150
-/// to 1.
-constexpr double kWorthwhile = 10.0;
 /// Beyond so many standard deviations of chi2 a longer window does not follow the same model.
 constexpr double kSameModel = 4.0;
 
@@ -43,14 +42,21 @@ std::vector<SpecimenWaves> kinds_of_waves(const SpecimenFitOptions& options,
 /// Fits under every set of assumptions that is open; the simplest of those that explain the data.
 class TheoryChoice {
  public:
-  TheoryChoice(SpecimenLikelihood& likelihood, const SpecimenFitOptions& options)
+  /// @param three_element  the choice with three elements, from which another family is searched;
+  ///   null: from a coarse grid. Outlives this.
+  TheoryChoice(SpecimenLikelihood& likelihood, const SpecimenFitOptions& options, SolidKind solid,
+               TheoryChoice* three_element = nullptr)
       : likelihood_(likelihood),
         options_(options),
+        solid_(solid),
+        three_element_(three_element),
         kinds_(kinds_of_waves(options, *likelihood.bench().specimen)) {}
 
   Fitted choose() {
-    start_ = SpecimenSearch(likelihood_, options_.solid, {WaveTheory::elementary, kinds_.front()})
-                 .start();
+    if (three_element_ == nullptr) {
+      start_ =
+          SpecimenSearch(likelihood_, solid_, {WaveTheory::elementary, kinds_.front()}).start();
+    }
     const WaveTheory first = options_.bars.value_or(WaveTheory::elementary);
     for (const SpecimenWaves kind : kinds_) {
       attempt({first, kind});
@@ -69,19 +75,44 @@ class TheoryChoice {
     return best();
   }
 
+  /// What was fitted, to other records of the same shots: a longer part of them.
+  [[nodiscard]] SpecimenMinimum again(SpecimenLikelihood& other, const Fitted& fitted) {
+    if (three_element_ == nullptr) {
+      return SpecimenSearch(other, solid_, fitted.theory).minimise(fitted.minimum.parameters);
+    }
+    const Fitted beside{fitted.theory, three_element_->minimum_under(fitted.theory)};
+    return search_family(other, solid_, fitted.theory, three_element_->again(other, beside));
+  }
+
+  [[nodiscard]] SolidKind solid() const { return solid_; }
+
   [[nodiscard]] std::vector<TriedTheory> tried() const {
     std::vector<TriedTheory> list;
     for (const Fitted& fit : fits_) {
-      list.push_back({fit.theory, fit.minimum.chi2});
+      list.push_back({fit.theory, fit.minimum.chi2, solid_});
     }
     return list;
   }
 
  private:
+  [[nodiscard]] SpecimenMinimum minimum_under(const ShpbTheory& theory) {
+    for (const Fitted& fit : fits_) {
+      if (fit.theory == theory) {
+        return fit.minimum;
+      }
+    }
+    return search(theory);
+  }
+
+  [[nodiscard]] SpecimenMinimum search(const ShpbTheory& theory) {
+    return three_element_ == nullptr
+               ? SpecimenSearch(likelihood_, solid_, theory).minimise(start_)
+               : search_family(likelihood_, solid_, theory, three_element_->minimum_under(theory));
+  }
+
   void attempt(const ShpbTheory& theory) {
     try {
-      fits_.push_back(
-          {theory, SpecimenSearch(likelihood_, options_.solid, theory).minimise(start_)});
+      fits_.push_back({theory, search(theory)});
       if (fits_.size() == 1 || best().theory == theory) {
         start_ = fits_.back().minimum.parameters;
       }
@@ -106,6 +137,8 @@ class TheoryChoice {
 
   SpecimenLikelihood& likelihood_;
   const SpecimenFitOptions& options_;
+  SolidKind solid_;
+  TheoryChoice* three_element_;
   std::vector<SpecimenWaves> kinds_;
   std::vector<double> start_;
   std::vector<Fitted> fits_;
@@ -131,20 +164,38 @@ std::vector<double> moduli(const SpecimenMinimum& minimum) {
   return values;
 }
 
+std::vector<std::vector<double>> covariance_of(SolidKind solid, const SpecimenMinimum& minimum,
+                                               double widened) {
+  const std::size_t size = parameters_of(solid).size();
+  const std::vector<double> values = moduli(minimum);
+  std::vector<std::vector<double>> covariance(size, std::vector<double>(size));
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) {
+      covariance[i][j] =
+          widened * values[i] * values[j] *
+          minimum.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  return covariance;
+}
+
+std::vector<FittedNumber> numbers_of(SolidKind solid, const SpecimenMinimum& minimum,
+                                     const std::vector<std::vector<double>>& covariance) {
+  const auto& family = parameters_of(solid);
+  const std::vector<double> values = moduli(minimum);
+  std::vector<FittedNumber> numbers;
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    numbers.push_back({family[i].name, values[i], std::sqrt(covariance[i][i])});
+  }
+  return numbers;
+}
+
 void fill_numbers(const SpecimenLikelihood& likelihood, const SpecimenMinimum& minimum,
                   SpecimenFit& fit) {
   const auto& family = parameters_of(fit.solid);
   const std::vector<double> values = moduli(minimum);
-  const double widened = std::max(1.0, fit.chi2_reduced);
-  fit.covariance.assign(family.size(), std::vector<double>(family.size()));
-  for (std::size_t i = 0; i < family.size(); ++i) {
-    for (std::size_t j = 0; j < family.size(); ++j) {
-      fit.covariance[i][j] =
-          widened * values[i] * values[j] *
-          minimum.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-    }
-    fit.parameters.push_back({family[i].name, values[i], std::sqrt(fit.covariance[i][i])});
-  }
+  fit.covariance = covariance_of(fit.solid, minimum, std::max(1.0, fit.chi2_reduced));
+  fit.parameters = numbers_of(fit.solid, minimum, fit.covariance);
   const auto& unknowns = likelihood.unknowns();
   fit.by_bench.assign(family.size(), std::vector<double>(unknowns.size()));
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
@@ -229,6 +280,9 @@ void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimu
 void warn(SpecimenFit& fit) {
   constexpr double kPoor = 1.5;
   fit.warnings = warnings_of(fit.parameters);
+  if (fit.three_element && fit.three_element->chi2_gain < kWorthwhile) {
+    fit.warnings.push_back(no_more_than_three_elements(fit));
+  }
   if (fit.chi2_reduced > kPoor) {
     fit.warnings.push_back(
         formatted("the model leaves more than noise (chi2 per degree of freedom %.3g): the "
@@ -240,6 +294,111 @@ void warn(SpecimenFit& fit) {
   }
 }
 
+/// The parts of the records that are judged.
+struct Windows {
+  std::unique_ptr<SpecimenLikelihood> longest;
+  std::unique_ptr<SpecimenLikelihood> beginning;  ///< null: only the longest
+
+  [[nodiscard]] SpecimenLikelihood& first() const { return beginning ? *beginning : *longest; }
+};
+
+Windows windows_of(const std::vector<Shot>& shots, const BarPrior& bars,
+                   const SpecimenFitOptions& options) {
+  SpecimenWindow window{options.band_limit_Hz, options.after_foot_s.value_or(0.0)};
+  Windows windows;
+  windows.longest = std::make_unique<SpecimenLikelihood>(shots, bars, window);
+  if (options.most_band_Hz && windows.longest->band_limit_Hz() > *options.most_band_Hz) {
+    window.band_limit_Hz = *options.most_band_Hz;
+    windows.longest = std::make_unique<SpecimenLikelihood>(shots, bars, window);
+  }
+  if (!options.after_foot_s) {
+    window.after_foot_s = windows.longest->first_return_s();
+    window.band_limit_Hz = windows.longest->band_limit_Hz();
+    windows.beginning = std::make_unique<SpecimenLikelihood>(shots, bars, window);
+  }
+  return windows;
+}
+
+/// What is taken, of which part of the records.
+struct Decision {
+  SolidKind solid = SolidKind::three_element;
+  Fitted fitted;
+  SpecimenLikelihood* likelihood = nullptr;
+  bool to_the_end = false;
+  std::vector<TriedTheory> tried;
+
+  [[nodiscard]] double dof() const { return degrees_of_freedom(*likelihood, solid); }
+};
+
+/// To the records' end where the same model holds there too.
+void lengthen(TheoryChoice& choice, SpecimenLikelihood& longest, Decision& decision) {
+  try {
+    const SpecimenMinimum longer = choice.again(longest, decision.fitted);
+    if (same_model(decision.fitted.minimum.chi2, decision.dof(), longer.chi2,
+                   degrees_of_freedom(longest, decision.solid))) {
+      decision.fitted.minimum = longer;
+      decision.likelihood = &longest;
+      decision.to_the_end = true;
+    }
+  } catch (const InputError&) {
+    // A model that does not even converge there does not hold there.
+    return;
+  }
+}
+
+Decision decide(const Windows& windows, TheoryChoice& choice) {
+  Decision decision;
+  decision.solid = choice.solid();
+  decision.likelihood = &windows.first();
+  decision.fitted = choice.choose();
+  decision.tried = choice.tried();
+  if (windows.longest->judged_s() > decision.likelihood->judged_s()) {
+    lengthen(choice, *windows.longest, decision);
+  }
+  return decision;
+}
+
+ThreeElementsBeside beside(const Decision& three, double chi2) {
+  const SpecimenMinimum& minimum = three.fitted.minimum;
+  const double widened = std::max(1.0, minimum.chi2 / three.dof());
+  ThreeElementsBeside result;
+  result.parameters =
+      numbers_of(three.solid, minimum, covariance_of(three.solid, minimum, widened));
+  result.chi2_gain = minimum.chi2 - chi2;
+  return result;
+}
+
+/// Another family than three elements, by what those decide unless it is worth more than they are.
+Decision decide_family(const Windows& windows, const SpecimenFitOptions& options,
+                       SpecimenFit& fit) {
+  TheoryChoice three_element(windows.first(), options, SolidKind::three_element);
+  Decision three;
+  try {
+    three = decide(windows, three_element);
+  } catch (const InputError&) {
+    TheoryChoice alone(windows.first(), options, options.solid);
+    return decide(windows, alone);
+  }
+  Decision decision = three;
+  decision.solid = options.solid;
+  decision.fitted.minimum =
+      search_family(*three.likelihood, options.solid, three.fitted.theory, three.fitted.minimum);
+  fit.three_element = beside(three, decision.fitted.minimum.chi2);
+  if (fit.three_element->chi2_gain <= kWorthwhile) {
+    return decision;
+  }
+  TheoryChoice own(windows.first(), options, options.solid, &three_element);
+  return decide(windows, own);
+}
+
+Decision decide(const Windows& windows, const SpecimenFitOptions& options, SpecimenFit& fit) {
+  if (options.solid != SolidKind::three_element) {
+    return decide_family(windows, options, fit);
+  }
+  TheoryChoice choice(windows.first(), options, options.solid);
+  return decide(windows, choice);
+}
+
 }  // namespace
 
 SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
@@ -247,45 +406,20 @@ SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot on the specimen");
   }
-  SpecimenWindow window{options.band_limit_Hz, options.after_foot_s.value_or(0.0)};
-  const bool may_extend = !options.after_foot_s;
-  auto longest = std::make_unique<SpecimenLikelihood>(shots, bars, window);
-  if (options.most_band_Hz && longest->band_limit_Hz() > *options.most_band_Hz) {
-    window.band_limit_Hz = *options.most_band_Hz;
-    longest = std::make_unique<SpecimenLikelihood>(shots, bars, window);
-  }
-  std::unique_ptr<SpecimenLikelihood> beginning;
-  if (may_extend) {
-    window.after_foot_s = longest->first_return_s();
-    window.band_limit_Hz = longest->band_limit_Hz();
-    beginning = std::make_unique<SpecimenLikelihood>(shots, bars, window);
-  }
-  SpecimenLikelihood* likelihood = beginning ? beginning.get() : longest.get();
-  TheoryChoice choice(*likelihood, options);
-  Fitted fitted = choice.choose();
-  double dof = degrees_of_freedom(*likelihood, options.solid);
-
+  const Windows windows = windows_of(shots, bars, options);
   SpecimenFit fit;
-  fit.tried = choice.tried();
-  if (longest->judged_s() > likelihood->judged_s()) {
-    const double longer_dof = degrees_of_freedom(*longest, options.solid);
-    const SpecimenMinimum longer =
-        SpecimenSearch(*longest, options.solid, fitted.theory).minimise(fitted.minimum.parameters);
-    if (same_model(fitted.minimum.chi2, dof, longer.chi2, longer_dof)) {
-      fitted.minimum = longer;
-      likelihood = longest.get();
-      dof = longer_dof;
-      fit.to_the_end = true;
-    }
-  }
-  fit.solid = options.solid;
-  fit.theory = fitted.theory;
-  fit.degrees_of_freedom = static_cast<std::size_t>(dof);
-  fit.chi2_reduced = fitted.minimum.chi2 / dof;
-  fit.band_limit_Hz = likelihood->band_limit_Hz();
-  fit.judged_s = likelihood->judged_s();
-  fill_numbers(*likelihood, fitted.minimum, fit);
-  fill_spectrum(*likelihood, fitted.minimum, fit);
+  const Decision decision = decide(windows, options, fit);
+  const SpecimenMinimum& minimum = decision.fitted.minimum;
+  fit.solid = decision.solid;
+  fit.theory = decision.fitted.theory;
+  fit.tried = decision.tried;
+  fit.to_the_end = decision.to_the_end;
+  fit.degrees_of_freedom = static_cast<std::size_t>(decision.dof());
+  fit.chi2_reduced = minimum.chi2 / decision.dof();
+  fit.band_limit_Hz = decision.likelihood->band_limit_Hz();
+  fit.judged_s = decision.likelihood->judged_s();
+  fill_numbers(*decision.likelihood, minimum, fit);
+  fill_spectrum(*decision.likelihood, minimum, fit);
   warn(fit);
   return fit;
 }

@@ -24,6 +24,13 @@ struct SpecimenFitOptions {
 struct TriedTheory {
   ShpbTheory theory;
   double chi2 = 0.0;
+  SolidKind solid = SolidKind::three_element;  ///< with which it was tried
+};
+
+/// What three elements make of the records that another family was fitted to.
+struct ThreeElementsBeside {
+  std::vector<FittedNumber> parameters;
+  double chi2_gain = 0.0;  ///< by so much the family's chi2 is less, under the same theory
 };
 
 /// One frequency of the specimen's compliance J = J1 - i J2.
@@ -48,6 +55,8 @@ struct SpecimenFit {
   std::vector<std::vector<double>> by_bench;
   ShpbTheory theory;
   std::vector<TriedTheory> tried;
+  /// None where the family is three elements, or where those cannot be fitted.
+  std::optional<ThreeElementsBeside> three_element;
   double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
   std::size_t degrees_of_freedom = 0;
   double band_limit_Hz = 0.0;
@@ -59,7 +68,9 @@ struct SpecimenFit {
 
 /// Fits one specimen material to any number of shots at once, sources free. The deviations include
 /// those of the bench's known unknowns and of the bars' moduli; where chi2_reduced exceeds 1 they
-/// are widened by its square root.
+/// are widened by its square root. Another family than three elements is searched from where those
+/// are at their best, under the theory and in the window that they take; where it takes more off
+/// chi2 than they can, theory and window are decided anew with it.
 /// @throws InputError as SpecimenLikelihood, and where the search does not converge
 [[nodiscard]] SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
                                        const SpecimenFitOptions& options);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
@@ -13,10 +14,12 @@ namespace kolsky {
 namespace {
 
 constexpr int kMostSteps = 60;
+constexpr int kMostHeldSteps = 300;      // without weights to be taken they cost little
 constexpr double kParameterStep = 1e-3;  // relative: parameters are logarithms
 constexpr double kMoveStep = 0.05;       // standard deviations
 constexpr double kLongestStep = 1.5;     // of a logarithm
 constexpr double kDone = 1e-3;           // of chi2: far below what one deviation changes
+constexpr double kUnknownLog = 5.0;      // deviation of a logarithm that nothing is known of
 
 /// A solid of the family near the three-element one with these numbers.
 std::vector<double> near_three_element(SolidKind kind, double E1, double E2, double tau_s) {
@@ -111,28 +114,52 @@ std::vector<double> SpecimenSearch::start() {
   return found;
 }
 
-SpecimenMinimum SpecimenSearch::minimise(const std::vector<double>& start) {
-  const auto moves = static_cast<Eigen::Index>(likelihood_.unknowns().size());
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(solids_ + moves);
-  std::copy(start.begin(), start.end(), x.data());
+SpecimenSearch::Place SpecimenSearch::place_at(const Eigen::VectorXd& x, Eigen::MatrixXd weights) {
+  Place place{x, std::move(weights), {}, {}};
+  place.r = residuals(place.x, place.weights);
+  place.J = jacobian(place.x, place.weights);
+  return place;
+}
+
+/// Damped, at most so long, and not beyond the bounds: a number at one that would go on stays.
+Eigen::VectorXd SpecimenSearch::step_from(const Place& place, double damping,
+                                          const LogBounds* bounds) const {
+  Eigen::MatrixXd normal = place.J.transpose() * place.J;
+  Eigen::VectorXd slope = place.J.transpose() * place.r;
+  const Eigen::VectorXd scale = normal.diagonal();
+  normal.diagonal() += damping * scale;
+  for (Eigen::Index i = 0; bounds != nullptr && i < solids_; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool stays = (place.x[i] >= bounds->upper[at] && slope[i] <= 0.0) ||
+                       (place.x[i] <= bounds->lower[at] && slope[i] >= 0.0);
+    if (stays) {
+      normal.row(i).setZero();
+      normal.col(i).setZero();
+      normal(i, i) = 1.0;
+      slope[i] = 0.0;
+    }
+  }
+  Eigen::VectorXd change = -solve_symmetric(normal, slope);
+  const double longest = change.head(solids_).cwiseAbs().maxCoeff();
+  if (longest > kLongestStep) {
+    change *= kLongestStep / longest;
+  }
+  for (Eigen::Index i = 0; bounds != nullptr && i < solids_; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    change[i] =
+        std::clamp(place.x[i] + change[i], bounds->lower[at], bounds->upper[at]) - place.x[i];
+  }
+  return change;
+}
+
+SpecimenSearch::Place SpecimenSearch::search(Place place, const LogBounds* bounds) {
   double damping = 1e-2;
-  Eigen::MatrixXd weights = root(x);
-  Eigen::VectorXd r = residuals(x, weights);
-  Eigen::MatrixXd J = jacobian(x, weights);
   bool converged = false;
   double last_gain = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kMostSteps && !converged; ++step) {
-    Eigen::MatrixXd normal = J.transpose() * J;
-    const Eigen::VectorXd slope = J.transpose() * r;
-    const Eigen::VectorXd scale = normal.diagonal();
-    normal.diagonal() += damping * scale;
-    Eigen::VectorXd change = -solve_symmetric(normal, slope);
-    const double longest = change.head(solids_).cwiseAbs().maxCoeff();
-    if (longest > kLongestStep) {
-      change *= kLongestStep / longest;
-    }
-    const Eigen::VectorXd moved = x + change;
-    const double gain = r.squaredNorm() - residuals(moved, weights).squaredNorm();
+  const int most = bounds == nullptr ? kMostSteps : kMostHeldSteps;
+  for (int step = 0; step < most && !converged; ++step) {
+    const Eigen::VectorXd moved = place.x + step_from(place, damping, bounds);
+    const double gain = place.r.squaredNorm() - residuals(moved, place.weights).squaredNorm();
     if (!(gain >= 0.0)) {
       damping *= 10.0;
       converged = damping > 1e12;
@@ -140,23 +167,55 @@ SpecimenMinimum SpecimenSearch::minimise(const std::vector<double>& start) {
     }
     converged = gain < kDone && damping < 1.0;
     last_gain = gain;
-    x = moved;
     damping = std::max(damping / 10.0, 1e-12);
-    weights = root(x);
-    r = residuals(x, weights);
-    J = jacobian(x, weights);
+    place = place_at(moved, bounds == nullptr ? root(moved) : std::move(place.weights));
   }
   // A parameter that the data do not hold drifts without end; its deviation says so.
   constexpr double kDrift = 0.1;
-  if ((!converged && last_gain > kDrift) || !r.allFinite()) {
+  if ((!converged && last_gain > kDrift) || !place.r.allFinite()) {
     throw InputError("fit", "does not converge",
                      "try another family of solids, a narrower band or a shorter window");
   }
+  return place;
+}
+
+SpecimenMinimum SpecimenSearch::minimum_at(const Place& place) const {
   SpecimenMinimum minimum;
-  minimum.parameters.assign(x.data(), x.data() + solids_);
-  minimum.moves.assign(x.data() + solids_, x.data() + x.size());
-  minimum.chi2 = r.squaredNorm();
-  minimum.covariance = symmetric_inverse(J.transpose() * J);
+  minimum.parameters.assign(place.x.data(), place.x.data() + solids_);
+  minimum.moves.assign(place.x.data() + solids_, place.x.data() + place.x.size());
+  minimum.chi2 = place.r.squaredNorm();
+  return minimum;
+}
+
+Eigen::VectorXd SpecimenSearch::joined(const std::vector<double>& parameters,
+                                       const std::vector<double>& moves) const {
+  Eigen::VectorXd x(solids_ + static_cast<Eigen::Index>(moves.size()));
+  std::copy(parameters.begin(), parameters.end(), x.data());
+  std::copy(moves.begin(), moves.end(), x.data() + solids_);
+  return x;
+}
+
+SpecimenMinimum SpecimenSearch::minimise(const std::vector<double>& start) {
+  const Eigen::VectorXd x = joined(start, std::vector<double>(likelihood_.unknowns().size(), 0.0));
+  const Place place = search(place_at(x, root(x)), nullptr);
+  SpecimenMinimum minimum = minimum_at(place);
+  minimum.covariance = symmetric_inverse(place.J.transpose() * place.J);
+  return minimum;
+}
+
+Eigen::MatrixXd SpecimenSearch::weights_at(const SpecimenMinimum& place) {
+  return root(joined(place.parameters, place.moves));
+}
+
+SpecimenMinimum SpecimenSearch::minimise_held(const std::vector<double>& start,
+                                              const std::vector<double>& moves,
+                                              const Eigen::MatrixXd& weights,
+                                              const LogBounds& bounds) {
+  const Place place = search(place_at(joined(start, moves), weights), &bounds);
+  SpecimenMinimum minimum = minimum_at(place);
+  Eigen::MatrixXd information = place.J.transpose() * place.J;
+  information.diagonal().head(solids_).array() += 1.0 / (kUnknownLog * kUnknownLog);
+  minimum.covariance = symmetric_inverse(information);
   return minimum;
 }
 

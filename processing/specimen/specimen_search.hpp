@@ -15,6 +15,12 @@ struct SpecimenMinimum {
   Eigen::MatrixXd covariance;      ///< of parameters and moves, for noise as it is taken to be
 };
 
+/// Between what the logarithms of a solid's parameters are looked for.
+struct LogBounds {
+  std::vector<double> lower;
+  std::vector<double> upper;
+};
+
 /// Minimises the whitened residuals with the priors of the known unknowns, by Levenberg's and
 /// Marquardt's method. The weights are taken anew after every step and held while it is chosen:
 /// that is the profile over the free sources to within the square of noise over signal.
@@ -28,11 +34,38 @@ class SpecimenSearch {
   /// @throws InputError where it does not converge
   [[nodiscard]] SpecimenMinimum minimise(const std::vector<double>& start);
 
+  /// The whitening at a place: the lower Cholesky factor of one shot's covariance.
+  [[nodiscard]] Eigen::MatrixXd weights_at(const SpecimenMinimum& place);
+
+  /// By weights that are held, so that chi2 can be compared with another solid's by the same, and
+  /// within bounds: numbers that the data leave open end there, not at infinity. Its covariance
+  /// takes no number of the solid to be known worse than to a factor of e^5.
+  /// @throws InputError where it does not converge
+  [[nodiscard]] SpecimenMinimum minimise_held(const std::vector<double>& start,
+                                              const std::vector<double>& moves,
+                                              const Eigen::MatrixXd& weights,
+                                              const LogBounds& bounds);
+
  private:
   struct Point {
     std::vector<double> parameters;
     std::vector<double> moves;
   };
+  /// Where a search is.
+  struct Place {
+    Eigen::VectorXd x;
+    Eigen::MatrixXd weights;
+    Eigen::VectorXd r;
+    Eigen::MatrixXd J;
+  };
+  [[nodiscard]] Place place_at(const Eigen::VectorXd& x, Eigen::MatrixXd weights);
+  /// @param bounds  null: none, and the weights are taken anew after every step
+  [[nodiscard]] Place search(Place place, const LogBounds* bounds);
+  [[nodiscard]] Eigen::VectorXd step_from(const Place& place, double damping,
+                                          const LogBounds* bounds) const;
+  [[nodiscard]] SpecimenMinimum minimum_at(const Place& place) const;
+  [[nodiscard]] Eigen::VectorXd joined(const std::vector<double>& parameters,
+                                       const std::vector<double>& moves) const;
   [[nodiscard]] Point point(const Eigen::VectorXd& x) const;
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& x, const Eigen::MatrixXd& root);
   [[nodiscard]] Eigen::MatrixXd root(const Eigen::VectorXd& x);

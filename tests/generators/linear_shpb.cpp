@@ -34,34 +34,45 @@ Gauge gauge_of(const char* name, const char* bar, double position_m) {
   return gauge;
 }
 
-/// A spring, dashpot and spring without mass between two faces.
+/// What has no mass between two faces.
 class MasslessSpecimen {
  public:
-  MasslessSpecimen(const RodMaterial& m, double length_m, double area_m2, double step_s)
-      : m_(m), length_m_(length_m), area_m2_(area_m2), step_s_(step_s) {
-    const double rate = m.elastic() ? 0.0 : (m.E1_Pa + m.E2_Pa) / m.eta2_Pa_s;
-    keep_ = std::exp(-rate * step_s);
-    share_ = m.elastic() ? 0.0 : m.E1_Pa / (m.E1_Pa + m.E2_Pa);
-  }
+  MasslessSpecimen(const KelvinChain& chain, double length_m, double area_m2, double step_s)
+      : solid_(chain, step_s),
+        length_m_(length_m),
+        area_m2_(area_m2),
+        strains_(chain.elements.size(), 0.0) {}
 
-  [[nodiscard]] double force_N() const { return area_m2_ * m_.E1_Pa * (strain_ - inner_); }
+  [[nodiscard]] double force_N() const { return area_m2_ * stress_Pa_; }
 
   void advance(double closing_m_per_s) {
-    const double before = strain_;
-    strain_ += closing_m_per_s / length_m_ * step_s_;
-    inner_ = keep_ * inner_ + (1.0 - keep_) * share_ * 0.5 * (before + strain_);
+    strain_ += closing_m_per_s / length_m_ * solid_.step_s();
+    const auto& elements = solid_.elements();
+    double inner = 0.0;  // strain of the elements if the stress at the step's end were none
+    double per_stress = 1.0 / solid_.glassy_Pa();
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      strains_[i] = elements[i].keep * strains_[i] + elements[i].from_old * stress_Pa_;
+      inner += strains_[i];
+      per_stress += elements[i].from_new;
+    }
+    stress_Pa_ = (strain_ - inner) / per_stress;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      strains_[i] += elements[i].from_new * stress_Pa_;
+    }
   }
 
  private:
-  RodMaterial m_;
+  KelvinStep solid_;
   double length_m_;
   double area_m2_;
-  double step_s_;
-  double keep_ = 0.0;
-  double share_ = 0.0;
+  std::vector<double> strains_;
   double strain_ = 0.0;
-  double inner_ = 0.0;
+  double stress_Pa_ = 0.0;
 };
+
+KelvinChain chain_of(const RodMaterial& m) {
+  return m.elastic() ? elastic(m.E1_Pa) : three_element(m.E1_Pa, m.E2_Pa, m.eta2_Pa_s);
+}
 
 /// Faces that never part: the impulse that keeps both velocities alike.
 void join(Rod& before, Rod& after, double step_s) {
@@ -95,7 +106,8 @@ std::vector<std::vector<double>> LinearShpb::solve() const {
   const double specimen_area_m2 = circle_m2(specimen_diameter_m);
   Rod in({input_length_m, area_m2, input}, step_s);
   Rod out({output_length_m, circle_m2(output_diameter_m), output}, step_s);
-  MasslessSpecimen spring(specimen, specimen_length_m, specimen_area_m2, step_s);
+  MasslessSpecimen spring(chain.value_or(chain_of(specimen)), specimen_length_m, specimen_area_m2,
+                          step_s);
   Rod rod({specimen_length_m, specimen_area_m2, specimen}, step_s);
   const ImpactPulse pulse{
       .peak_force_N = input.E1_Pa * area_m2 * peak_strain, .duration_s = pulse_s, .ramp_s = ramp_s};

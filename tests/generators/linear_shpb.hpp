@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "drivers/simulated/bench_model.hpp"
 #include "processing/base/shot.hpp"
+#include "tests/generators/kelvin_chain.hpp"
 
 namespace kolsky::testing {
 
@@ -13,6 +16,8 @@ struct LinearShpb {
   RodMaterial output = input;
   RodMaterial specimen{1140.0, 121e6, 143e6, 2860.0};
   bool massless = true;  ///< else the specimen is a rod of its own
+  /// What a massless specimen is of, instead of the moduli above.
+  std::optional<KelvinChain> chain;
   double input_length_m = 0.7;
   double output_length_m = 0.7;
   double bar_diameter_m = 0.015;

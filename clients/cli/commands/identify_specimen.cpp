@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 #include <ostream>
+#include <utility>
 
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/captures.hpp"
@@ -13,6 +14,7 @@
 #include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/specimen/fit_warnings.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 #include "processing/specimen/specimen_spectrum.hpp"
 #include "processing/waves/compliance.hpp"
@@ -79,6 +81,7 @@ std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarMo
   for (const Shot& shot : shots) {
     if (bars) {
       require_temperature(*bars, shot);
+      require_density(*bars, shot.bench);
     }
   }
   return shots;
@@ -104,6 +107,9 @@ Outcome identify(const Settings& settings) {
   spectral.bars = outcome.fit.theory.bars;
   try {
     outcome.spectral = estimate_spectrum(outcome.shots, prior.material, spectral);
+    for (std::string& warning : contradiction(outcome.fit, outcome.spectral->parameters)) {
+      outcome.spectral->warnings.push_back(std::move(warning));
+    }
   } catch (const InputError& error) {
     outcome.spectral_refused = error.what();
   }
@@ -199,6 +205,15 @@ JsonObject describe(const ShpbTheory& theory) {
   return {{"bars", name_of_theory(theory.bars)}, {"specimen", name_of(theory.specimen)}};
 }
 
+/// What three elements make of the same records; nothing where the family is those.
+JsonValue three_element_json(const SpecimenFit& fit) {
+  if (!fit.three_element) {
+    return nullptr;
+  }
+  return JsonObject{{"parameters", numbers(fit.three_element->parameters)},
+                    {"chi2_gain", fit.three_element->chi2_gain}};
+}
+
 /// A list of what was said of each, as `identify bar` gives it.
 JsonList shots_of(const Outcome& outcome) {
   JsonList list;
@@ -218,6 +233,7 @@ JsonValue describe(const Outcome& outcome) {
   for (const TriedTheory& theory : fit.tried) {
     JsonObject entry = describe(theory.theory);
     entry.push_back({"chi2", theory.chi2});
+    entry.push_back({"solid", name_of(theory.solid)});
     tried.push_back(std::move(entry));
   }
   const bool assumed = !elastic_bars(outcome.shots.front().bench) && !outcome.bars &&
@@ -231,6 +247,7 @@ JsonValue describe(const Outcome& outcome) {
       {"degrees_of_freedom", static_cast<std::uint64_t>(fit.degrees_of_freedom)},
       {"theory", describe(fit.theory)},
       {"tried", std::move(tried)},
+      {"three_element", three_element_json(fit)},
       {"band_limit_Hz", fit.band_limit_Hz},
       {"judged_s", fit.judged_s},
       {"past_first_return", fit.to_the_end},
@@ -263,9 +280,13 @@ std::string report(const Outcome& outcome) {
                       fit.chi2_reduced, fit.degrees_of_freedom, name_of_theory(fit.theory.bars),
                       name_of(fit.theory.specimen));
   for (const TriedTheory& tried : fit.tried) {
+    text += fmt::format("      tried: bars {:<10} specimen {:<9} chi2 {:.1f}{}\n",
+                        name_of_theory(tried.theory.bars), name_of(tried.theory.specimen),
+                        tried.chi2, tried.solid == fit.solid ? "" : ", three elements");
+  }
+  if (fit.three_element) {
     text +=
-        fmt::format("      tried: bars {:<10} specimen {:<9} chi2 {:.1f}\n",
-                    name_of_theory(tried.theory.bars), name_of(tried.theory.specimen), tried.chi2);
+        fmt::format("    three elements leave {:.1f} more of chi2\n", fit.three_element->chi2_gain);
   }
   if (outcome.spectral) {
     text += fmt::format("  strain over stress, frequency by frequency (eq. 25, up to {})\n",

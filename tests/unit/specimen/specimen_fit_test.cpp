@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -264,6 +265,111 @@ TEST(FitSpecimen, NinetyFivePercentIntervalsHoldTheTruth) {
   }
 }
 
+SpecimenFitOptions of_family(SolidKind solid) {
+  SpecimenFitOptions options;
+  options.solid = solid;
+  return options;
+}
+
+void expect_numbers(const SpecimenFit& fit, const std::vector<double>& truth) {
+  ASSERT_EQ(fit.parameters.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_NEAR(fit.parameters[i].value, truth[i], 4.0 * fit.parameters[i].sd)
+        << fit.parameters[i].name;
+    EXPECT_LT(fit.parameters[i].sd, 0.3 * truth[i]) << fit.parameters[i].name;
+  }
+}
+
+bool says(const std::vector<std::string>& warnings, const std::string& part) {
+  return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& warning) {
+    return warning.find(part) != std::string::npos;
+  });
+}
+
+/// By three elements' own choice, and no worse than they are; what the family has more is nothing.
+void expect_three_elements_within(const SpecimenFit& fit, const SpecimenFit& three,
+                                  const RodMaterial& truth) {
+  const auto chi2 = [](const SpecimenFit& of) {
+    return of.chi2_reduced * static_cast<double>(of.degrees_of_freedom);
+  };
+  EXPECT_LT(chi2(fit), chi2(three) + 0.05);
+  EXPECT_EQ(fit.theory, three.theory);
+  EXPECT_EQ(fit.judged_s, three.judged_s);
+  EXPECT_EQ(fit.tried.size(), three.tried.size());
+  ASSERT_TRUE(fit.three_element.has_value());
+  EXPECT_LT(fit.three_element->chi2_gain, 10.0);
+  EXPECT_TRUE(says(fit.warnings, "off the chi2 of three elements"));
+  for (const double frequency_Hz : {1e3, 5e3, 15e3}) {
+    const auto at = std::min_element(fit.spectrum.begin(), fit.spectrum.end(),
+                                     [&](const CompliancePoint& a, const CompliancePoint& b) {
+                                       return std::abs(a.frequency_Hz - frequency_Hz) <
+                                              std::abs(b.frequency_Hz - frequency_Hz);
+                                     });
+    const Complex J = compliance(truth, at->frequency_Hz);
+    EXPECT_NEAR(at->J1_per_Pa, J.real(), 4.5 * at->J1_sd_of_mean);
+    EXPECT_NEAR(at->J2_per_Pa, -J.imag(), 4.5 * at->J2_sd_of_mean);
+  }
+}
+
+TEST(SpecimenFamilies, HoldThreeElementsWithinThem) {
+  for (const bool massless : {true, false}) {
+    for (const double noise : {0.3e-6, 20e-6}) {
+      LinearShpb model;
+      model.massless = massless;
+      const auto shots = noisy(model, model.solve(), 2, noise);
+      const SpecimenFit three = fit_specimen(shots, BarPrior(paper_pmma()), {});
+      EXPECT_FALSE(three.three_element.has_value());
+      for (const SolidKind solid :
+           {SolidKind::fractional, SolidKind::two_kelvin, SolidKind::four_element_fluid}) {
+        SCOPED_TRACE(name_of(solid) + (massless ? ", massless, " : ", rod, ") +
+                     std::to_string(1e6 * noise));
+        const SpecimenFit fit = fit_specimen(shots, BarPrior(paper_pmma()), of_family(solid));
+        expect_three_elements_within(fit, three, model.specimen);
+        if (solid == SolidKind::fractional) {
+          EXPECT_LE(fit.parameters[3].value, 1.0);
+          EXPECT_NEAR(fit.parameters[3].value, 1.0, 4.0 * fit.parameters[3].sd);
+        }
+      }
+    }
+  }
+}
+
+TEST(SpecimenFamilies, AFractionalSpecimenIsFound) {
+  for (const double beta : {0.9, 0.6}) {
+    LinearShpb model;
+    model.chain = testing::fractional_three_element(400e6, 143e6, 2860.0, beta);
+    const SpecimenFit fit =
+        fit_specimen(shots_of(model, 4), BarPrior(paper_pmma()), of_family(SolidKind::fractional));
+    expect_numbers(fit, {400e6, 143e6, 2860.0, beta});
+    EXPECT_NEAR(fit.chi2_reduced, 1.0, 0.2);
+    EXPECT_EQ(fit.theory, ShpbTheory{});
+    EXPECT_GT(fit.three_element->chi2_gain, 10.0);
+    EXPECT_FALSE(says(fit.warnings, "off the chi2 of three elements"));
+    EXPECT_EQ(fit.tried.front().solid, SolidKind::fractional);
+  }
+}
+
+TEST(SpecimenFamilies, TwoKelvinBranchesAreFound) {
+  LinearShpb model;
+  model.chain = testing::KelvinChain{300e6, {{200e6, 1500.0}, {300e6, 60e3}}};
+  const SpecimenFit fit =
+      fit_specimen(shots_of(model, 10), BarPrior(paper_pmma()), of_family(SolidKind::two_kelvin));
+  expect_numbers(fit, {300e6, 200e6, 1500.0, 300e6, 60e3});
+  EXPECT_NEAR(fit.chi2_reduced, 1.0, 0.2);
+  EXPECT_EQ(fit.theory, ShpbTheory{});
+}
+
+TEST(SpecimenFamilies, AFluidIsFound) {
+  LinearShpb model;
+  model.chain = testing::three_element(121e6, 143e6, 2860.0);
+  model.chain->add_flow(1.0 / 100e3);
+  const SpecimenFit fit = fit_specimen(shots_of(model, 4), BarPrior(paper_pmma()),
+                                       of_family(SolidKind::four_element_fluid));
+  expect_numbers(fit, {121e6, 100e3, 143e6, 2860.0});
+  EXPECT_NEAR(fit.chi2_reduced, 1.0, 0.2);
+  EXPECT_EQ(fit.theory, ShpbTheory{});
+}
+
 TEST(SpectralEstimate, IsStrainOverStressOfAMasslessSpecimen) {
   LinearShpb model;
   const SpectralEstimate estimate = estimate_spectrum(shots_of(model, 10), paper_pmma(), {});
@@ -315,6 +421,27 @@ TEST(SpecimenWarnings, NameALossThatIsNegative) {
   const auto warnings = warnings_of({passive, active});
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings.front().find("J2 is negative at 2000 Hz"), std::string::npos);
+}
+
+TEST(SpecimenWarnings, NameASpectralEstimateThatContradictsTheDirectFit) {
+  SpecimenFit fit;
+  fit.chi2_reduced = 1.0;
+  fit.parameters = {{"E1_Pa", 121e6, 1.5e6}, {"E2_Pa", 143e6, 2e6}, {"eta2_Pa_s", 2800.0, 80.0}};
+  const std::vector<FittedNumber> near = {
+      {"E1_Pa", 130e6, 4e6}, {"E2_Pa", 140e6, 4e6}, {"eta2_Pa_s", 2600.0, 90.0}};
+  EXPECT_TRUE(contradiction(fit, near).empty());
+  auto far = near;
+  far[0] = {"E1_Pa", 154.5e6, 6.3e6};
+  const auto warnings = contradiction(fit, far);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(says(warnings, "E1_Pa is 1.545e+08, 5 deviations from"));
+  EXPECT_TRUE(says(warnings, "biased"));
+  EXPECT_TRUE(says(warnings, "quote the direct fit"));
+  // Another family's numbers are not those of three elements.
+  fit.solid = SolidKind::fractional;
+  EXPECT_TRUE(contradiction(fit, far).empty());
+  fit.three_element = ThreeElementsBeside{fit.parameters, 0.0};
+  EXPECT_EQ(contradiction(fit, far).size(), 1U);
 }
 
 TEST(FitSpecimen, RefusesWhatCannotServe) {
