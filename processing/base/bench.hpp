@@ -68,8 +68,8 @@ struct Gauge {
   std::optional<Measured> length_m{};
   std::optional<Bridge> bridge{};          ///< unit "V": either this ...
   std::optional<Measured> strain_per_V{};  ///< ... or a plain factor
-  /// Of samples that are strain already: over what made them so, as well as gauge factor, excitation
-  /// and gain filed beside them say that it is known.
+  /// Of samples that are strain already: over what made them so, as well as gauge factor,
+  /// excitation and gain filed beside them say that it is known.
   Measured strain_gain{1.0, 0.0};
 };
 
