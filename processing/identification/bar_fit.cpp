@@ -58,6 +58,9 @@ std::vector<double> first_guess(const BarData& data, SolidKind solid) {
     case SolidKind::two_kelvin:
       guess = {E1, 2.0 * E2, eta2, 2.0 * E2, 10.0 * eta2};
       break;
+    case SolidKind::three_kelvin:
+      guess = {E1, 3.0 * E2, 0.3 * eta2, 3.0 * E2, 3.0 * eta2, 3.0 * E2, 30.0 * eta2};
+      break;
     case SolidKind::fractional:
       guess = {E1, E2, eta2, 0.9};
       break;

@@ -349,10 +349,11 @@ const BarFit* choose_three_elements(const BarIdentificationOptions& options, con
 std::vector<SolidKind> solids_to_try(const BarIdentificationOptions& options,
                                      const BarFit& three_element) {
   std::vector<SolidKind> solids;
-  for (const SolidKind solid :
-       {SolidKind::two_kelvin, SolidKind::four_element_fluid, SolidKind::fractional}) {
+  for (const SolidKind solid : {SolidKind::two_kelvin, SolidKind::four_element_fluid,
+                                SolidKind::fractional, SolidKind::three_kelvin}) {
     const bool asked = options.solid == solid;
-    const bool compared = (options.compare_solids || !options.solid) && !three_element.lossless;
+    const bool compared = (options.compare_solids || !options.solid) && !three_element.lossless &&
+                          solid != SolidKind::three_kelvin;
     if (asked || compared) {
       solids.push_back(solid);
     }
@@ -383,6 +384,14 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
   std::vector<const BarFit*>& over_solids = solids.others;
   over_solids.insert(over_solids.begin(), &three_element);
   Best best = best_of(over_solids);
+  if (best.fit != nullptr && best.fit->solid == SolidKind::two_kelvin && !options.solid) {
+    // One branch more for as long as the records are evidence for it; a fourth none has shown.
+    const BarFit* const third = explanations.third_branch(three_element, *best.fit);
+    if (third != nullptr && third->log_evidence > best.fit->log_evidence + kToldApart) {
+      over_solids.push_back(third);
+      best = best_of(over_solids);
+    }
+  }
   while (!options.solid && best.fit != &three_element) {
     const auto place = std::find(over_solids.begin(), over_solids.end(), best.fit);
     *place = explanations.finished(theory_of(*best.fit));

@@ -25,6 +25,7 @@ std::vector<double> near_three_elements(SolidKind solid, const std::vector<doubl
   const double eta2 = logs[2];
   // Of a bar without loss eta2 can be anything.
   const double slow = E2 + std::log(100.0 * kTypicalTime_s);
+  const double fast = E2 + std::log(kTypicalTime_s);
   switch (solid) {
     case SolidKind::three_element:
       break;
@@ -32,10 +33,27 @@ std::vector<double> near_three_elements(SolidKind solid, const std::vector<doubl
       return {E1, slow, E2, eta2};
     case SolidKind::two_kelvin:
       return {E1, E2, eta2, E2 + std::log(10.0), slow};
+    case SolidKind::three_kelvin:
+      return {E1, E2, eta2, E2 + std::log(10.0), slow, E2 + std::log(10.0), fast};
     case SolidKind::fractional:
       return {E1, E2, eta2, std::log(0.98)};
   }
   return logs;
+}
+
+/// Two Kelvin branches, as logarithms, with a weak third: ten times faster than the faster of them,
+/// between them, and ten times slower than the slower.
+std::vector<std::vector<double>> with_third_branch(const std::vector<double>& at) {
+  const double E = std::max(at[1], at[3]) + std::log(10.0);
+  const double first = at[2] - at[1];
+  const double second = at[4] - at[3];
+  std::vector<std::vector<double>> starts;
+  for (const double log_time : {std::min(first, second) - std::log(10.0), 0.5 * (first + second),
+                                std::max(first, second) + std::log(10.0)}) {
+    std::vector<double>& start = starts.emplace_back(at);
+    start.insert(start.begin() + 5, {E, E + log_time});
+  }
+  return starts;
 }
 
 void by_own_weights(BarSearch& search) {
@@ -273,6 +291,22 @@ Explanations::Solids Explanations::solids(const BarFit& three_element,
     result.others.push_back(entry->fit ? &*entry->fit : nullptr);
   }
   return result;
+}
+
+const BarFit* Explanations::third_branch(const BarFit& three_element, const BarFit& two_kelvin) {
+  Entry& entry = add({two_kelvin.theory, SolidKind::three_kelvin, two_kelvin.far_end});
+  const BarLikelihood::Weights& weights =
+      find({three_element.theory, three_element.solid, three_element.far_end})->search->weights();
+  for (const std::vector<double>& start : with_third_branch(two_kelvin.at)) {
+    Entry other;
+    other.theory = entry.theory;
+    other.search = std::make_unique<BarSearch>(data_, entry.theory);
+    compare(other, [&](BarSearch& search) { search.closely(start, weights); });
+    if (!entry.fit || (other.fit && other.fit->log_evidence > entry.fit->log_evidence)) {
+      entry = std::move(other);
+    }
+  }
+  return entry.fit ? &*entry.fit : nullptr;
 }
 
 const BarFit* Explanations::again(const BarTheory& theory, const BarFit& partial) {

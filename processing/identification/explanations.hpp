@@ -55,6 +55,10 @@ class Explanations {
   };
   [[nodiscard]] Solids solids(const BarFit& three_element, const std::vector<SolidKind>& others);
 
+  /// A third Kelvin branch beside two, faster, slower or between them, by the weights of three
+  /// elements. Null where it cannot be fitted.
+  [[nodiscard]] const BarFit* third_branch(const BarFit& three_element, const BarFit& two_kelvin);
+
   /// An end that returns all or nothing once more, from where one that may return anything is best:
   /// it holds the others within it.
   [[nodiscard]] const BarFit* again(const BarTheory& theory, const BarFit& partial);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "processing/base/error.hpp"
 
@@ -10,7 +11,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::size_t kMostSolidParameters = 5;
+constexpr std::size_t kMostSolidParameters = 7;
 
 class FourElementFluid final : public Compliance {
  public:
@@ -25,17 +26,21 @@ class FourElementFluid final : public Compliance {
   double E1_, eta2_, E3_, eta3_;
 };
 
-class TwoKelvin final : public Compliance {
+/// A spring, and springs with dashpots beside them, all in line.
+class KelvinChain final : public Compliance {
  public:
-  explicit TwoKelvin(std::span<const double> p)
-      : E1_(p[0]), E2_(p[1]), eta2_(p[2]), E3_(p[3]), eta3_(p[4]) {}
+  explicit KelvinChain(std::span<const double> p) : p_(p.begin(), p.end()) {}
   [[nodiscard]] Complex at(Complex s) const override {
-    return 1.0 / E1_ + 1.0 / (E2_ + s * eta2_) + 1.0 / (E3_ + s * eta3_);
+    Complex J = 1.0 / p_[0];
+    for (std::size_t i = 1; i < p_.size(); i += 2) {
+      J += 1.0 / (p_[i] + s * p_[i + 1]);
+    }
+    return J;
   }
-  [[nodiscard]] double instantaneous() const override { return 1.0 / E1_; }
+  [[nodiscard]] double instantaneous() const override { return 1.0 / p_[0]; }
 
  private:
-  double E1_, E2_, eta2_, E3_, eta3_;
+  std::vector<double> p_;
 };
 
 class FractionalSolid final : public Compliance {
@@ -96,8 +101,10 @@ Moved moved(SolidKind kind, std::span<const double> p, Complex s) {
       add_kelvin(s, p[2], p[3], 2, 3, m);
       break;
     case SolidKind::two_kelvin:
-      add_kelvin(s, p[1], p[2], 1, 2, m);
-      add_kelvin(s, p[3], p[4], 3, 4, m);
+    case SolidKind::three_kelvin:
+      for (std::size_t i = 1; i < p.size(); i += 2) {
+        add_kelvin(s, p[i], p[i + 1], i, i + 1, m);
+      }
       break;
     case SolidKind::fractional:
       add_fractional(s, p, m);
@@ -109,6 +116,7 @@ Moved moved(SolidKind kind, std::span<const double> p, Complex s) {
 constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"},
                             std::pair{SolidKind::four_element_fluid, "four-element-fluid"},
                             std::pair{SolidKind::two_kelvin, "two-kelvin"},
+                            std::pair{SolidKind::three_kelvin, "three-kelvin"},
                             std::pair{SolidKind::fractional, "fractional"}};
 
 }  // namespace
@@ -117,8 +125,10 @@ const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
   static const std::vector<SolidParameter> three = {{"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}};
   static const std::vector<SolidParameter> four = {
       {"E1_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
-  static const std::vector<SolidParameter> kelvin = {
+  static const std::vector<SolidParameter> two_kelvin = {
       {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
+  static const std::vector<SolidParameter> three_kelvin = {
+      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}, {"E4_Pa"}, {"eta4_Pa_s"}};
   static const std::vector<SolidParameter> fractional = {
       {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"beta"}};
   switch (kind) {
@@ -127,7 +137,9 @@ const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
     case SolidKind::four_element_fluid:
       return four;
     case SolidKind::two_kelvin:
-      return kelvin;
+      return two_kelvin;
+    case SolidKind::three_kelvin:
+      return three_kelvin;
     case SolidKind::fractional:
       break;
   }
@@ -141,7 +153,8 @@ std::unique_ptr<const Compliance> make_solid(SolidKind kind, std::span<const dou
     case SolidKind::four_element_fluid:
       return std::make_unique<FourElementFluid>(parameters);
     case SolidKind::two_kelvin:
-      return std::make_unique<TwoKelvin>(parameters);
+    case SolidKind::three_kelvin:
+      return std::make_unique<KelvinChain>(parameters);
     case SolidKind::fractional:
       break;
   }
@@ -168,7 +181,8 @@ SolidKind solid_kind(const std::string& name) {
     }
   }
   throw InputError("solid", "\"" + name + "\" is not a family of solids",
-                   "give three-element, four-element-fluid, two-kelvin or fractional");
+                   "give three-element, four-element-fluid, two-kelvin, three-kelvin or "
+                   "fractional");
 }
 
 std::string name_of(SolidKind kind) {

@@ -14,8 +14,9 @@ namespace kolsky {
 enum class SolidKind {
   three_element,       ///< J = 1/E1 + 1/(E2 + s eta2)                            E1, E2, eta2
   four_element_fluid,  ///< J = 1/E1 + 1/(s eta2) + 1/(E3 + s eta3)               E1, eta2, E3, eta3
-  two_kelvin,  ///< J = 1/E1 + 1/(E2 + s eta2) + 1/(E3 + s eta3)          E1, E2, eta2, E3, eta3
-  fractional,  ///< J = 1/E1 + 1/(E2 (1 + (s eta2/E2)^beta))              E1, E2, eta2, beta
+  two_kelvin,    ///< J = 1/E1 + 1/(E2 + s eta2) + 1/(E3 + s eta3)          E1, E2, eta2, E3, eta3
+  three_kelvin,  ///< and + 1/(E4 + s eta4)
+  fractional,    ///< J = 1/E1 + 1/(E2 (1 + (s eta2/E2)^beta))              E1, E2, eta2, beta
 };
 
 /// One parameter of a family.
@@ -34,7 +35,8 @@ struct SolidParameter {
                                                            std::span<const double> parameters,
                                                            std::span<const Complex> path);
 
-/// @throws InputError for any other name: three-element, four-element-fluid, two-kelvin, fractional
+/// @throws InputError for any other name: three-element, four-element-fluid, two-kelvin,
+/// three-kelvin, fractional
 [[nodiscard]] SolidKind solid_kind(const std::string& name);
 [[nodiscard]] std::string name_of(SolidKind kind);
 

@@ -16,6 +16,8 @@ const char* surplus_of(SolidKind solid) {
       return "beta below 1";
     case SolidKind::two_kelvin:
       return "a second branch";
+    case SolidKind::three_kelvin:
+      return "further branches";
     case SolidKind::four_element_fluid:
       return "a flow, eta2_Pa_s";
     case SolidKind::three_element:

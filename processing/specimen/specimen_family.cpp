@@ -48,6 +48,13 @@ FamilyStarts two_kelvin_starts(double E1, double E2, double eta2) {
           about({E1, E2, eta2, E2, eta2})};
 }
 
+/// Two further branches, one slower and one faster than the first by ten times.
+FamilyStarts three_kelvin_starts(double E1, double E2, double eta2) {
+  return {{{E1, E2, eta2, E2 + kNothing, eta2 + kNothing, E2 + kNothing, eta2 + kNothing},
+           {E1, E2, eta2, E2 + kTen, eta2 + 2.0 * kTen, E2 + kTen, eta2}},
+          about({E1, E2, eta2, E2, eta2, E2, eta2})};
+}
+
 FamilyStarts fluid_starts(double E1, double E2, double eta2) {
   FamilyStarts starts{{{E1, eta2 + kNoFlow, E2, eta2}, {E1, eta2 + 2.0 * kTen, E2, eta2}},
                       about({E1, eta2, E2, eta2})};
@@ -64,6 +71,8 @@ FamilyStarts starts_of(SolidKind solid, const std::vector<double>& logs) {
       return fractional_starts(E1, E2, eta2);
     case SolidKind::two_kelvin:
       return two_kelvin_starts(E1, E2, eta2);
+    case SolidKind::three_kelvin:
+      return three_kelvin_starts(E1, E2, eta2);
     case SolidKind::four_element_fluid:
       return fluid_starts(E1, E2, eta2);
     case SolidKind::three_element:

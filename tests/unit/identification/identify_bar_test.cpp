@@ -392,6 +392,37 @@ TEST(IdentifyBar, AnElasticBarInPinkNoiseIsNotLossy) {
   EXPECT_TRUE(result.three_element.lossless);
 }
 
+/// A bar whose creep is spread over many times, solved in the time domain with 14 of them.
+std::vector<Shot> spread_creep(const std::string& effect) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 71;
+  wishes.noise_strain = 1e-6;
+  testing::Campaign campaign = testing::draw_campaign(wishes);
+  testing::plant(campaign.world, testing::parse_effect(effect));
+  return testing::shots_of(campaign);
+}
+
+TEST(IdentifyBar, EachFurtherBranchComesNearerToASpreadSpectrum) {
+  const std::vector<Shot> shots = spread_creep("fractional-damping=0.8");
+  std::vector<double> chi2;
+  for (const SolidKind solid :
+       {SolidKind::three_element, SolidKind::two_kelvin, SolidKind::three_kelvin}) {
+    const BarFit fit = identify_bar(shots, {.solid = solid, .compare_solids = false}).fit;
+    EXPECT_EQ(fit.solid, solid);
+    chi2.push_back(fit.chi2_reduced * static_cast<double>(fit.degrees_of_freedom));
+    std::printf("%s: chi2 %.1f, reduced %.3f\n", name_of(solid).c_str(), chi2.back(),
+                fit.chi2_reduced);
+  }
+  EXPECT_LT(chi2[1], chi2[0] - 20.0);
+  EXPECT_LT(chi2[2], chi2[1] - 20.0);
+}
+
+TEST(IdentifyBar, TwoBranchesAreNotTakenForThree) {
+  const std::vector<Shot> shots = spread_creep("second-relaxation=6e-12,tau=3e-4");
+  const BarIdentification result = identify_bar(shots, {.solid = std::nullopt});
+  EXPECT_EQ(result.fit.solid, SolidKind::two_kelvin);
+}
+
 /// Two loud shots of a bar from whose end nothing comes back. Where that end was sought only from
 /// where a free one had led, it was left thousands behind one that returned 0.2 %.
 TEST(IdentifyBar, AWrongFarEndDoesNotLeadAstray) {

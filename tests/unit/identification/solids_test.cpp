@@ -14,6 +14,7 @@ TEST(Solids, SlopesAreThoseOfTheCompliance) {
       {SolidKind::three_element, {5.7e9, 37e9, 1.8e6}},
       {SolidKind::four_element_fluid, {5.7e9, 4e8, 37e9, 1.8e6}},
       {SolidKind::two_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7}},
+      {SolidKind::three_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5}},
       {SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7}}};
   for (const auto& [kind, parameters] : solids) {
     const auto slopes = log_slopes(kind, parameters, path);
