@@ -46,6 +46,7 @@ BarModelFile read_bar_model(const std::filesystem::path& path) {
   const TomlTable table = TomlTable::open(path);
   read_covariance(table, model.prior);
   if (const auto identified = table.optional_table("identified")) {
+    model.prior.from_waves = true;
     model.band_limit_Hz = identified->optional_number("band_limit_Hz");
     model.temperature_K = identified->optional_number("temperature_K");
   }
@@ -74,6 +75,16 @@ void require_temperature(const BarModelFile& model, const Shot& shot) {
                                  *model.temperature_K, shot.id, *there),
                      fmt::format("identify the bars within {:.0f} K of the shots", kNearEnough_K));
   }
+}
+
+std::string temperature_unchecked(const BarModelFile& model, const Shot& shot) {
+  if (!model.temperature_K || temperature_of(shot)) {
+    return "";
+  }
+  return fmt::format(
+      "identified at {:.1f} K; what this shot's bars had is not on file: give temperature_K in the "
+      "bench or the capture's meta",
+      *model.temperature_K);
 }
 
 void require_density(const BarModelFile& model, const Bench& bench) {

@@ -32,6 +32,9 @@ struct BarModelFile {
 /// @throws InputError
 void require_temperature(const BarModelFile& model, const Shot& shot);
 
+/// What to say where a bar model's temperature is known and the shot's is not; else nothing.
+[[nodiscard]] std::string temperature_unchecked(const BarModelFile& model, const Shot& shot);
+
 /// Refuses a bar model of another density than a viscoelastic bar of the bench: moduli tell a
 /// wave's speed only with the density they were identified with.
 /// @throws InputError where they are more than 1 % and three filed deviations apart

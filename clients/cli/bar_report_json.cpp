@@ -1,6 +1,8 @@
 #include <cmath>
 
 #include "clients/cli/bar_report.hpp"
+#include "clients/cli/budget.hpp"
+#include "processing/identification/parameter_budget.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -117,27 +119,30 @@ JsonList describe(const std::vector<ForetoldShot>& foretold) {
 
 JsonValue describe(const BarIdentification& result, const std::vector<ForetoldShot>& foretold) {
   const BarFit& three = result.three_element;
-  JsonObject object = {{"parameters", numbers(three.parameters)},
-                       {"covariance", rows(three.covariance)},
-                       {"correlation", correlation(three.covariance)},
-                       {"chi2_reduced", three.chi2_reduced},
-                       {"degrees_of_freedom", static_cast<std::uint64_t>(three.degrees_of_freedom)},
-                       {"dispersion", name_of(three.theory)},
-                       {"far_end", name_of(three.far_end)},
-                       {"two_passes", result.two_passes},
-                       {"band_limit_Hz", three.band_limit_Hz},
-                       {"choice", JsonObject{{"dispersion", describe(result.wave_theory)},
-                                             {"far_end", describe(result.far_end)},
-                                             {"solid", describe(result.solid)}}},
-                       {"alternatives", describe(result.alternatives)},
-                       {"solid", describe(result.fit)},
-                       {"bench", numbers(three.bench)},
-                       {"over_shots", numbers(result.over_shots)},
-                       {"shots", shots_of(result)},
-                       {"spectrum", describe(result.spectrum)},
-                       {"least_squares", JsonObject{{"parameters", numbers(result.paper)},
-                                                    {"spectrum", describe(result.straight_lines)}}},
-                       {"warnings", result.warnings}};
+  JsonObject object = {
+      {"parameters", numbers(three.parameters)},
+      {"covariance", rows(three.covariance)},
+      {"correlation", correlation(three.covariance)},
+      {"chi2_reduced", three.chi2_reduced},
+      {"degrees_of_freedom", static_cast<std::uint64_t>(three.degrees_of_freedom)},
+      {"dispersion", name_of(three.theory)},
+      {"far_end", name_of(three.far_end)},
+      {"two_passes", result.two_passes},
+      {"band_limit_Hz", three.band_limit_Hz},
+      {"choice", JsonObject{{"dispersion", describe(result.wave_theory)},
+                            {"far_end", describe(result.far_end)},
+                            {"solid", describe(result.solid)}}},
+      {"alternatives", describe(result.alternatives)},
+      {"solid", describe(result.fit)},
+      {"bench", numbers(three.bench)},
+      {"budget", budget_json(parameter_budget(three.parameters, three.by_bench, three.bench),
+                             names_of(three.parameters))},
+      {"over_shots", numbers(result.over_shots)},
+      {"shots", shots_of(result)},
+      {"spectrum", describe(result.spectrum)},
+      {"least_squares", JsonObject{{"parameters", numbers(result.paper)},
+                                   {"spectrum", describe(result.straight_lines)}}},
+      {"warnings", result.warnings}};
   if (!foretold.empty()) {
     object.push_back({"waveforms", describe(foretold)});
   }

@@ -4,7 +4,9 @@
 #include <numbers>
 
 #include "clients/cli/bar_report.hpp"
+#include "clients/cli/budget.hpp"
 #include "clients/figure/layout.hpp"
+#include "processing/identification/parameter_budget.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -94,6 +96,8 @@ std::string report(const BarIdentification& result) {
           ? "  three-element solid, by maximum likelihood, one gauge: the pulse and its return\n"
           : "  three-element solid, by maximum likelihood over whole records\n";
   text += table_of(three.parameters);
+  text += budget_table(parameter_budget(three.parameters, three.by_bench, three.bench),
+                       names_of(three.parameters));
   text +=
       fmt::format("    reduced chi2 {:.4f} of {}\n", three.chi2_reduced, three.degrees_of_freedom);
   text += "  waves: " + name_of(three.theory) + " (" + choice_text(result.wave_theory) + ")\n";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "clients/cli/budget.hpp"
 #include "clients/cli/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
 
@@ -25,19 +26,6 @@ JsonObject figures_json(const Uncertainty& uncertainty) {
                                                {"high", figure.high}}});
   }
   return figures;
-}
-
-JsonList budget_json(const Uncertainty& uncertainty) {
-  JsonList budget;
-  for (const BudgetLine& line : uncertainty.budget) {
-    JsonObject entry = {{"source", line.source}};
-    for (std::size_t f = 0; f < uncertainty.figures.size(); ++f) {
-      entry.push_back(
-          {uncertainty.figures[f].name, JsonObject{{"sd", line.sd[f]}, {"share", line.share[f]}}});
-    }
-    budget.push_back(std::move(entry));
-  }
-  return budget;
 }
 
 std::string unit_of(const std::string& figure) {
@@ -80,10 +68,17 @@ void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object) {
                                  {"coverage", 0.95},
                                  {"figures", figures_json(uncertainty)},
                                  {"sources", std::move(sources)}}});
-  object.push_back({"budget", budget_json(uncertainty)});
+  std::vector<std::string> numbers;
+  for (const UncertainFigure& figure : uncertainty.figures) {
+    numbers.push_back(figure.name);
+  }
+  object.push_back({"budget", budget_json(uncertainty.budget, numbers)});
 }
 
 std::string uncertainty_report(const Uncertainty& uncertainty) {
+  if (uncertainty.draws == 0) {
+    return "  uncertainty       none: there is no curve to give one to; why not is said below\n";
+  }
   std::string text = fmt::format(
       "  uncertainty       {} draws, 95 % intervals{}\n", uncertainty.draws,
       uncertainty.failed > 0 ? fmt::format("; {} draws could not be reduced", uncertainty.failed)
@@ -94,18 +89,11 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
                         with_unit(figure.value, unit), with_unit(figure.sd, unit),
                         with_unit(figure.low, unit), with_unit(figure.high, unit));
   }
-  text += fmt::format("  {:<22}", "share of variance");
+  std::vector<std::string> heads;
   for (const UncertainFigure& figure : uncertainty.figures) {
-    text += fmt::format("{:>14}", short_name(figure.name));
+    heads.push_back(short_name(figure.name));
   }
-  text += "\n";
-  for (const BudgetLine& line : uncertainty.budget) {
-    text += fmt::format("    {:<20}", line.source);
-    for (const double share : line.share) {
-      text += fmt::format("{:>12.1f} %", 100.0 * share);
-    }
-    text += "\n";
-  }
+  text += budget_table(uncertainty.budget, heads);
   if (uncertainty.sources.empty()) {
     text +=
         "    only noise counts: neither bench file nor bar model files a deviation\n"

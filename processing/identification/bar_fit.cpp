@@ -28,6 +28,14 @@ std::vector<double> values_of(const std::vector<FittedNumber>& numbers) {
   return values;
 }
 
+std::vector<std::string> names_of(const std::vector<FittedNumber>& numbers) {
+  std::vector<std::string> names;
+  for (const FittedNumber& number : numbers) {
+    names.push_back(number.name);
+  }
+  return names;
+}
+
 std::vector<double> first_guess(const BarData& data, SolidKind solid) {
   constexpr double kLeastTangent = 1e-4;
   constexpr double kMostTangent = 0.3;

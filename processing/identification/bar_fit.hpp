@@ -25,6 +25,7 @@ struct FittedNumber {
 };
 
 [[nodiscard]] std::vector<double> values_of(const std::vector<FittedNumber>& numbers);
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<FittedNumber>& numbers);
 
 /// What one shot by itself says of the solid, the bench as all shots together have it.
 struct ShotEstimate {
@@ -42,6 +43,8 @@ struct BarFit {
   std::vector<std::vector<double>> covariance;  ///< of the solid's parameters
   std::optional<FittedNumber> reflection;  ///< stress returned by the far end, where it is fitted
   std::vector<FittedNumber> bench;  ///< what the fit says of the known unknowns, in their own units
+  /// Covariance of each parameter with each of these, in filed deviations of these.
+  std::vector<std::vector<double>> by_bench;
   std::vector<ShotEstimate> shots;
   double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
   std::size_t degrees_of_freedom = 0;

@@ -27,9 +27,9 @@ constexpr double kNearEnough = 0.1;
 constexpr double kDoubtfulGain = 1e-2;
 constexpr double kLongestLogStep = 1.0;
 
-BarPrior prior_of(const BarData& data, const BarModel& model) {
+ParameterPrior prior_of(const BarData& data, const BarModel& model) {
   const auto size = static_cast<Eigen::Index>(model.parameters());
-  BarPrior prior{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Ones(size)};
+  ParameterPrior prior{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Ones(size)};
   const std::vector<double> guess = first_guess(data, model.theory().solid);
   for (std::size_t m = 0; m < guess.size(); ++m) {
     prior.centre[static_cast<Eigen::Index>(m)] = guess[m];
@@ -86,7 +86,7 @@ std::vector<FittedNumber> numbers_of(SolidKind kind, const Eigen::VectorXd& logs
 }
 
 /// The solid's parameters as one shot has them, the others held: one step from the common place.
-ShotEstimate estimate_of(const ShotTerms& shot, const BarPlace& common, const BarPrior& prior,
+ShotEstimate estimate_of(const ShotTerms& shot, const BarPlace& common, const ParameterPrior& prior,
                          const BarLikelihood& likelihood) {
   const auto n = static_cast<Eigen::Index>(likelihood.model().solid_parameters());
   const Eigen::MatrixXd prior_information = prior.weight.head(n).asDiagonal();
@@ -229,12 +229,13 @@ BarFit BarSearch::describe(double objective) const {
   fit.log_evidence =
       -0.5 * (objective + static_cast<double>(model.first_unknown()) *
                               std::log(static_cast<double>(likelihood_.residuals())));
-  const Eigen::MatrixXd posterior =
-      inverse_of(place_.information) * std::max(1.0, fit.chi2_reduced);
+  const double widened = std::max(1.0, fit.chi2_reduced);
+  const Eigen::MatrixXd posterior = inverse_of(place_.information) * widened;
   fit.at.assign(place_.at.data(), place_.at.data() + place_.at.size());
   fit.posterior = rows_of(posterior);
   fit.parameters = numbers_of(model.theory().solid, place_.at, posterior);
   fit.covariance.assign(solid, std::vector<double>(solid));
+  fit.by_bench.resize(solid);
   for (std::size_t i = 0; i < solid; ++i) {
     for (std::size_t j = 0; j < solid; ++j) {
       fit.covariance[i][j] =
@@ -249,6 +250,9 @@ BarFit BarSearch::describe(double objective) const {
     const std::size_t at = model.first_unknown() + i;
     fit.bench.push_back(
         {unknown.name, fit.at[at] * unknown.sd, std::sqrt(fit.posterior[at][at]) * unknown.sd});
+    for (std::size_t p = 0; p < solid; ++p) {
+      fit.by_bench[p].push_back(fit.parameters[p].value * fit.posterior[p][at] / widened);
+    }
   }
   return fit;
 }

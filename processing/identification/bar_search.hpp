@@ -13,7 +13,7 @@ namespace kolsky {
 inline constexpr double kTypicalTime_s = 50e-6;  ///< of a glassy polymer's retardation
 
 /// What is known of a bar's parameters before its records are looked at.
-struct BarPrior {
+struct ParameterPrior {
   Eigen::VectorXd centre;
   Eigen::VectorXd weight;  ///< 1 / variance
 
@@ -71,7 +71,7 @@ class BarSearch {
   [[nodiscard]] BarFit describe(double objective) const;
 
   BarLikelihood likelihood_;
-  BarPrior prior_;
+  ParameterPrior prior_;
   BarPlace place_;
 };
 

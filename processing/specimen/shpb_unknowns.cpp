@@ -1,6 +1,6 @@
 #include "processing/specimen/shpb_unknowns.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 
 namespace kolsky {
@@ -8,26 +8,6 @@ namespace kolsky {
 namespace {
 
 using Of = ShpbUnknown::Of;
-
-/// Square root of the covariance: its columns are the directions the moduli may move in.
-Eigen::Matrix3d directions(const BarPrior& prior) {
-  Eigen::Matrix3d covariance;
-  const std::array<double, 3> scale = {prior.material.E1_Pa, prior.material.E2_Pa,
-                                       prior.material.eta2_Pa_s};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const auto a = static_cast<std::size_t>(i);
-      const auto b = static_cast<std::size_t>(j);
-      covariance(i, j) = prior.covariance[a][b] / (scale[a] * scale[b]);
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  Eigen::Matrix3d root = solver.eigenvectors();
-  for (int j = 0; j < 3; ++j) {
-    root.col(j) *= std::sqrt(std::max(0.0, solver.eigenvalues()[j]));
-  }
-  return root;
-}
 
 void add(std::vector<ShpbUnknown>& list, std::string name, Of of, std::size_t index, double sd) {
   if (sd > 0.0) {
@@ -52,12 +32,6 @@ void scale(Measured& number, double move) {
 
 }  // namespace
 
-BarPrior::BarPrior(const Material& m) : material(m) {
-  covariance[0][0] = m.E1_Pa.sd * m.E1_Pa.sd;
-  covariance[1][1] = m.E2_Pa.sd * m.E2_Pa.sd;
-  covariance[2][2] = m.eta2_Pa_s.sd * m.eta2_Pa_s.sd;
-}
-
 std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<ShpbStation>& stations,
                                        const BarPrior& bars) {
   std::vector<ShpbUnknown> list;
@@ -77,7 +51,7 @@ std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<Shp
   add_bar(list, bench.input, 0);
   add_bar(list, *bench.output, 1);
   if (!bench.input.youngs_modulus_Pa || !bench.output->youngs_modulus_Pa) {
-    const Eigen::Matrix3d root = directions(bars);
+    const Eigen::Matrix3d root = moduli_directions(bench, bars);
     for (std::size_t i = 0; i < 3; ++i) {
       const bool moves = root.col(static_cast<int>(i)).norm() > 0.0;
       add(list, "bar-model:" + std::to_string(i + 1), Of::bar_material, i, moves ? 1.0 : 0.0);
@@ -101,7 +75,8 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
       gain(stations.size(), 1.0) {
   std::vector<double> shift_m(stations.size(), 0.0);
   Eigen::Vector3d relative = Eigen::Vector3d::Zero();
-  const Eigen::Matrix3d root = directions(prior);
+  const Eigen::Matrix3d root = moduli_directions(filed, prior);
+  const auto moduli_with = bar_of_density(filed, prior);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const ShpbUnknown& u = unknowns[i];
     const double move = moves[i] * u.sd;
@@ -117,6 +92,7 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         break;
       case Of::bar_density:
         scale(bars[u.index].density_kg_m3, move);
+        relative += Eigen::Vector3d::Constant(u.index == moduli_with ? move : 0.0);
         break;
       case Of::bar_diameter:
         scale(bars[u.index].diameter_m, move);

@@ -7,19 +7,10 @@
 
 #include "processing/base/bench.hpp"
 #include "processing/base/material.hpp"
+#include "processing/identification/bar_prior.hpp"
 #include "processing/specimen/shpb_records.hpp"
 
 namespace kolsky {
-
-/// What the viscoelastic bars are made of, with what is not known of it.
-struct BarPrior {
-  Material material;
-  /// Of E1_Pa, E2_Pa, eta2_Pa_s, in their units.
-  std::array<std::array<double, 3>, 3> covariance{};
-
-  /// The material's own deviations, as if they were independent.
-  explicit BarPrior(const Material& m);
-};
 
 /// A filed number of a specimen bench with a standard deviation: it may be off by about that much,
 /// and a fit may move it. A move is the same for all shots.

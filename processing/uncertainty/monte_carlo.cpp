@@ -321,7 +321,8 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   if (!told.bar_model) {
     told.bar_model = shot.bar_model.value_or(paper_pmma());
   }
-  result.sources = uncertainty_sources(shot.bench, *told.bar_model, wanted.bars);
+  result.sources = uncertainty_sources(shot.bench, wanted.bars.value_or(BarPrior(*told.bar_model)),
+                                       wanted.softening_per_K);
   const Campaign campaign(wanted.draws, result.sources.size());
   std::vector<Draw> draws(campaign.count());
   workers.run((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk, std::size_t) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "processing/base/budget.hpp"
 #include "processing/base/workers.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "processing/uncertainty/sources.hpp"
@@ -13,7 +15,10 @@ namespace kolsky {
 struct UncertaintyOptions {
   std::size_t draws = 1000;
   std::uint64_t seed = 1;
-  BarModelUncertainty bars;
+  /// What is not known of the reduction's bar model; none: its own deviations, as independent.
+  std::optional<BarPrior> bars;
+  /// Relative loss of viscoelastic bars' moduli. PMMA at room temperature: 0.3 % per kelvin.
+  double softening_per_K = 3e-3;
 };
 
 /// A history's standard deviation and 95 % interval, at each of its times.
@@ -30,14 +35,6 @@ struct UncertainFigure {
   double sd = 0.0;
   double low = 0.0;
   double high = 0.0;
-};
-
-/// What one source contributes to each figure, in the figures' order: the figure's standard
-/// deviation if nothing else were uncertain.
-struct BudgetLine {
-  std::string source;
-  std::vector<double> sd;
-  std::vector<double> share;  ///< of the sum of all lines' variances
 };
 
 struct Uncertainty {

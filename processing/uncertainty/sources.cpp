@@ -1,6 +1,5 @@
 #include "processing/uncertainty/sources.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <utility>
 
@@ -69,8 +68,6 @@ void add_bar(Sources& sources, const Bench& bench, bool input) {
                          }
                        }});
   }
-  add(sources, bench, name + "density_kg_m3", "bar densities",
-      [bar](Bench& b) -> Measured& { return bar(b).density_kg_m3; });
   add(sources, bench, name + "poisson_ratio", "Poisson's ratios",
       [bar](Bench& b) -> Measured& { return bar(b).poisson_ratio; });
   if ((input ? bench.input : *bench.output).youngs_modulus_Pa) {
@@ -79,53 +76,64 @@ void add_bar(Sources& sources, const Bench& bench, bool input) {
   }
 }
 
-/// The moduli's covariance as three independent directions, relative.
-void add_bar_model(Sources& sources, const Material& bars, const BarModelUncertainty& model) {
-  const std::array<double, 3> scale = {bars.E1_Pa, bars.E2_Pa, bars.eta2_Pa_s};
-  Eigen::Matrix3d covariance;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const auto a = static_cast<std::size_t>(i);
-      const auto b = static_cast<std::size_t>(j);
-      covariance(i, j) = model.covariance[a][b] / (scale[a] * scale[b]);
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  for (int i = 2; i >= 0; --i) {
-    const double sd = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
-    if (sd <= 0.0) {
-      continue;
-    }
-    const Eigen::Vector3d along = solver.eigenvectors().col(i) * sd;
-    sources.push_back({"bar model, direction " + std::to_string(3 - i), "bar moduli", 0.0, sd,
-                       [along](Bench&, Material& m, double deviations) {
-                         m.E1_Pa.value *= 1.0 + deviations * along[0];
-                         m.E2_Pa.value *= 1.0 + deviations * along[1];
-                         m.eta2_Pa_s.value *= 1.0 + deviations * along[2];
+void scale(Material& moduli, double E1, double E2, double eta2) {
+  moduli.E1_Pa.value *= 1.0 + E1;
+  moduli.E2_Pa.value *= 1.0 + E2;
+  moduli.eta2_Pa_s.value *= 1.0 + eta2;
+}
+
+void add_density(Sources& sources, const Bench& bench, const BarPrior& bars, bool input) {
+  const auto bar = [input](Bench& b) -> Bar& { return input ? b.input : *b.output; };
+  const Measured density = (input ? bench.input : *bench.output).density_kg_m3;
+  const bool with_moduli = bar_of_density(bench, bars) == std::size_t{input ? 0U : 1U};
+  if (density.sd > 0.0) {
+    sources.push_back({std::string("bars.") + (input ? "input" : "output") + ".density_kg_m3",
+                       "bar densities", density.value, density.sd,
+                       [bar, with_moduli](Bench& b, Material& m, double deviations) {
+                         Measured& at = bar(b).density_kg_m3;
+                         const double move = deviations * relative_sd(at);
+                         at.value *= 1.0 + move;
+                         if (with_moduli) {
+                           scale(m, move, move, move);
+                         }
                        }});
+  }
+}
+
+void add_bar_model(Sources& sources, const Bench& bench, const BarPrior& bars) {
+  const Eigen::Matrix3d directions = moduli_directions(bench, bars);
+  for (int i = 2; i >= 0; --i) {
+    const Eigen::Vector3d along = directions.col(i);
+    if (along.norm() > 0.0) {
+      sources.push_back({"bar model, direction " + std::to_string(3 - i), "bar moduli", 0.0,
+                         along.norm(), [along](Bench&, Material& m, double deviations) {
+                           scale(m, deviations * along[0], deviations * along[1],
+                                 deviations * along[2]);
+                         }});
+    }
   }
 }
 
 }  // namespace
 
-Sources uncertainty_sources(const Bench& bench, const Material& bars,
-                            const BarModelUncertainty& model) {
+Sources uncertainty_sources(const Bench& bench, const BarPrior& bars, double softening_per_K) {
   Sources sources;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
     add_gauge(sources, bench, i);
   }
-  add_bar(sources, bench, true);
-  add_bar(sources, bench, false);
+  for (const bool input : {true, false}) {
+    add_bar(sources, bench, input);
+    add_density(sources, bench, bars, input);
+  }
   const bool viscoelastic = !bench.input.youngs_modulus_Pa || !bench.output->youngs_modulus_Pa;
   if (viscoelastic) {
-    add_bar_model(sources, bars, model);
+    add_bar_model(sources, bench, bars);
   }
   if (viscoelastic && bench.temperature_K && bench.temperature_K->sd > 0.0) {
-    const double change = model.softening_per_K * bench.temperature_K->sd;
+    const double change = softening_per_K * bench.temperature_K->sd;
     sources.push_back({"temperature_K", "temperature", bench.temperature_K->value,
                        bench.temperature_K->sd, [change](Bench&, Material& m, double deviations) {
-                         m.E1_Pa.value *= 1.0 - deviations * change;
-                         m.E2_Pa.value *= 1.0 - deviations * change;
+                         scale(m, -deviations * change, -deviations * change, 0.0);
                        }});
   }
   add(sources, bench, "specimen.length_m", "specimen length",

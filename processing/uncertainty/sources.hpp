@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "processing/base/bench.hpp"
 #include "processing/base/material.hpp"
+#include "processing/identification/bar_prior.hpp"
 
 namespace kolsky {
 
@@ -20,16 +20,10 @@ struct UncertaintySource {
   std::function<void(Bench&, Material&, double)> move;
 };
 
-/// What is not known exactly of viscoelastic bars.
-struct BarModelUncertainty {
-  std::array<std::array<double, 3>, 3> covariance{};  ///< of E1_Pa, E2_Pa, eta2_Pa_s
-  /// Relative change of the moduli with temperature. PMMA at room temperature: 0.3 % per kelvin.
-  double softening_per_K = 3e-3;
-};
-
 /// Everything of a specimen bench and its bars that is filed with a deviation.
+/// @param softening_per_K  relative loss of the bars' moduli
 [[nodiscard]] std::vector<UncertaintySource> uncertainty_sources(const Bench& bench,
-                                                                 const Material& bars,
-                                                                 const BarModelUncertainty& model);
+                                                                 const BarPrior& bars,
+                                                                 double softening_per_K);
 
 }  // namespace kolsky

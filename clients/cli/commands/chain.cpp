@@ -124,6 +124,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   run.bars = fmt::format("identified from {} shots", shots.size());
   material.source = "kolsky chain, " + run.bars;
   Bars bars{BarPrior(material), fit.band_limit_Hz};
+  bars.prior.from_waves = true;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       bars.prior.covariance[i][j] = fit.covariance[i][j];

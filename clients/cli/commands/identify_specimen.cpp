@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/budget.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reduced_shot.hpp"
@@ -14,6 +15,7 @@
 #include "drivers/files/material_file.hpp"
 #include "drivers/files/new_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/identification/parameter_budget.hpp"
 #include "processing/specimen/fit_warnings.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 #include "processing/specimen/specimen_spectrum.hpp"
@@ -103,6 +105,12 @@ Outcome identify(const Settings& settings) {
                              ? outcome.bars->prior
                              : BarPrior(outcome.shots.front().bar_model.value_or(paper_pmma()));
   outcome.fit = fit_specimen(outcome.shots, prior, options);
+  if (outcome.bars) {
+    const std::string unchecked = temperature_unchecked(*outcome.bars, outcome.shots.front());
+    if (!unchecked.empty()) {
+      outcome.fit.warnings.push_back("the bar model was " + unchecked);
+    }
+  }
   SpectralOptions spectral;
   spectral.bars = outcome.fit.theory.bars;
   try {
@@ -252,6 +260,8 @@ JsonValue describe(const Outcome& outcome) {
       {"judged_s", fit.judged_s},
       {"past_first_return", fit.to_the_end},
       {"bench", numbers(fit.bench)},
+      {"budget", budget_json(parameter_budget(fit.parameters, fit.by_bench, fit.bench),
+                             names_of(fit.parameters))},
       {"spectral", spectral_json(outcome)},
       {"bar_model", bars_in_words(outcome)},
       {"bar_model_assumed", assumed},
@@ -276,6 +286,8 @@ std::string report(const Outcome& outcome) {
                       name_of(fit.solid), with_unit(fit.band_limit_Hz, "Hz"),
                       with_unit(fit.judged_s, "s"));
   text += table_of(fit.parameters);
+  text += budget_table(parameter_budget(fit.parameters, fit.by_bench, fit.bench),
+                       names_of(fit.parameters));
   text += fmt::format("    chi2 per degree of freedom {:.3f} ({} of them); bars {}, specimen {}\n",
                       fit.chi2_reduced, fit.degrees_of_freedom, name_of_theory(fit.theory.bars),
                       name_of(fit.theory.specimen));
@@ -373,7 +385,8 @@ Command identify_specimen_command() {
       option("--model-out", "S.toml", "material file to write: values, deviations, covariance",
              &s.model_out),
       option("--solid", "FAMILY",
-             "three-element (default), four-element-fluid, two-kelvin or fractional", &s.solid),
+             "three-element (default), four-element-fluid, two-kelvin, three-kelvin or fractional",
+             &s.solid),
       option("--dispersion", "THEORY",
              "how waves travel in the bars: elementary, love or exact; else what the data say",
              &s.dispersion),

@@ -117,7 +117,7 @@ ReductionOptions reduction_options(const Settings& settings,
 }
 
 UncertaintyOptions uncertainty_options(const Settings& settings,
-                                       const std::optional<BarModelFile>& bars, const Shot& shot) {
+                                       const std::optional<BarModelFile>& bars) {
   constexpr std::uint64_t kFewest = 20;
   constexpr std::uint64_t kMost = 1'000'000;
   UncertaintyOptions options;
@@ -126,10 +126,10 @@ UncertaintyOptions uncertainty_options(const Settings& settings,
     throw InputError("kolsky reduce: --draws", "is outside 20 to 1000000",
                      "1000 give the deviations to 2 %");
   }
-  const BarPrior prior =
-      bars.has_value() ? bars->prior : BarPrior(shot.bar_model.value_or(paper_pmma()));
-  options.bars.covariance = prior.covariance;
-  options.bars.softening_per_K = settings.softening_per_K.value_or(options.bars.softening_per_K);
+  if (bars.has_value()) {
+    options.bars = bars->prior;
+  }
+  options.softening_per_K = settings.softening_per_K.value_or(options.softening_per_K);
   return options;
 }
 
@@ -218,12 +218,16 @@ int run(const Settings& settings, Context& context) {
   if (bars.has_value()) {
     require_temperature(*bars, reduced.shot);
     require_density(*bars, reduced.shot.bench);
+    const std::string unchecked = temperature_unchecked(*bars, reduced.shot);
+    if (!unchecked.empty()) {
+      reduced.reduction.bar_model += " (" + unchecked + ")";
+    }
   }
   reduced.stress = settings.stress.value_or(reduced.stress);
   reduced.corrections = names_of(options.corrections);
   if (settings.uncertainty || settings.draws.has_value()) {
     reduced.uncertainty = propagate(reduced.shot, options, reduced.reduction,
-                                    uncertainty_options(settings, bars, reduced.shot), all_cores());
+                                    uncertainty_options(settings, bars), all_cores());
   }
   write_files(settings, reduced);
   context.out << (context.json ? to_text(describe(reduced, settings.with_true)) + "\n"

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "drivers/simulated/bench_model.hpp"
 #include "processing/base/error.hpp"
+#include "processing/identification/parameter_budget.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 
 namespace kolsky {
@@ -92,6 +94,36 @@ TEST(FitBar, TheDataTellWhichWaveTheoryTheyObey) {
   EXPECT_NEAR(right.chi2_reduced, 1.0, 0.1);
   EXPECT_GT(wrong.chi2_reduced, 5.0);
   EXPECT_GT(right.log_evidence, wrong.log_evidence + 1000.0);
+}
+
+/// A bench that is off by a filed deviation moves the fit by what the budget says of it.
+TEST(FitBar, ItsBudgetIsWhatABenchThatIsOffDoes) {
+  std::vector<Shot> shots = shots_of(2);
+  for (Shot& shot : shots) {
+    shot.bench.input.density_kg_m3.sd = 5.0;
+    shot.bench.gauges[0].position_m.sd = 0.2e-3;
+  }
+  const BarFit fit = fit_bar(shots, {.theory = WaveTheory::elementary});
+  const auto budget = parameter_budget(fit.parameters, fit.by_bench, fit.bench);
+  ASSERT_EQ(budget.size(), 3U);
+  EXPECT_EQ(budget[0].source, "bar densities");  // 0.4 %
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(budget[0].share[p] + budget[1].share[p] + budget[2].share[p], 1.0, 1e-9);
+    EXPECT_NEAR(budget[0].sd[p] / fit.parameters[p].value, 5.0 / 1180.0, 1e-4);
+  }
+  for (Shot& shot : shots) {
+    shot.bench.gauges[0].position_m.value += 0.2e-3;
+  }
+  const BarFit off = fit_bar(shots, {.theory = WaveTheory::elementary});
+  const auto positions = std::find_if(budget.begin(), budget.end(), [](const BudgetLine& line) {
+    return line.source == "gauge positions";
+  });
+  ASSERT_NE(positions, budget.end());
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(std::abs(off.parameters[p].value - fit.parameters[p].value), positions->sd[p],
+                0.05 * positions->sd[p] + 0.02 * fit.parameters[p].sd)
+        << fit.parameters[p].name;
+  }
 }
 
 TEST(FitBar, AnotherKindOfBenchIsRefused) {

@@ -218,6 +218,20 @@ TEST(FitSpecimen, CorrelatedModuliMoveTogether) {
   EXPECT_NEAR(largest, 1e-3, 1e-6);
 }
 
+TEST(FitSpecimen, ModuliFromWavesMoveWithTheInputBarsDensity) {
+  BarPrior prior(paper_pmma());
+  prior.from_waves = true;
+  Bench bench = LinearShpb{}.bench();
+  bench.input.density_kg_m3.sd = 0.01 * bench.input.density_kg_m3;
+  const auto stations = shpb_stations(bench);
+  const auto unknowns = shpb_unknowns(bench, stations, prior);
+  ASSERT_EQ(unknowns.size(), 1U);
+  const MovedShpb moved(bench, stations, prior, unknowns, std::vector<double>{1.0});
+  EXPECT_NEAR(moved.bars[0].density_kg_m3 / bench.input.density_kg_m3, 1.01, 1e-12);
+  EXPECT_NEAR(moved.material.E1_Pa / prior.material.E1_Pa, 1.01, 1e-12);
+  EXPECT_NEAR(moved.material.eta2_Pa_s / prior.material.eta2_Pa_s, 1.01, 1e-12);
+}
+
 TEST(FitSpecimen, TheSpectrumHoldsTheTruthTo15kHz) {
   for (const bool massless : {true, false}) {
     LinearShpb model;
