@@ -17,9 +17,9 @@ namespace kolsky {
 
 /// Another code of the same ball departs from this one smoothly, as effects do, and so mimics them
 /// more than what is allowed for its size says: how far, campaigns without any effect show that
-/// another code made on meshes of its own (docs/impact.md). A square of a normal deviate counts
-/// over this, at least, and the solver's share of a number's variance is this many times what was
-/// allowed for.
+/// another code made on meshes of its own (docs/methods/impact-trials.md). A square of a normal
+/// deviate counts over this, at least, and the solver's share of a number's variance is this many
+/// times what was allowed for.
 inline constexpr double kSolverDoubt = 6.0;
 /// Squares of normal deviates, over kSolverDoubt: by so much one explanation stands before another.
 inline constexpr double kStandsBefore = 7.5;

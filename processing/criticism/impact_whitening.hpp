@@ -37,10 +37,10 @@ struct ImpactDoubts {
 class ImpactWhitening {
  public:
   /// Relative to the incident speed: by so much another code's restitution was seen to differ
-  /// (docs/impact.md).
+  /// (docs/methods/impact-trials.md).
   static constexpr double kRestitutionDoubt = 0.002;
   /// In the logarithm of the speed: over so much another code's ripple keeps its sign
-  /// (docs/impact.md).
+  /// (docs/methods/impact-trials.md).
   static constexpr double kRippleSpeeds = 0.05;
 
   ImpactWhitening(const ImpactRecords& records, const std::vector<ImpactShape>& shapes,

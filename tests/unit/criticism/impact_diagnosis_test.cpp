@@ -80,12 +80,12 @@ TEST_F(StiffeningCore, ForetellsASpeedThatWasHeldOut) {
     return upper.study.compare(upper.study.as_it_is(fitted)).speeds.back().rms_percent;
   };
   EXPECT_GT(rms_at_51({}), 1.5);
-  // Two codes of the same ball differ by so much (docs/impact.md).
+  // Two codes of the same ball differ by so much (docs/methods/impact-trials.md).
   EXPECT_LT(rms_at_51({"core-nonlinearity"}), 0.8);
 }
 
 /// The most that is left on held-out speeds where nothing is hidden, by the other code's mesh
-/// (docs/impact.md).
+/// (docs/methods/impact-trials.md).
 constexpr double kHeldOutOfNulls = 1.61;
 
 /// At finite strain what softens is unlike anything else: nothing stands beside such a core.

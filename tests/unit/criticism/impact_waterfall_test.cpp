@@ -33,7 +33,8 @@ TEST(ImpactWaterfall, FallsToTheNoiseByWhatWasHidden) {
   EXPECT_EQ(fall.steps[1].better, 2U);
   EXPECT_NEAR(fall.steps[1].gain / (4.0 * 29.0), fall.steps[0].held_out - fall.steps[1].held_out,
               0.2 * (fall.steps[0].held_out - fall.steps[1].held_out));
-  // The error where the ball is struck hardest falls to what two codes differ by (docs/impact.md).
+  // The error where the ball is struck hardest falls to what two codes differ by
+  // (docs/methods/impact-trials.md).
   ASSERT_EQ(fall.steps[0].speeds.size(), 2U);
   EXPECT_NEAR(fall.steps[0].speeds[1].speed_m_per_s, 51.0, 1.0);
   EXPECT_GT(fall.steps[0].speeds[1].rms_percent, 1.0);
