@@ -16,7 +16,7 @@ constexpr int kPlotColumns = 100;
 constexpr int kPlotRows = 14;
 
 std::string with_sd(const Measured& number, const std::string& unit) {
-  return with_unit(number, unit) + " ± " + with_unit(number.sd, unit);
+  return with_deviation(number.value, number.sd, unit);
 }
 
 std::string speeds_text(const BallImpact& ball) {

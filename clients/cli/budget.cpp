@@ -21,13 +21,13 @@ std::string budget_table(const std::vector<BudgetLine>& budget,
                          const std::vector<std::string>& heads) {
   std::string text = fmt::format("  {:<22}", "share of variance");
   for (const std::string& head : heads) {
-    text += fmt::format("{:>14}", head);
+    text += fmt::format("{:>16}", head);
   }
   text += "\n";
   for (const BudgetLine& line : budget) {
     text += fmt::format("    {:<20}", line.source);
     for (const double share : line.share) {
-      text += fmt::format("{:>12.1f} %", 100.0 * share);
+      text += fmt::format("{:>14.1f} %", 100.0 * share);
     }
     text += "\n";
   }

@@ -85,9 +85,9 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
                              : "");
   for (const UncertainFigure& figure : uncertainty.figures) {
     const std::string unit = unit_of(figure.name);
-    text += fmt::format("    {:<16}{} ± {}, {} to {}\n", short_name(figure.name),
-                        with_unit(figure.value, unit), with_unit(figure.sd, unit),
-                        with_unit(figure.low, unit), with_unit(figure.high, unit));
+    text += fmt::format("    {:<16}{}, {} to {}\n", short_name(figure.name),
+                        with_deviation(figure.value, figure.sd, unit), with_unit(figure.low, unit),
+                        with_unit(figure.high, unit));
   }
   std::vector<std::string> heads;
   for (const UncertainFigure& figure : uncertainty.figures) {

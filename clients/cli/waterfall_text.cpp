@@ -275,10 +275,10 @@ std::string curve_words(const Waterfall& fall) {
     }
   }
   return fmt::format(
-      "At a constant strain rate the specimen's stress moved most at {:.3g} % strain: from {} ± {} "
-      "to {} ± {}.",
-      100.0 * b.strain[at], with_unit(a.stress_Pa[at], "Pa"), with_unit(a.sd_Pa[at], "Pa"),
-      with_unit(b.stress_Pa[at], "Pa"), with_unit(b.sd_Pa[at], "Pa"));
+      "At a constant strain rate the specimen's stress moved most at {:.3g} % strain: from {} to "
+      "{}.",
+      100.0 * b.strain[at], with_deviation(a.stress_Pa[at], a.sd_Pa[at], "Pa"),
+      with_deviation(b.stress_Pa[at], b.sd_Pa[at], "Pa"));
 }
 
 std::string left_words(const Waterfall& fall) {

@@ -93,6 +93,18 @@ std::string with_unit(double value, const std::string& unit) {
   return shown.name.empty() || shown.name == "1" ? text : text + " " + shown.name;
 }
 
+std::string with_deviation(double value, double sd, const std::string& unit) {
+  if (!std::isfinite(value) || !std::isfinite(sd) || sd <= 0.0) {
+    return with_unit(value, unit) + " ± " + with_unit(sd, unit);
+  }
+  const DisplayUnit shown = display_unit(unit, std::max(std::abs(value), sd));
+  const double last_digit = std::floor(std::log10(sd * shown.factor)) - 1.0;
+  const int decimals = std::clamp(static_cast<int>(-last_digit), 0, 9);
+  const std::string text =
+      fmt::format("{:.{}f} ± {:.{}f}", value * shown.factor, decimals, sd * shown.factor, decimals);
+  return shown.name.empty() || shown.name == "1" ? text : text + " " + shown.name;
+}
+
 AxisLayout lay_out(const Axis& axis, AxisRange range, int most_marks) {
   const DisplayUnit shown =
       display_unit(axis.unit, std::max(std::abs(range.low), std::abs(range.high)));

@@ -28,6 +28,9 @@ struct DisplayUnit {
 /// A number and its unit for people, three or four digits: "31.4 MPa".
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
 
+/// A number and its deviation in one unit, to the deviation's second digit: "31.42 ± 0.17 MPa".
+[[nodiscard]] std::string with_deviation(double value, double sd, const std::string& unit);
+
 /// A mark on an axis: where (in the data's unit) and what is written there (in the display unit).
 struct AxisMark {
   double at = 0.0;

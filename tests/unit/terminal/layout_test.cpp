@@ -75,6 +75,11 @@ TEST(Layout, WritesNumbersWithTheirUnit) {
   EXPECT_EQ(with_unit(-0.0315, "strain"), "-3.15 %");
   EXPECT_EQ(with_unit(0.07, "1"), "0.07");
   EXPECT_EQ(with_unit(std::nan(""), "Pa"), "unknown");
+  EXPECT_EQ(with_deviation(1.1562e9, 7.766e6, "Pa"), "1.1562 ± 0.0078 GPa");
+  EXPECT_EQ(with_deviation(0.1672, 4915e-6, "strain"), "16.72 ± 0.49 %");
+  EXPECT_EQ(with_deviation(1750.0, 23.0, "1/s"), "1750 ± 23 1/s");
+  EXPECT_EQ(with_deviation(0.07, std::nan(""), "1"), "0.07 ± unknown");
+  EXPECT_EQ(with_deviation(0.07, 0.0, "1"), "0.07 ± 0");
 }
 
 TEST(Layout, SpansOnlyFinitePointsAndIsNeverEmpty) {
