@@ -69,11 +69,15 @@ bool put_branches_in_order(const Composition& composition, std::vector<double>& 
   return changed;
 }
 
-double own_branch_s(const Model& model, const std::string& further) {
+OwnBranch own_branch(const Model& model, const std::string& further) {
   const auto pair = std::find_if(kPairs.begin(), kPairs.end(),
                                  [&](const Pair& one) { return one.further == further; });
   const EffectUse* own = pair != kPairs.end() ? model.find(pair->base) : nullptr;
-  return own != nullptr ? own->values[2].value / own->values[1].value : 0.0;
+  if (own == nullptr) {
+    return {};
+  }
+  const ModelValue& E2 = own->values[1];
+  return {own->values[2].value / E2.value, E2.sd < E2.value};
 }
 
 }  // namespace kolsky

@@ -14,8 +14,13 @@ namespace kolsky {
 [[nodiscard]] bool put_branches_in_order(const Composition& composition,
                                          std::vector<double>& theta);
 
-/// The relaxation time of the material's own branch that this further one stands beside; 0 where
-/// there is none, or the effect is no further relaxation.
-[[nodiscard]] double own_branch_s(const Model& model, const std::string& further);
+/// The material's own branch that a further one stands beside.
+struct OwnBranch {
+  double time_s = 0.0;         ///< 0: there is none
+  bool strength_known = true;  ///< to better than itself
+};
+
+/// @param further  id of an effect that may be a further relaxation
+[[nodiscard]] OwnBranch own_branch(const Model& model, const std::string& further);
 
 }  // namespace kolsky
