@@ -16,6 +16,11 @@ constexpr std::size_t kMostReturns = 12;
 /// Bins whose noise is taken together: to 15 kHz in records of 4 ms. Where losses show in them, an
 /// average over returns states deviations that are 4 to 8 % small.
 constexpr std::size_t kLowestBins = 60;
+/// Noise that falls with frequency across these bins leaves much of the loss to those above them:
+/// twice as many are taken then, without which eta2's intervals are 4 % small.
+constexpr std::size_t kLowestBinsUnderFallingNoise = 120;
+/// Noise counts as slow where neighbouring samples are correlated by more than this.
+constexpr double kSlow = 0.8;
 /// Places at which noise enters, per bin: what moves faster is not in them. With six times as many
 /// deviations differ by less than 0.1 %.
 constexpr std::size_t kPlacesPerBin = 8;
@@ -71,7 +76,6 @@ void take_off_quiet_mean(Eigen::Index quiet, EightColumns& shown) {
 /// Slow noise jumps from the end of what is judged to its beginning, which every bin sees alike: a
 /// ramp's spectrum. That of gauge 0 shows at the others.
 std::vector<BarData::Spectrum> jumps(const BarData& data) {
-  constexpr double kSlow = 0.8;  // correlation of neighbouring samples
   const auto variance_of = [&](std::size_t gauge) {
     double variance = 0.0;
     for (const auto& part : data.slow_noise(gauge)) {
@@ -90,6 +94,28 @@ std::vector<BarData::Spectrum> jumps(const BarData& data) {
     }
   }
   return list;
+}
+
+/// Whether slow noise begins to fall in the upper half of the lowest bins or just beyond them.
+bool noise_falls_across_lowest_bins(const BarData& data) {
+  const double top_cycles =
+      static_cast<double>(kLowestBins) /
+      (data.places().samples_per_place * static_cast<double>(data.places().judged()));
+  for (std::size_t gauge = 0; gauge < data.gauges(); ++gauge) {
+    for (const auto& part : data.slow_noise(gauge)) {
+      const double knee_cycles = -std::log(part.keep) / (2.0 * std::numbers::pi);
+      if (part.keep > kSlow && knee_cycles > 0.5 * top_cycles) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+std::size_t bins_taken_together(const BarData& data) {
+  const std::size_t wanted =
+      noise_falls_across_lowest_bins(data) ? kLowestBinsUnderFallingNoise : kLowestBins;
+  return std::min(wanted, data.judged_path().size());
 }
 
 double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
@@ -292,7 +318,7 @@ LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
 BarLikelihood::Weights BarLikelihood::weights_at(std::span<const double> at, bool together) {
   Whitening weights = whitening(at);
   if (together) {
-    weights.lowest_bins = std::min(kLowestBins, data_.judged_path().size());
+    weights.lowest_bins = bins_taken_together(data_);
     weights.lowest_factor = coupling_of_lowest_bins(at, weights.lowest_bins);
   }
   return std::make_shared<const Whitening>(std::move(weights));
