@@ -23,7 +23,7 @@ void put(const CandidateResult& candidate, v1::DiagnosisCandidate& message) {
   message.set_unit(candidate.unit);
   message.set_strength(candidate.strength);
   message.set_sd(candidate.sd);
-  message.set_p_value(std::exp(candidate.log_p));
+  message.set_p_value(std::exp(candidate.own_log_p));
   message.set_log_p(candidate.log_p);
   message.set_gain(candidate.gain);
   message.set_held_out_gain(candidate.held_out_gain);

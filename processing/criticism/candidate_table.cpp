@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "processing/criticism/search_trials.hpp"
 #include "processing/criticism/shot_strengths.hpp"
 #include "processing/criticism/statistics.hpp"
 
@@ -46,6 +47,48 @@ void set_identifiable(const Tried& tried, std::size_t i, double power, Candidate
                                                    power));
 }
 
+/// ln of the chance of a candidate's gain at first order. One that has one sign only has a chance
+/// above one half where the records ask for the other.
+double first_order_log_p(const Tried& tried, std::size_t i) {
+  const Direction& direction = tried.directions[i];
+  if (!(direction.freedom > 0.0)) {
+    return 0.0;
+  }
+  const auto two_sided = [&](double gain) {
+    const double over = gain / tried.scale;
+    return tried.known.empty()
+               ? log_gain_tail(over, direction.freedom, false)
+               : log_f_tail(over / direction.freedom, direction.freedom, tried.known[i]);
+  };
+  const Candidate& candidate = tried.candidates[i];
+  if (!candidate.one_sided || direction.information.rows() != 1) {
+    return two_sided(direction.gain);
+  }
+  const EffectParameter& strength = candidate.use.effect->about().parameters.front();
+  const bool up = strength.null_value <= strength.lower;
+  const double half =
+      0.5 *
+      std::exp(two_sided(direction.pull[0] * direction.pull[0] / direction.information(0, 0)));
+  return (direction.pull[0] > 0.0) == up ? std::log(half) : std::log1p(-half);
+}
+
+/// Chances of an effect, of whose variants the best counts: by itself, and among all that was
+/// tried.
+void set_chances(const Tried& tried, const std::vector<std::size_t>& variants,
+                 CandidateResult& result) {
+  double least = 0.0;
+  for (const std::size_t i : variants) {
+    least = std::min(least, first_order_log_p(tried, i));
+  }
+  const double trials = variants.size() > 1 ? independent_trials(tried.base, tried.candidates,
+                                                                 tried.directions, variants)
+                                            : 1.0;
+  constexpr double kTiny = -20.0;
+  result.own_log_p = least < kTiny ? least + std::log(trials)
+                                   : std::log(-std::expm1(trials * std::log1p(-std::exp(least))));
+  result.log_p = std::min(0.0, least + std::max(std::log(trials), tried.log_trials));
+}
+
 /// Root mean square over shots and gauges of an amplitude in cosine and sine parts.
 void set_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
   const ModelFit& fit = studied.fit;
@@ -72,6 +115,10 @@ void set_amplitude(const Studied& studied, const std::string& id, CandidateResul
 std::vector<CandidateResult> first_order_table(const Tried& tried) {
   std::vector<CandidateResult> table;
   std::map<std::string, std::size_t> at;
+  std::map<std::string, std::vector<std::size_t>> variants;
+  for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
+    variants[tried.candidates[i].id()].push_back(i);
+  }
   for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
     const Candidate& candidate = tried.candidates[i];
     const Direction& direction = tried.directions[i];
@@ -85,9 +132,6 @@ std::vector<CandidateResult> first_order_table(const Tried& tried) {
     result.parameter = parameter.name;
     result.unit = parameter.unit;
     result.gain = direction.gain;
-    result.log_p = std::min(
-        0.0, log_gain_tail(direction.gain / tried.scale, direction.freedom, candidate.one_sided) +
-                 tried.log_trials);
     if (direction.freedom > 0.0 && direction.information.rows() > 0) {
       const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
                                ? candidate.use.values[0].prior_sd
@@ -110,6 +154,11 @@ std::vector<CandidateResult> first_order_table(const Tried& tried) {
       table.push_back(std::move(result));
     }
   }
+  for (CandidateResult& result : table) {
+    if (result.verdict != "untestable") {
+      set_chances(tried, variants[result.effect], result);
+    }
+  }
   return table;
 }
 
@@ -122,6 +171,7 @@ void note_refits(const Search& search, const std::vector<Refit>& refits,
       if (result.effect == search.candidates()[refit.candidate].id()) {
         result.gain = refit.gain;
         result.log_p = search.with_search(refit.log_p);
+        result.own_log_p = search.without_search(refit);
         result.held_out_gain = held_out[i].gain;
         set_strength(refit.studied, result.effect, residuals_per_shot, result);
       }

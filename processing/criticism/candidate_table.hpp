@@ -15,8 +15,9 @@ struct CandidateResult {
   std::string unit;
   double strength = 0.0;  ///< not a number: untestable here
   double sd = 0.0;
-  double log_p = 0.0;  ///< ln of its probability under noise, the search over all included
-  double gain = 0.0;   ///< of chi2, in units of the noise found
+  double own_log_p = 0.0;  ///< ln of its probability under noise, of this effect alone
+  double log_p = 0.0;      ///< the same, the search over all effects included
+  double gain = 0.0;       ///< of chi2, in units of the noise found
   double held_out_gain = 0.0;
   double detectable = 0.0;    ///< the strength that stands at 6 sigma here; infinite: none does
   double identifiable = 0.0;  ///< and still at 5 beside its nearest rival
@@ -31,6 +32,8 @@ struct Tried {
   const Studied& base;                       ///< the model that was searched
   double log_trials = 0.0;                   ///< ln of how many tests the search amounts to
   double scale = 1.0;                        ///< what a square of a normal deviate counts over
+  /// Degrees of freedom by which the noise is known in each candidate's direction; empty: known
+  std::vector<double> known = {};
 };
 
 /// First-order strengths and limits of every effect beside the model that was searched.

@@ -241,7 +241,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, const
   constexpr double kAbsorbed = 1e-6;
   Eigen::MatrixXd information = direction.information;
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (information(i, i) < kAbsorbed * direction.unprojected(i, i)) {
+    if (information(i, i) <= kAbsorbed * direction.unprojected(i, i)) {
       information.row(i).setZero();
       information.col(i).setZero();
       direction.freedom -= 1.0;

@@ -113,8 +113,8 @@ class Diagnostician {
     Search search(study_, current, start_, options_.safeguards);
     const bool first = diagnosis_.effects.empty();
     if (diagnosis_.candidates.empty()) {
-      diagnosis_.candidates = first_order_table(
-          {search.candidates(), search.directions(), current, search.log_trials()});
+      diagnosis_.candidates = first_order_table({search.candidates(), search.directions(), current,
+                                                 search.log_trials(), 1.0, search.known()});
     }
     std::optional<Choice> choice = choose(search, current, first);
     if (!choice) {

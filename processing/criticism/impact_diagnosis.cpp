@@ -540,6 +540,7 @@ class Diagnostician {
         if (result.effect == search.candidate(refit).id()) {
           result.gain = refit.gain;
           result.log_p = search.with_search(refit.log_p);
+          result.own_log_p = refit.log_p;
           result.held_out_gain = records().groups.size() > 1
                                      ? gain_on_speeds(current, refit.studied)
                                      : gain_on_shots(current, refit.studied);

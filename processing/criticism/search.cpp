@@ -74,8 +74,28 @@ double Search::with_search(double log_p) const {
   return std::min(0.0, log_p + std::log(trials_));
 }
 
+double Search::without_search(const Refit& refit) const {
+  return refit.products ? with_search(refit.log_p) : refit.log_p;
+}
+
 double Search::log_trials() const {
   return std::log(trials_);
+}
+
+std::vector<double> Search::known() const {
+  std::vector<double> list;
+  for (const Candidate& candidate : candidates_) {
+    list.push_back(known_of(candidate.use));
+  }
+  return list;
+}
+
+/// Degrees of freedom by which noise is known in an effect's direction: what differs between the
+/// shots tells of it too, unless each shot has a strength of its own.
+double Search::known_of(const EffectUse& use) const {
+  const std::size_t shots = study_.campaign().shots.size();
+  const double believed = belief_in(*use.effect, study_.residuals().noise(), shots);
+  return use.per_shot ? believed : believed + static_cast<double>(shots - 1);
 }
 
 std::vector<Refit> Search::refits() {
@@ -445,14 +465,11 @@ double Search::chance_of(const Refit& refit) const {
     });
     return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
   }
-  const std::size_t shots = study_.campaign().shots.size();
   if (use.per_shot || refit.gain <= 0.0) {
     return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
   }
   const double freedom = std::max(refit.freedom, 1.0);
-  const double known =
-      belief_in(*use.effect, study_.residuals().noise(), shots) + static_cast<double>(shots - 1);
-  const double log_p = log_f_tail(refit.gain / freedom, freedom, known);
+  const double log_p = log_f_tail(refit.gain / freedom, freedom, known_of(use));
   return refit.one_sided ? log_p - std::log(2.0) : log_p;
 }
 

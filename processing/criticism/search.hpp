@@ -50,6 +50,10 @@ class Search {
   [[nodiscard]] double with_search(double log_p) const;
 
   [[nodiscard]] double log_trials() const;
+  /// ln of the chance of what was refitted, sought among its own variants only.
+  [[nodiscard]] double without_search(const Refit& refit) const;
+  /// By candidate: degrees of freedom by which noise is known in its direction.
+  [[nodiscard]] std::vector<double> known() const;
 
   /// The candidates worth it, refitted; the best first.
   [[nodiscard]] std::vector<Refit> refits();
@@ -78,6 +82,7 @@ class Search {
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
+  [[nodiscard]] double known_of(const EffectUse& use) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;
 
   Study& study_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "processing/algebra/algebra.hpp"
@@ -16,18 +17,18 @@ constexpr int kSimulatedRepeats = 2000;
 }  // namespace
 
 double independent_trials(const Studied& studied, const std::vector<Candidate>& candidates,
-                          const std::vector<Direction>& directions) {
+                          const std::vector<Direction>& directions,
+                          std::span<const std::size_t> which) {
   std::vector<std::size_t> single;
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    if (directions[i].freedom == 1.0 && directions[i].information.rows() == 1) {
+  double others = 0.0;
+  for (const std::size_t i : which) {
+    const Direction& direction = directions[i];
+    if (direction.freedom == 1.0 && direction.information.rows() == 1) {
       single.push_back(i);
     }
-  }
-  const auto count = static_cast<Eigen::Index>(single.size());
-  double others = 0.0;
-  for (const Direction& direction : directions) {
     others += direction.information.rows() > 1 && direction.freedom > 0.0 ? 1.0 : 0.0;
   }
+  const auto count = static_cast<Eigen::Index>(single.size());
   if (count == 0) {
     return std::max(1.0, others);
   }
@@ -70,6 +71,13 @@ double independent_trials(const Studied& studied, const std::vector<Candidate>& 
   std::nth_element(best.begin(), best.begin() + kSimulatedRepeats * 95 / 100, best.end());
   const double p = std::exp(-best[static_cast<std::size_t>(kSimulatedRepeats) * 95 / 100]);
   return std::max(1.0, std::log(0.95) / std::log1p(-std::min(p, 0.5))) + others;
+}
+
+double independent_trials(const Studied& studied, const std::vector<Candidate>& candidates,
+                          const std::vector<Direction>& directions) {
+  std::vector<std::size_t> all(directions.size());
+  std::iota(all.begin(), all.end(), 0);
+  return independent_trials(studied, candidates, directions, all);
 }
 
 }  // namespace kolsky

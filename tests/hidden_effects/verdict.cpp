@@ -95,6 +95,21 @@ std::optional<double> strength_error(const Json& json, const testing::Campaign& 
   return std::nullopt;
 }
 
+/// That of one effect which can be tested at all: those of one campaign hang together.
+std::optional<double> one_p_of(const Json& diagnosis, const std::string& id) {
+  std::vector<double> chances;
+  for (const Json& candidate : diagnosis.value("candidates", Json::array())) {
+    const auto chance = number_at(candidate, "p_value");
+    if (text_at(candidate, "verdict") != "untestable" && chance) {
+      chances.push_back(*chance);
+    }
+  }
+  if (chances.empty()) {
+    return std::nullopt;
+  }
+  return chances[std::hash<std::string>{}(id) % chances.size()];
+}
+
 }  // namespace
 
 Verdict judge(const Case& drawn, const Answer& answer) {
@@ -124,10 +139,8 @@ Verdict judge(const Case& drawn, const Answer& answer) {
     verdict.strength_in_sd =
         strength_error(answer.json, drawn.campaign, drawn.campaign.effects.front());
   }
-  const Json candidates = answer.json.value("candidates", Json::array());
-  if (drawn.kind == CaseKind::null && !candidates.empty()) {
-    const std::size_t pick = std::hash<std::string>{}(drawn.id) % candidates.size();
-    verdict.null_p = number_at(candidates.at(pick), "p_value");
+  if (drawn.kind == CaseKind::null) {
+    verdict.null_p = one_p_of(answer.json, drawn.id);
   }
   return verdict;
 }

@@ -25,7 +25,7 @@ struct Verdict {
   std::string proposal;                     ///< what would break the tie, as it says
   std::optional<bool> tie_broken;           ///< by doing that; none where it cannot be made
   std::optional<Localisation> places;       ///< those that `compare` marks
-  std::optional<double> null_p;             ///< p-value of one candidate drawn by the case's number
+  std::optional<double> null_p;             ///< p-value of one candidate drawn by the case's id
   double seconds = 0.0;
   std::string error;
 };

@@ -1,0 +1,73 @@
+#include "processing/criticism/candidate_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/criticism/search.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+/// What a first search says of every effect; each seed is another bench with another material.
+std::vector<CandidateResult> searched(std::uint64_t seed, const std::string& hidden) {
+  testing::CampaignWishes wishes;
+  wishes.seed = seed;
+  wishes.shots = 4;
+  wishes.gauges = 3;
+  wishes.samples = 1500;
+  wishes.rate_Hz = 1e6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  if (!hidden.empty()) {
+    testing::hide(truth, testing::parse_effect(hidden));
+  }
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Model model = paper_model(BenchKind::bar, false);
+  const Studied base = study.fit(model);
+  Search search(study, base, model);
+  return first_order_table(
+      {search.candidates(), search.directions(), base, search.log_trials(), 1.0, search.known()});
+}
+
+double own_p(const std::vector<CandidateResult>& table, const std::string& id) {
+  const auto own = std::find_if(table.begin(), table.end(),
+                                [&](const CandidateResult& result) { return result.effect == id; });
+  return std::exp(own->own_log_p);
+}
+
+// Of one bench they hang together, so the bounds are those of some thirty independent numbers.
+TEST(CandidateTable, AnEffectsOwnChanceIsUniformWhereNothingIsHidden) {
+  std::vector<double> chances;
+  double most_one_sided = 0.0;
+  for (std::uint64_t seed = 501; seed < 517; ++seed) {
+    const auto table = searched(seed, "");
+    for (const char* id : {"gauge-factor:g2", "gauge-position:g3", "crosstalk:g2"}) {
+      chances.push_back(own_p(table, id));
+    }
+    most_one_sided = std::max(most_one_sided, own_p(table, "geometric-dispersion"));
+    for (const CandidateResult& result : table) {
+      EXPECT_LE(result.own_log_p, 0.0) << result.effect;
+      EXPECT_LE(result.own_log_p, result.log_p + 1e-9) << result.effect;
+    }
+  }
+  const auto share_below = [&](double limit) {
+    return static_cast<double>(std::count_if(chances.begin(), chances.end(),
+                                             [&](double chance) { return chance < limit; })) /
+           static_cast<double>(chances.size());
+  };
+  EXPECT_NEAR(share_below(0.5), 0.5, 0.27);
+  EXPECT_NEAR(share_below(0.25), 0.25, 0.24);
+  EXPECT_GT(*std::min_element(chances.begin(), chances.end()), 1e-4);
+  // What can have one sign only is likely on noise that asks for the other.
+  EXPECT_GT(most_one_sided, 0.6);
+}
+
+TEST(CandidateTable, AnEffectsOwnChanceIsSmallWhereItIs) {
+  EXPECT_LT(own_p(searched(501, "gauge-factor:g2=0.02"), "gauge-factor:g2"), 1e-6);
+}
+
+}  // namespace
+}  // namespace kolsky
