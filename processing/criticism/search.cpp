@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "processing/criticism/beside.hpp"
 #include "processing/criticism/branch_order.hpp"
 #include "processing/criticism/own_strengths.hpp"
 #include "processing/criticism/search_trials.hpp"
@@ -108,6 +109,8 @@ std::vector<Refit> Search::refits() {
   for (auto& own : done) {
     if (own && admissible(*own)) {
       list.push_back(std::move(*own));
+    } else if (own) {
+      note_unconfirmed(*own);
     }
   }
   rate_in_order(list);
@@ -121,6 +124,31 @@ bool Search::admissible(const Refit& refit) const {
          (!safeguards_.own_strengths ||
           own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
                                   study_.campaign(), Claim::fresh));
+}
+
+void Search::note_unconfirmed(const Refit& refit) {
+  const EffectUse& use = candidates_[refit.candidate].use;
+  if (!use.per_shot || !is_addition(*use.effect) || !fits_the_signal(refit)) {
+    return;
+  }
+  const double noise = noise_of(refit.studied.misfit, study_.campaign().shots.size());
+  const double gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+  const double evidence = equivalent_square(log_gain_tail(gain, refit.freedom, false));
+  if (!unconfirmed_ || evidence > unconfirmed_->evidence) {
+    unconfirmed_ = {refit.candidate, evidence};
+  }
+}
+
+/// What explains less than something slow that nothing confirms must do so beside it, too: else it
+/// may be only the part of it that comes again in every shot.
+double Search::share_beside_unconfirmed(const Refit& refit, double evidence) const {
+  const Candidate& own = candidates_[refit.candidate];
+  if (!unconfirmed_ || evidence > unconfirmed_->evidence || own.use.per_shot ||
+      own.id() == candidates_[unconfirmed_->candidate].id()) {
+    return 1.0;
+  }
+  return share_beside(directions_[refit.candidate], candidates_[unconfirmed_->candidate],
+                      directions_[unconfirmed_->candidate], base_.fit.covariance);
 }
 
 /// What fits better for counting more as noise fits nothing: where a gauge sees hardly a signal,
@@ -436,7 +464,9 @@ void Search::rate(std::vector<Refit>& list) const {
   }
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
   for (Refit& refit : list) {
-    const double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+    double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+    over_noise *= share_beside_unconfirmed(
+        refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.one_sided)));
     refit.gain = over_noise / refit.scatter;
     refit.log_p = chance_of(refit);
     // The shots' scatter tells how well a gain is known, and only roughly: divided by one rival's

@@ -82,6 +82,8 @@ class Search {
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
+  void note_unconfirmed(const Refit& refit);
+  [[nodiscard]] double share_beside_unconfirmed(const Refit& refit, double evidence) const;
   [[nodiscard]] double known_of(const EffectUse& use) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;
 
@@ -92,6 +94,13 @@ class Search {
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   double trials_ = 1.0;
+  /// Strengths of single shots that explain most of all and that nothing confirms: slow noise, or
+  /// something slow that the library lacks.
+  struct Unconfirmed {
+    std::size_t candidate = 0;
+    double evidence = 0.0;
+  };
+  std::optional<Unconfirmed> unconfirmed_;
 };
 
 }  // namespace kolsky

@@ -1,0 +1,104 @@
+#include "processing/criticism/beside.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "processing/criticism/diagnosis.hpp"
+#include "tests/generators/campaign.hpp"
+
+namespace kolsky {
+namespace {
+
+constexpr Eigen::Index kResiduals = 60;
+
+/// A linear model at its best, and what two additions to it do.
+struct Linear {
+  Eigen::MatrixXd model;
+  Eigen::MatrixXd own;
+  Eigen::MatrixXd other;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd covariance;
+
+  explicit Linear(std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const auto drawn = [&](Eigen::Index columns) {
+      return Eigen::MatrixXd::NullaryExpr(kResiduals, columns, [&] { return normal(random); })
+          .eval();
+    };
+    model = drawn(2);
+    other = drawn(3);
+    own = other.col(0) + 0.7 * drawn(1);
+    covariance = (model.transpose() * model).inverse();
+    const Eigen::MatrixXd records = drawn(1) - 1.5 * own + other * Eigen::Vector3d(1.0, -2.0, 0.5);
+    residual = rest(model, records);
+  }
+
+  static Eigen::VectorXd rest(const Eigen::MatrixXd& columns, const Eigen::VectorXd& of) {
+    return of - columns * columns.colPivHouseholderQr().solve(of);
+  }
+
+  [[nodiscard]] Direction direction_of(const Eigen::MatrixXd& columns) const {
+    Direction direction;
+    direction.columns = columns;
+    direction.model_share = model.transpose() * columns;
+    direction.unprojected = columns.transpose() * columns;
+    direction.information = direction.unprojected -
+                            direction.model_share.transpose() * covariance * direction.model_share;
+    direction.pull = -columns.transpose() * residual;
+    direction.step = direction.information.ldlt().solve(direction.pull);
+    direction.gain = direction.pull.dot(direction.step);
+    return direction;
+  }
+};
+
+Candidate no_prior() {
+  const Effect* drift = find_effect("baseline-drift");
+  return {null_use(*drift, "g1"), false, false};
+}
+
+TEST(ShareBeside, IsWhatALeastSquaresFitOfBothStillGains) {
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    const Linear made(seed);
+    const Direction own = made.direction_of(made.own);
+    Eigen::MatrixXd without(kResiduals, 5);
+    without << made.model, made.other;
+    Eigen::MatrixXd with(kResiduals, 6);
+    with << without, made.own;
+    const double gained = Linear::rest(without, made.residual).squaredNorm() -
+                          Linear::rest(with, made.residual).squaredNorm();
+    const double share =
+        share_beside(own, no_prior(), made.direction_of(made.other), made.covariance);
+    EXPECT_NEAR(share, std::min(1.0, gained / own.gain), 1e-6) << seed;
+  }
+}
+
+TEST(ShareBeside, IsNothingOfWhatAnotherExplainsAlone) {
+  Linear made(3);
+  made.residual = Linear::rest(made.model, made.other.col(0));
+  EXPECT_LT(share_beside(made.direction_of(made.own), no_prior(), made.direction_of(made.other),
+                         made.covariance),
+            1e-6);
+}
+
+// Mains of 40 microstrain under slow noise, of which the samples before the pulse do not tell
+// enough to confirm it. An end that returns waves explains a twentieth as much; it was named.
+TEST(ShareBeside, KeepsWhatAnUnconfirmedHumExplainsFromBeingNamedAsSomethingElse) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 21;
+  wishes.shots = 8;
+  wishes.gauges = 4;
+  wishes.noise_strain = 4e-6;
+  wishes.colour = testing::NoiseColour::coloured;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("mains-hum=4e-5"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
+  EXPECT_TRUE(diagnosis.effects.empty());
+}
+
+}  // namespace
+}  // namespace kolsky
