@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "processing/criticism/held_out.hpp"
 #include "processing/criticism/next_experiment.hpp"
@@ -47,9 +48,17 @@ bool beyond_belief(const Studied& studied, const std::string& id, const Campaign
   }
   const auto& parameters = use->effect->about().parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const double size = std::abs(use->values[p].value);
-    const auto beyond = [&](double own, double most) { return most > 0.0 && own > slack * most; };
-    if (beyond(size, parameters[p].most) || beyond(size * peak, parameters[p].most_times_peak)) {
+    // What is as strong as anything built comes out stronger every other time.
+    constexpr double kDeviations = 3.0;
+    constexpr double kExcused = 0.02;
+    constexpr double kMostExcused = 0.1;
+    const auto beyond = [&](double unit, double most) {
+      const double size = unit * std::abs(use->values[p].value);
+      const double excused =
+          std::clamp(kDeviations * unit * use->values[p].sd, kExcused * most, kMostExcused * most);
+      return most > 0.0 && size - excused > slack * most;
+    };
+    if (beyond(1.0, parameters[p].most) || beyond(peak, parameters[p].most_times_peak)) {
       return true;
     }
   }
@@ -101,6 +110,14 @@ class Diagnostician {
         drop_unneeded(current, 0);
       }
     }
+    if (on_trial_ && std::ranges::count(diagnosis_.effects, *on_trial_) > 0) {
+      // Nothing found beside it makes the shots agree on it.
+      for (const std::string& id : std::exchange(diagnosis_.effects, {})) {
+        set_verdict(id, "rejected");
+      }
+      diagnosis_.tied_with.clear();
+      current = study_.refit(first);
+    }
     conclude(first, current);
     return std::move(diagnosis_);
   }
@@ -120,6 +137,9 @@ class Diagnostician {
     if (!choice) {
       return false;
     }
+    if (choice->on_trial) {
+      on_trial_ = choice->id;
+    }
     diagnosis_.effects.push_back(choice->id);
     start_ = with(start_, search.candidates()[choice->candidate], true);
     take(*choice, current);
@@ -132,6 +152,8 @@ class Diagnostician {
     std::size_t candidate = 0;
     Studied studied;
     std::vector<std::string> ties;
+    /// The shots do not agree on it, as they may not while another is missing.
+    bool on_trial = false;
   };
 
   std::optional<Choice> choose(Search& search, const Studied& base, bool note) {
@@ -145,6 +167,7 @@ class Diagnostician {
     }
     std::optional<std::size_t> best;
     std::optional<std::size_t> leading;
+    std::optional<std::size_t> nearest;
     std::vector<std::size_t> confirmed;
     for (std::size_t i = 0; i < refits.size(); ++i) {
       const Refit& refit = refits[i];
@@ -162,18 +185,19 @@ class Diagnostician {
       const bool foretold = refit.products || (held_out[i].gain > 0.0 && held_out[i].share > 0.5);
       const Safeguards& safeguards = options_.safeguards;
       constexpr double kSlack = 1.5;
-      if ((safeguards.held_out && !foretold) ||
-          (safeguards.shot_agreement &&
-           !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot)) ||
-          beyond_belief(refit.studied, id, study_.campaign(), kSlack)) {
+      const bool sound = (!safeguards.held_out || foretold) &&
+                         !beyond_belief(refit.studied, id, study_.campaign(), kSlack);
+      if (!sound || (safeguards.shot_agreement &&
+                     !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot))) {
         set_verdict(id, "rejected");
+        nearest = sound && may_be_named && !nearest ? i : nearest;
         continue;
       }
       confirmed.push_back(i);
       best = may_be_named && !best ? i : best;
     }
     if (!best) {
-      return std::nullopt;
+      return note && nearest ? on_trial(search, refits[*nearest]) : std::nullopt;
     }
     std::vector<std::string> ties;
     Refit& refit = refits[*best];
@@ -189,6 +213,19 @@ class Diagnostician {
       note_refits(search, refits, held_out, confirmed, per_shot, diagnosis_.candidates);
     }
     return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
+  }
+
+  /// What comes nearest while much is left beside it, which shots may differ by.
+  static std::optional<Choice> on_trial(const Search& search, Refit& refit) {
+    constexpr double kMuch = 1.2;  // chi2 per degree of freedom
+    if (refit.studied.misfit.chi2_reduced < kMuch) {
+      return std::nullopt;
+    }
+    return Choice{search.candidates()[refit.candidate].id(),
+                  refit.candidate,
+                  std::move(refit.studied),
+                  {},
+                  true};
   }
 
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
@@ -247,6 +284,9 @@ class Diagnostician {
       if (!choice || std::count(diagnosis_.effects.begin(), diagnosis_.effects.end(), choice->id) >
                          (choice->id == id ? 1 : 0)) {
         continue;
+      }
+      if (on_trial_ == id) {
+        on_trial_.reset();
       }
       if (choice->studied.fit.objective() > current.fit.objective() + 1.0) {
         // Not where it was found before: that was better.
@@ -408,7 +448,8 @@ class Diagnostician {
 
   Study& study_;
   const DiagnosisOptions& options_;
-  Model start_;  ///< unfitted, with the effects found so far
+  Model start_;                          ///< unfitted, with the effects found so far
+  std::optional<std::string> on_trial_;  ///< of these, what is to be certified beside others yet
   Diagnosis diagnosis_;
 };
 

@@ -240,6 +240,36 @@ TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   }
 }
 
+// While a gauge's length is missing the shots differ on the dashpot, without which the length does
+// not show: neither passes by itself.
+TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 44;
+  wishes.shots = 6;
+  wishes.gauges = 3;
+  wishes.noise_strain = 4e-6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("gauge-length:g3=0.02"));
+  testing::hide(truth, testing::parse_effect("series-dashpot=2e-8"));
+  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"gauge-length:g3", "series-dashpot"}));
+}
+
+// A length at the end of what is built comes out beyond it every other time.
+TEST(Diagnosis, NamesAGaugeAsLongAsAnyIsBuilt) {
+  testing::CampaignWishes wishes;
+  wishes.seed = 53;
+  wishes.shots = 6;
+  wishes.gauges = 3;
+  wishes.noise_strain = 4e-6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("gauge-length:g2=0.1"));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"gauge-length:g2"});
+  EXPECT_GT(result_of(diagnosis, "gauge-length:g2").strength, 0.1);
+}
+
 // Anything can be expanded in three effects: what needs as many is likelier to be missing itself.
 TEST(Diagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
   const Made made =
