@@ -1,9 +1,12 @@
 #include "processing/criticism/candidate_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/common_amplitude.hpp"
 #include "processing/criticism/search_trials.hpp"
 #include "processing/criticism/shot_strengths.hpp"
 #include "processing/criticism/statistics.hpp"
@@ -87,6 +90,35 @@ void set_chances(const Tried& tried, const std::vector<std::size_t>& variants,
   result.own_log_p = least < kTiny ? least + std::log(trials)
                                    : std::log(-std::expm1(trials * std::log1p(-std::exp(least))));
   result.log_p = std::min(0.0, least + std::max(std::log(trials), tried.log_trials));
+}
+
+/// An amplitude that is the same at all gauges is the same in all shots, too.
+void set_common_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
+  std::map<std::ptrdiff_t, std::array<std::size_t, 2>> places;
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.parameter < 2 && studied.composition.uses()[number.use].id() == id) {
+      places[number.shot][number.parameter] = i;
+    }
+  }
+  std::vector<QuadratureParts> shots;
+  double scale = 1.0;
+  for (const auto& [shot, place] : places) {
+    const std::array at{static_cast<Eigen::Index>(place[0]), static_cast<Eigen::Index>(place[1])};
+    const Eigen::MatrixXd covariance = studied.fit.covariance(at, at);
+    const Eigen::Vector2d parts(studied.fit.theta[place[0]], studied.fit.theta[place[1]]);
+    QuadratureParts own{Eigen::Vector2d::Zero(), inverse_of(covariance)};
+    own.pull = own.information * parts;  // of the prior, none: it is one about nothing
+    const FreeNumber& number = studied.composition.numbers()[place[0]];
+    scale = number.scale;
+    if (number.prior_sd > 0.0) {
+      own.information.diagonal().array() -= scale * scale / (number.prior_sd * number.prior_sd);
+    }
+    shots.push_back(own);
+  }
+  const Amplitude amplitude = common_amplitude(shots);
+  result.strength = scale * amplitude.value;
+  result.sd = scale * amplitude.sd;
 }
 
 /// Root mean square over shots and gauges of an amplitude in cosine and sine parts.
@@ -192,7 +224,11 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
   result.sd = use->values[at].sd;
   if (use->effect->about().quadrature) {
     result.parameter = "A";
-    set_amplitude(studied, id, result);
+    if (use->alike && use->per_shot) {
+      set_common_amplitude(studied, id, result);
+    } else {
+      set_amplitude(studied, id, result);
+    }
   }
 }
 

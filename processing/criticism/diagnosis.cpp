@@ -118,6 +118,7 @@ class Diagnostician {
       diagnosis_.tied_with.clear();
       current = study_.refit(first);
     }
+    make_alike(current);
     conclude(first, current);
     return std::move(diagnosis_);
   }
@@ -309,6 +310,11 @@ class Diagnostician {
   Studied without(const Studied& current, const std::string& id) {
     Model model = current.model;
     std::erase_if(model.effects, [&](const EffectUse& use) { return use.id() == id; });
+    return changed(current, model);
+  }
+
+  /// Another model, begun from where one stands.
+  Studied changed(const Studied& current, const Model& model) {
     Composition composition(model, study_.campaign());
     ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(),
                              carry(current.composition, current.fit.theta, composition));
@@ -316,6 +322,28 @@ class Diagnostician {
         misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
     Model after = fitted(model, composition, fit);
     return {std::move(after), std::move(composition), std::move(fit), misfit};
+  }
+
+  /// Strengths that every gauge has of its own lean to none, since what all gauges have alike could
+  /// be the source's: where one for all does as well, it is that.
+  void make_alike(Studied& current) {
+    constexpr double kNoWorse = -4.6;
+    for (const std::string& id : diagnosis_.effects) {
+      Model model = current.model;
+      EffectUse* use = model.find(id);
+      if (use == nullptr || !use->per_shot || !use->effect->about().each_gauge || use->alike) {
+        continue;
+      }
+      use->alike = true;
+      Studied alike = changed(current, model);
+      const double freedom = alike.fit.degrees_of_freedom(alike.composition) -
+                             current.fit.degrees_of_freedom(current.composition);
+      const double loss = (alike.fit.objective() - current.fit.objective()) /
+                          noise_of(current.misfit, study_.campaign().shots.size());
+      if (freedom > 0.0 && log_chi2_tail(std::max(loss, 0.0), freedom) > kNoWorse) {
+        current = std::move(alike);
+      }
+    }
   }
 
   /// Backward: what others have made superfluous goes, but for so many of the last.
