@@ -201,9 +201,9 @@ void Search::refine(std::vector<Refit>& list) {
 /// (a dashpot, a spring) that it only imitates. So is one whose strength and time grow together
 /// without end, which shows in both being less than their own deviations, and one that has taken
 /// the material's own place, whose branch stands in for a dashpot or for what is slow: it is slower
-/// than the record by far, or slower and of a strength that is less than its deviation. A strength
-/// alone is as uncertain where the time is near that of the material's own branch, from which it is
-/// told by a little only.
+/// than the record by far, or than a third of it and of a strength that is less than its deviation.
+/// A strength alone is as uncertain where the time is near that of the material's own branch, from
+/// which it is told by a little only.
 bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
   const Candidate& candidate = candidates_[refit.candidate];
   const EffectUse* use = studied.model.find(candidate.id());
@@ -212,7 +212,8 @@ bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const
   const double period_s = study_.residuals().judged_period_s();
   const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
   const OwnBranch beside = own_branch(studied.model, candidate.use.effect->about().id);
-  if (beside.time_s > (beside.strength_known ? kMuchSlower : 1.0) * record_s) {
+  constexpr double kSlow = 0.3;  // shows as a dashpot only
+  if (beside.time_s > (beside.strength_known ? kMuchSlower : kSlow) * record_s) {
     return true;
   }
   bool timeless = false;
