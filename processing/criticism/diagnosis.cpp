@@ -198,7 +198,7 @@ class Diagnostician {
       best = may_be_named && !best ? i : best;
     }
     if (!best) {
-      return note && nearest ? on_trial(search, refits[*nearest]) : std::nullopt;
+      return note && nearest ? std::optional(on_trial(search, refits[*nearest])) : std::nullopt;
     }
     std::vector<std::string> ties;
     Refit& refit = refits[*best];
@@ -216,12 +216,8 @@ class Diagnostician {
     return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
   }
 
-  /// What comes nearest while much is left beside it, which shots may differ by.
-  static std::optional<Choice> on_trial(const Search& search, Refit& refit) {
-    constexpr double kMuch = 1.2;  // chi2 per degree of freedom
-    if (refit.studied.misfit.chi2_reduced < kMuch) {
-      return std::nullopt;
-    }
+  /// What comes nearest: shots may differ by what is missing beside it.
+  static Choice on_trial(const Search& search, Refit& refit) {
     return Choice{search.candidates()[refit.candidate].id(),
                   refit.candidate,
                   std::move(refit.studied),
