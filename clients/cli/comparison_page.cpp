@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "clients/cli/candidates_page.hpp"
 #include "clients/cli/comparison_text.hpp"
 #include "clients/figure/layout.hpp"
 
@@ -15,10 +16,6 @@ namespace {
 
 constexpr std::size_t kMostShots = 12;  ///< with plots of their own
 constexpr std::size_t kMostPlaces = 25;
-
-std::string number_text(double value) {
-  return std::isnan(value) ? "" : value == 0.0 ? "0" : fmt::format("{:.3g}", value);
-}
 
 std::vector<std::string> gauge_names(const Campaign& campaign) {
   std::vector<std::string> names;
@@ -244,23 +241,6 @@ std::string headline(const Comparison& comparison, const Campaign& campaign) {
       worst->repeats ? ", and it repeats from shot to shot" : "");
 }
 
-PageTable candidates_table(const Diagnosis& diagnosis) {
-  std::vector<CandidateResult> ranked = diagnosis.candidates;
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
-  PageTable table{
-      {"effect", "strength", "deviation", "unit", "ln p", "chi-square gain", "on held-out shots",
-       "smallest detectable", "smallest told apart", "nearest rival", "verdict"},
-      {}};
-  for (const CandidateResult& c : ranked) {
-    table.rows.push_back({c.effect, number_text(c.strength), number_text(c.sd), c.unit,
-                          fmt::format("{:.1f}", c.log_p), fmt::format("{:.1f}", c.gain),
-                          fmt::format("{:.1f}", c.held_out_gain), number_text(c.detectable),
-                          number_text(c.identifiable), c.nearest_rival, c.verdict});
-  }
-  return table;
-}
-
 std::string verdict_line(const Diagnosis& diagnosis) {
   std::string text = "Verdict: " + kolsky::name_of(diagnosis.verdict);
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
@@ -278,13 +258,14 @@ std::string verdict_line(const Diagnosis& diagnosis) {
   return text + ".";
 }
 
-PageSection held_out_section(const Diagnosis& diagnosis) {
+PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
   const HeldOut& held_out = diagnosis.held_out;
   PageSection section{
       "Before and after",
-      {fmt::format("On shots that the fit did not see, chi-square per residual falls from {:.4g} "
-                   "to {:.4g}; noise alone leaves {:.4g}.",
-                   held_out.before, held_out.after, held_out.floor)}};
+      {fmt::format("On {} that the fit did not see, chi-square per residual falls from {:.4g} to "
+                   "{:.4g}; noise alone leaves {:.4g}.",
+                   shots > 1 ? "shots" : "parts of the one record", held_out.before, held_out.after,
+                   held_out.floor)}};
   section.tables.push_back({{"", "chi-square per degree of freedom", "repeats, share of the signal",
                              "noise, share of the signal"},
                             {{"before", fmt::format("{:.4g}", diagnosis.before.chi2_reduced),
@@ -328,11 +309,12 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
   for (const NextExperiment& next : diagnosis.next_experiment) {
     page.notes.push_back("next: " + next.change);
   }
-  page.sections.push_back(held_out_section(diagnosis));
+  page.sections.push_back(held_out_section(diagnosis, campaign.shots.size()));
   const Studied first = study.fit(before);
   page.sections.push_back(
       where_section("Where the model failed before", compare(study, first), campaign));
-  page.sections.push_back({"What might be missing", {}, {}, {}, {candidates_table(diagnosis)}});
+  page.sections.push_back(
+      {"What might be missing", {}, {}, {}, {candidates_table(diagnosis, "shots")}});
   const Studied last = diagnosis.model ? study.fit(*diagnosis.model) : first;
   Comparer comparer(study.residuals(), last.composition, last.fit.theta);
   const Comparison after = comparer.compare(last.fit.residual, last.misfit);

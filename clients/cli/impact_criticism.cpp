@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "clients/cli/candidates_page.hpp"
 #include "clients/terminal/plot.hpp"
 #include "processing/base/error.hpp"
 
@@ -234,16 +235,8 @@ Page impact_diagnosis_page(const std::string& title, ImpactStudy& study, const M
   const auto times_s = study.residuals().times_s();
   const Studied first = study.fit(before);
   page.sections.push_back(speeds_section("Before", study.compare(first), times_s));
-  PageTable table{{"effect", "strength", "deviation", "unit", "ln p", "chi2 gain",
-                   "on held-out speeds", "smallest detectable", "verdict"},
-                  {}};
-  for (const CandidateResult& c : diagnosis.candidates) {
-    table.rows.push_back({c.effect, fmt::format("{:.3g}", c.strength), fmt::format("{:.2g}", c.sd),
-                          c.unit, fmt::format("{:.1f}", c.log_p), fmt::format("{:.1f}", c.gain),
-                          fmt::format("{:.1f}", c.held_out_gain),
-                          fmt::format("{:.2g}", c.detectable), c.verdict});
-  }
-  page.sections.push_back({"What might be missing", {}, {}, {}, {std::move(table)}});
+  page.sections.push_back(
+      {"What might be missing", {}, {}, {}, {candidates_table(diagnosis, "speeds")}});
   if (diagnosis.model && !diagnosis.effects.empty()) {
     const Studied last = study.fit(*diagnosis.model);
     page.sections.push_back(speeds_section("With what was found", study.compare(last), times_s));

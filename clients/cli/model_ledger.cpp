@@ -86,8 +86,10 @@ std::string ledger_text(const ModelStep& step) {
                         step.fit->chi2_reduced, step.fit->degrees_of_freedom, step.fit->captures);
   }
   if (step.held_out) {
-    text += fmt::format("      on held-out shots {:.4f} -> {:.4f}, noise alone {:.4f}\n",
-                        step.held_out->before, step.held_out->after, step.held_out->floor);
+    const bool one_shot = step.fit && step.fit->captures == 1;
+    text += fmt::format("      on held-out {} {:.4f} -> {:.4f}, noise alone {:.4f}\n",
+                        one_shot ? "parts of the one record" : "shots", step.held_out->before,
+                        step.held_out->after, step.held_out->floor);
   }
   for (const StepTest& test : step.tests) {
     if (!certified(test)) {

@@ -104,6 +104,17 @@ Check restitution(const BallImpact& ball) {
                 gap.sd));
 }
 
+/// A ball that bounces neither stays behind nor leaves faster than it came.
+Check restitution_possible(const Measured& value, const char* by) {
+  const bool good =
+      value.value >= -kDeviations * value.sd && value.value <= 1.0 + kDeviations * value.sd;
+  return check("restitution_possible", value.value, 1.0, "1", pass_if(good),
+               formatted(good ? "%.4f by %s lies between 0 and 1"
+                              : "%.4f by %s is not between 0 and 1: a gauge factor, the mass or a "
+                                "speed is off",
+                         value.value, by));
+}
+
 Check momentum(const BallImpact& ball) {
   const Measured& excess = *ball.momentum_excess;
   const bool good =
@@ -137,6 +148,11 @@ void judge(const BallQualityInputs& in, Reduction& reduction) {
   checks.push_back(speeds(in, ball));
   if (ball.restitution_difference) {
     checks.push_back(restitution(ball));
+  }
+  if (ball.restitution_by_impulse) {
+    checks.push_back(restitution_possible(*ball.restitution_by_impulse, "impulse"));
+  } else if (ball.restitution_by_speed) {
+    checks.push_back(restitution_possible(*ball.restitution_by_speed, "speed"));
   }
   if (ball.momentum_excess) {
     checks.push_back(momentum(ball));

@@ -95,8 +95,12 @@ std::string take_ball(const NewSettings& settings, const std::optional<Bench>& b
   }
   if (bench) {
     // What a mass or a solid keeps from being calculated is said now.
-    static_cast<void>(impact::impact_on(*bench, {materials[0]}, {materials[1]},
-                                        impact::TargetKind::dashpot, 1.0));
+    try {
+      static_cast<void>(impact::impact_on(*bench, {materials[0]}, {materials[1]},
+                                          impact::TargetKind::dashpot, 1.0));
+    } catch (const InputError& error) {
+      throw error.inside(*settings.bench);
+    }
   }
   return source;
 }

@@ -111,6 +111,23 @@ TEST(Ball, AWrongGaugeFactorShowsInMomentumAndRestitution) {
   EXPECT_EQ(reduction.quality.verdict(), Verdict::warn);
 }
 
+TEST(Ball, ABallThatWouldLeaveFasterThanItCameIsNotBelieved) {
+  const Push push;
+  Shot shot = ball_shot(ball_bench(), force_of(push));
+  shot.meta = {{"incident_speed_m_per_s", "31.1"}};
+  EXPECT_EQ(check_of(Reducer().reduce(shot), "restitution_possible").verdict, Verdict::pass);
+  shot.bench.ball->mass_kg = {0.5 * 0.0434};
+  const Reduction light = Reducer().reduce(shot);
+  EXPECT_GT(*light.ball->restitution_by_impulse, 1.5);
+  EXPECT_EQ(check_of(light, "restitution_possible").verdict, Verdict::warn);
+  shot.bench.ball->mass_kg = {2.5 * 0.0434};
+  EXPECT_EQ(check_of(Reducer().reduce(shot), "restitution_possible").verdict, Verdict::warn);
+
+  shot.bench.ball->mass_kg.reset();
+  shot.meta = {{"incident_speed_m_per_s", "25"}, {"rebound_speed_m_per_s", "31.1"}};
+  EXPECT_EQ(check_of(Reducer().reduce(shot), "restitution_possible").verdict, Verdict::warn);
+}
+
 TEST(Ball, NoiseGivesTheDeviationsThatRepeatsHave) {
   const Push push;
   double impulse_z2 = 0.0;
