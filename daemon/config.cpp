@@ -10,9 +10,9 @@
 #include <set>
 #include <string_view>
 
-#include "drivers/files/material_file.hpp"
-#include "drivers/files/shot_facts.hpp"
-#include "drivers/files/toml_table.hpp"
+#include "drivers/files/settings/material_file.hpp"
+#include "drivers/files/settings/toml_table.hpp"
+#include "drivers/files/tables/shot_facts.hpp"
 #include "processing/bridge/bridge.hpp"
 
 namespace kolsky {

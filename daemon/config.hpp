@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/digitiser/open.hpp"
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/material.hpp"
 #include "processing/trigger/incident_trigger.hpp"
 

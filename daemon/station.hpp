@@ -16,7 +16,7 @@
 #include "daemon/shots/shared_journal.hpp"
 #include "daemon/shots/store_lock.hpp"
 #include "drivers/digitiser/digitiser.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/store/store.hpp"
 
 namespace kolsky {
 

@@ -18,7 +18,7 @@ namespace kolsky::wire {
 /// @throws InputError where a code does not fit the integers its channel's `bits` ask for
 void encode(const Shot& shot, const std::string& capture, v1::Shot& message);
 
-/// Everything but `bench`: read that from `bench_toml` (drivers/files/bench_file.hpp).
+/// Everything but `bench`: read that from `bench_toml` (drivers/files/settings/bench_file.hpp).
 [[nodiscard]] Shot decode(const v1::Shot& message);
 
 /// Replaces all but `timings`, which are of the run and not of the reduction: those are emptied.

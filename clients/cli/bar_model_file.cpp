@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "drivers/files/material_file.hpp"
-#include "drivers/files/toml_table.hpp"
+#include "drivers/files/settings/material_file.hpp"
+#include "drivers/files/settings/toml_table.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

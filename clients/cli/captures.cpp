@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

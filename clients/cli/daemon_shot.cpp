@@ -1,6 +1,6 @@
 #include "clients/cli/daemon_shot.hpp"
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
 #include "proto/codec.hpp"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/connection/control_client.hpp"
 
 namespace kolsky::cli {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "processing/criticism/search_trials.hpp"
+#include "processing/criticism/search/search_trials.hpp"
 
 namespace kolsky::cli {
 

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "clients/cli/json_value.hpp"
-#include "drivers/files/model_step.hpp"
-#include "processing/criticism/diagnosis.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "drivers/files/models/model_step.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 
 namespace kolsky::cli {
 

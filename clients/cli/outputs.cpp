@@ -1,6 +1,6 @@
 #include "clients/cli/outputs.hpp"
 
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
 
 namespace kolsky::cli {
 namespace {

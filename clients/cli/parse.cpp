@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "drivers/files/nearest_name.hpp"
+#include "drivers/files/settings/nearest_name.hpp"
 #include "processing/base/error.hpp"
 #include "proto/protocol.hpp"
 

@@ -6,7 +6,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/commands/commands.hpp"
 #include "clients/cli/parse.hpp"
-#include "drivers/files/nearest_name.hpp"
+#include "drivers/files/settings/nearest_name.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

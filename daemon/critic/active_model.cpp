@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "drivers/files/file_bytes.hpp"
+#include "drivers/files/settings/file_bytes.hpp"
 #include "drivers/files/sha256.hpp"
 #include "processing/base/error.hpp"
 

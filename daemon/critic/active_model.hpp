@@ -6,7 +6,7 @@
 #include <string>
 
 #include "daemon/config.hpp"
-#include "drivers/files/model_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 
 namespace kolsky {
 

@@ -11,11 +11,11 @@
 #include "daemon/log.hpp"
 #include "daemon/shots/shot_id.hpp"
 #include "daemon/thread_priority.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
-#include "processing/criticism/examination.hpp"
-#include "processing/criticism/impact_diagnosis.hpp"
+#include "processing/criticism/impact/impact_diagnosis.hpp"
+#include "processing/criticism/verdict/examination.hpp"
 
 namespace kolsky {
 

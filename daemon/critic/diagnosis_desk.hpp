@@ -12,7 +12,7 @@
 #include "daemon/critic/active_model.hpp"
 #include "daemon/publish/publisher.hpp"
 #include "daemon/shots/archivist.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/store/store.hpp"
 
 namespace kolsky {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 #include "proto/forward.hpp"
 
 namespace kolsky {

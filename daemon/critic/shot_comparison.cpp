@@ -7,8 +7,8 @@
 
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
-#include "processing/criticism/comparison.hpp"
-#include "processing/criticism/impact_study.hpp"
+#include "processing/criticism/comparing/comparison.hpp"
+#include "processing/criticism/impact/impact_study.hpp"
 
 namespace kolsky {
 

@@ -10,7 +10,7 @@
 #include "daemon/shots/shot_id.hpp"
 #include "daemon/shots/summary.hpp"
 #include "daemon/thread_priority.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky {

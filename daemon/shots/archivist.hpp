@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "daemon/shots/shared_journal.hpp"
-#include "drivers/files/catalogue.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/store/catalogue.hpp"
+#include "drivers/files/store/store.hpp"
 #include "processing/reduction/reducer.hpp"
 
 namespace kolsky {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/journal.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/store/journal.hpp"
+#include "drivers/files/store/store.hpp"
 
 namespace kolsky {
 

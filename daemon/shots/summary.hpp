@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "drivers/files/catalogue.hpp"
+#include "drivers/files/store/catalogue.hpp"
 #include "processing/base/shot.hpp"
 #include "processing/reduction/reducer.hpp"
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky {

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <memory>
 
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "drivers/simulated/capture_source.hpp"
 #include "drivers/simulated/digitiser_setup.hpp"
 #include "drivers/simulated/iiod_server.hpp"

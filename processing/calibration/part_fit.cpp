@@ -10,8 +10,8 @@
 #include "processing/algebra/algebra.hpp"
 #include "processing/calibration/null_directions.hpp"
 #include "processing/calibration/part_model.hpp"
-#include "processing/criticism/candidates.hpp"
-#include "processing/criticism/study.hpp"
+#include "processing/criticism/fitting/study.hpp"
+#include "processing/criticism/search/candidates.hpp"
 #include "processing/identification/known_unknowns.hpp"
 #include "processing/waves/bar_modes.hpp"
 

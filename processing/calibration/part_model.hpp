@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "processing/calibration/calibration.hpp"
-#include "processing/criticism/composition.hpp"
+#include "processing/criticism/fitting/composition.hpp"
 #include "processing/models/model.hpp"
 
 namespace kolsky {

@@ -6,7 +6,7 @@
 
 #include "processing/base/measured.hpp"
 #include "processing/calibration/arrangement.hpp"
-#include "processing/criticism/campaign.hpp"
+#include "processing/criticism/records/campaign.hpp"
 
 namespace kolsky {
 

@@ -12,7 +12,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/impact/impact.hpp"
-#include "processing/reduction/contact_numbers.hpp"
+#include "processing/reduction/ball/contact_numbers.hpp"
 
 namespace kolsky {
 

@@ -2,7 +2,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
-#include "processing/reduction/ball_reducer.hpp"
+#include "processing/reduction/ball/ball_reducer.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/shpb_pass.hpp"
 

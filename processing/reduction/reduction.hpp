@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/reduction/ball_impact.hpp"
+#include "processing/reduction/ball/ball_impact.hpp"
 
 namespace kolsky {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "processing/criticism/comparison.hpp"
-#include "processing/criticism/diagnosis.hpp"
-#include "processing/criticism/impact_diagnosis.hpp"
+#include "processing/criticism/comparing/comparison.hpp"
+#include "processing/criticism/impact/impact_diagnosis.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/bench/bound.hpp"
 #include "tests/bench/two_threads.hpp"
 #include "tests/generators/campaign.hpp"

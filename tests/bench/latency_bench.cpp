@@ -22,7 +22,7 @@
 #include "daemon/clock.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/thread_priority.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "proto/codec.hpp"
 #include "tests/end_to_end/scene.hpp"

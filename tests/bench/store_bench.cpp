@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/journal.hpp"
-#include "drivers/files/shot_codec.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/captures/shot_codec.hpp"
+#include "drivers/files/store/journal.hpp"
 
 namespace kolsky {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "tests/conformance/pattern.hpp"
 #include "tests/conformance/rig.hpp"
 

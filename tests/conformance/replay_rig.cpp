@@ -1,7 +1,7 @@
 #include <filesystem>
 
 #include "drivers/digitiser/open.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "tests/conformance/pattern_capture.hpp"
 #include "tests/conformance/rig.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "drivers/digitiser/open.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 #include "tests/conformance/pattern.hpp"
 #include "tests/conformance/pattern_capture.hpp"

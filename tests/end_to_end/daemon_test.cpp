@@ -8,9 +8,9 @@
 #include <thread>
 #include <zmq.hpp>
 
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/capture.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/settings/bench_file.hpp"
+#include "drivers/files/store/store.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "proto/codec.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "daemon/daemon.hpp"
-#include "drivers/files/capture.hpp"
-#include "drivers/files/table_import.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/tables/table_import.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "proto/codec.hpp"
 #include "tests/end_to_end/scene.hpp"

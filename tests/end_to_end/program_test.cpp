@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "daemon/daemon.hpp"
-#include "drivers/files/capture.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/store/store.hpp"
 #include "tests/end_to_end/daemon_process.hpp"
 #include "tests/end_to_end/scene.hpp"
 

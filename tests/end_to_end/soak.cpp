@@ -20,8 +20,8 @@
 #include <set>
 #include <thread>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/store/store.hpp"
 #include "processing/base/error.hpp"
 #include "tests/end_to_end/daemon_process.hpp"
 #include "tests/end_to_end/scene.hpp"

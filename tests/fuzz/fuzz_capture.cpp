@@ -1,5 +1,5 @@
-#include "drivers/files/capture.hpp"
-#include "drivers/files/capture_seal.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/captures/capture_seal.hpp"
 #include "processing/base/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

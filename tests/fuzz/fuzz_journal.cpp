@@ -1,7 +1,7 @@
 #include <vector>
 
-#include "drivers/files/journal.hpp"
-#include "drivers/files/journal_record.hpp"
+#include "drivers/files/store/journal.hpp"
+#include "drivers/files/store/journal_record.hpp"
 #include "processing/base/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "drivers/files/model_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/models/formula.hpp"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "drivers/files/quantise.hpp"
-#include "drivers/files/scope_table.hpp"
-#include "drivers/files/time_axis.hpp"
+#include "drivers/files/tables/quantise.hpp"
+#include "drivers/files/tables/scope_table.hpp"
+#include "drivers/files/tables/time_axis.hpp"
 #include "processing/base/error.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <string>
 
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/material_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace {

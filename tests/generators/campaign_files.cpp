@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::testing {

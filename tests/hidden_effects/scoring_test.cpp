@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/table_import.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/tables/table_import.hpp"
 #include "tests/generators/campaign_files.hpp"
 #include "tests/generators/noise.hpp"
 #include "tests/hidden_effects/case_draw.hpp"

@@ -13,11 +13,6 @@ import sys
 # The folder with the longest matching name decides. Names from the top of the tree.
 ALLOWED = {
     "processing": ["processing/"],
-    "processing/algebra": ["processing/algebra/"],
-    "processing/base": ["processing/base/"],
-    "processing/bridge": ["processing/base/", "processing/bridge/"],
-    "processing/trigger": ["processing/base/", "processing/trigger/"],
-    "processing/waves": ["processing/base/", "processing/waves/"],
     "drivers/digitiser": ["processing/base/", "drivers/digitiser/", "drivers/iio/", "drivers/replay/"],
     "drivers/files": ["processing/base/", "processing/bridge/", "drivers/files/"],
     "drivers/iio": ["processing/base/", "drivers/digitiser/", "drivers/iio/"],
@@ -29,13 +24,22 @@ ALLOWED = {
     "tests": [""],
 }
 
+# Within these folders a part may include those named before it.
+LAYERS = {
+    "processing": "base algebra trigger bridge waves separation impact models reduction identification "
+    "criticism specimen uncertainty planning calibration prediction".split(),
+    "processing/criticism": "records noise fitting search verdict impact comparing selftest waterfall".split(),
+    "drivers/files": "settings models captures store exports tables".split(),
+    "clients/cli": "reports live commands".split(),
+}
+
 # Results leave through the exports: they know what a reduction holds, and link no more than that.
 # The tour shows a simulated campaign.
 EXCEPTIONS = {
     "clients/cli/commands/tour": ["drivers/simulated/hidden_campaign.hpp"],
-    "drivers/files/export": ["processing/reduction/reduction.hpp"],
-    "drivers/files/model_file": ["processing/models/model.hpp"],
-    "drivers/files/model_expressions": [
+    "drivers/files/exports": ["processing/reduction/reduction.hpp"],
+    "drivers/files/models/model_file": ["processing/models/model.hpp"],
+    "drivers/files/models/model_expressions": [
         "processing/models/admission.hpp",
         "processing/models/model.hpp",
     ],
@@ -60,6 +64,20 @@ def rule_of(path):
     return None
 
 
+def points_up(path, name):
+    """Whether a layer includes one that is named after it."""
+    for folder, layers in LAYERS.items():
+        own, other = (part_below(folder, each) for each in (path, pathlib.PurePath(name)))
+        if own in layers and other in layers and layers.index(other) > layers.index(own):
+            return True
+    return False
+
+
+def part_below(folder, path):
+    top = pathlib.PurePath(folder)
+    return path.relative_to(top).parts[0] if path.is_relative_to(top) else None
+
+
 def permitted(path, name, allowed):
     exceptions = [
         extra
@@ -82,6 +100,8 @@ def problems_of(tree, path):
         quoted, name = found.group(1) == '"', found.group(2)
         if quoted and not permitted(path, name, allowed):
             yield f"{path}:{number}: includes {name}, and may include {', '.join(allowed)}"
+        if quoted and points_up(path, name):
+            yield f"{path}:{number}: includes {name}, which stands above it"
         if not quoted and path.parts[0] == "processing" and IMPURE.fullmatch(name):
             yield f"{path}:{number}: includes <{name}>, and processing is pure"
 

@@ -2,14 +2,14 @@
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
-#include "clients/cli/calibration_report.hpp"
 #include "clients/cli/command.hpp"
-#include "clients/cli/model_text.hpp"
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/calibration_report.hpp"
+#include "clients/cli/reports/model_text.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

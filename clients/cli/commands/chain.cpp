@@ -10,14 +10,14 @@
 
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/captures.hpp"
-#include "clients/cli/chain_run.hpp"
 #include "clients/cli/command.hpp"
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/chain_run.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

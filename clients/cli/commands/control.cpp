@@ -6,7 +6,7 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/daemon_shot.hpp"
-#include "clients/cli/daemon_text.hpp"
+#include "clients/cli/reports/daemon_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "processing/base/error.hpp"
 

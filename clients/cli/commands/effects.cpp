@@ -4,8 +4,8 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/model_text.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/model_text.hpp"
 #include "processing/models/effect.hpp"
 
 namespace kolsky::cli {

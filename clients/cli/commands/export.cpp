@@ -4,10 +4,10 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/daemon_shot.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/reduced_shot.hpp"
-#include "drivers/files/capture.hpp"
-#include "drivers/files/export.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/exports/export.hpp"
 #include "processing/reduction/quality.hpp"
 
 namespace kolsky::cli {

@@ -4,16 +4,16 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/criticism_text.hpp"
-#include "clients/cli/impact_criticism.hpp"
-#include "clients/cli/json_value.hpp"
 #include "clients/cli/model_ledger.hpp"
-#include "clients/cli/model_text.hpp"
 #include "clients/cli/outputs.hpp"
+#include "clients/cli/reports/criticism_text.hpp"
+#include "clients/cli/reports/impact_criticism.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
-#include "drivers/files/model_file.hpp"
-#include "drivers/files/new_file.hpp"
-#include "processing/criticism/study.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/models/model_file.hpp"
+#include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky::cli {
 namespace {

@@ -3,13 +3,13 @@
 #include <memory>
 #include <ostream>
 
-#include "clients/cli/bar_report.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/reports/bar_report.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
-#include "drivers/files/material_file.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

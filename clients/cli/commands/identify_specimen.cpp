@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "clients/cli/bar_model_file.hpp"
-#include "clients/cli/budget.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/budget.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/material_file.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/identification/parameter_budget.hpp"
 #include "processing/specimen/fit_warnings.hpp"

@@ -6,10 +6,10 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/impact_run.hpp"
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/material_file.hpp"
-#include "drivers/files/new_file.hpp"
+#include "clients/cli/reports/impact_run.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 

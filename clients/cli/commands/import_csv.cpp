@@ -4,11 +4,11 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/capture.hpp"
-#include "drivers/files/table_import.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/tables/table_import.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

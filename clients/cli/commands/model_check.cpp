@@ -8,12 +8,12 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/model_text.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
-#include "drivers/files/model_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
-#include "processing/criticism/distinction.hpp"
+#include "processing/criticism/verdict/distinction.hpp"
 #include "processing/models/admission.hpp"
 
 namespace kolsky::cli {

@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/model_text.hpp"
-#include "drivers/files/model_file.hpp"
+#include "clients/cli/reports/model_text.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

@@ -3,14 +3,14 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/impact_criticism.hpp"
-#include "clients/cli/model_text.hpp"
 #include "clients/cli/outputs.hpp"
+#include "clients/cli/reports/impact_criticism.hpp"
+#include "clients/cli/reports/model_text.hpp"
+#include "clients/cli/reports/waterfall_text.hpp"
 #include "clients/cli/threads.hpp"
-#include "clients/cli/waterfall_text.hpp"
-#include "drivers/files/model_file.hpp"
-#include "drivers/files/new_file.hpp"
-#include "processing/criticism/impact_waterfall.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/models/model_file.hpp"
+#include "processing/criticism/waterfall/impact_waterfall.hpp"
 
 namespace kolsky::cli {
 namespace {

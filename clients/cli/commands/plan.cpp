@@ -5,10 +5,10 @@
 
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/material_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/planning/shot_plan.hpp"

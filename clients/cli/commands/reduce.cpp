@@ -3,17 +3,17 @@
 #include <ostream>
 #include <set>
 
-#include "clients/cli/ball_report.hpp"
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/ball_report.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/figure/ball_figure.hpp"
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
-#include "drivers/files/capture.hpp"
-#include "drivers/files/export.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/exports/export.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

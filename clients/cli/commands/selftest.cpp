@@ -1,4 +1,4 @@
-#include "processing/criticism/selftest.hpp"
+#include "processing/criticism/selftest/selftest.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/model_text.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/model_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

@@ -3,8 +3,8 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/daemon_shot.hpp"
-#include "clients/cli/daemon_text.hpp"
-#include "clients/cli/time_text.hpp"
+#include "clients/cli/reports/daemon_text.hpp"
+#include "clients/cli/reports/time_text.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

@@ -11,15 +11,15 @@
 #include <sstream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/model_text.hpp"
 #include "clients/cli/program.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/model_text.hpp"
+#include "clients/cli/reports/tour_story.hpp"
 #include "clients/cli/threads.hpp"
-#include "clients/cli/tour_story.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"
-#include "drivers/files/model_file.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "drivers/simulated/hidden_campaign.hpp"
 #include "processing/base/error.hpp"
 

@@ -5,9 +5,9 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
-#include "clients/cli/json_value.hpp"
-#include "clients/cli/reduced_shot.hpp"
-#include "drivers/files/store.hpp"
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
+#include "drivers/files/store/store.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {

@@ -8,8 +8,8 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/daemon_shot.hpp"
-#include "clients/cli/daemon_text.hpp"
-#include "clients/cli/live_view.hpp"
+#include "clients/cli/live/live_view.hpp"
+#include "clients/cli/reports/daemon_text.hpp"
 #include "clients/connection/subscriber.hpp"
 #include "processing/base/error.hpp"
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/generators/bar_shots.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "drivers/files/material_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/generators/bar_shots.hpp"

@@ -1,8 +1,8 @@
-#include "drivers/files/bench_edit.hpp"
+#include "drivers/files/settings/bench_edit.hpp"
 
 #include <gtest/gtest.h>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky {

@@ -1,4 +1,4 @@
-#include "clients/cli/json_value.hpp"
+#include "clients/cli/reports/json_value.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "clients/cli/time_text.hpp"
+#include "clients/cli/reports/time_text.hpp"
 
 namespace kolsky::cli {
 namespace {

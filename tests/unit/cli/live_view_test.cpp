@@ -1,4 +1,4 @@
-#include "clients/cli/live_view.hpp"
+#include "clients/cli/live/live_view.hpp"
 
 #include <gtest/gtest.h>
 

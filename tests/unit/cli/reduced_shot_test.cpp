@@ -1,4 +1,4 @@
-#include "clients/cli/reduced_shot.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "clients/cli/tour_story.hpp"
+#include "clients/cli/reports/tour_story.hpp"
 
 #include <gtest/gtest.h>
 

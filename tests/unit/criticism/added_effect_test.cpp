@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "processing/criticism/study.hpp"
+#include "processing/criticism/fitting/study.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

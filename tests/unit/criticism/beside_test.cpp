@@ -1,11 +1,11 @@
-#include "processing/criticism/beside.hpp"
+#include "processing/criticism/search/beside.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <random>
 
-#include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

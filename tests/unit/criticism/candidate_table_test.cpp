@@ -1,11 +1,11 @@
-#include "processing/criticism/candidate_table.hpp"
+#include "processing/criticism/search/candidate_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "processing/criticism/search.hpp"
+#include "processing/criticism/search/search.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

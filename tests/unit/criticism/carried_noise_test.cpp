@@ -1,4 +1,4 @@
-#include "processing/criticism/carried_noise.hpp"
+#include "processing/criticism/noise/carried_noise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processing/criticism/common_amplitude.hpp"
+#include "processing/criticism/search/common_amplitude.hpp"
 
 #include <gtest/gtest.h>
 

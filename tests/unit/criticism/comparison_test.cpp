@@ -1,4 +1,4 @@
-#include "processing/criticism/comparison.hpp"
+#include "processing/criticism/comparing/comparison.hpp"
 
 #include <gtest/gtest.h>
 

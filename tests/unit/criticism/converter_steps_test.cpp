@@ -1,4 +1,4 @@
-#include "processing/criticism/converter_steps.hpp"
+#include "processing/criticism/noise/converter_steps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processing/criticism/diagnosis.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <random>
 #include <span>
 
-#include "processing/criticism/examination.hpp"
-#include "processing/criticism/search.hpp"
-#include "processing/criticism/statistics.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/search.hpp"
+#include "processing/criticism/verdict/examination.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

@@ -1,10 +1,10 @@
 // Effects that a model file declares by formula, on campaigns made in the time domain.
 #include <gtest/gtest.h>
 
-#include "drivers/files/model_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
-#include "processing/criticism/diagnosis.hpp"
-#include "processing/criticism/distinction.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
+#include "processing/criticism/verdict/distinction.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

@@ -1,11 +1,11 @@
-#include "processing/criticism/gauge_noise.hpp"
+#include "processing/criticism/noise/gauge_noise.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "processing/criticism/judged_band.hpp"
+#include "processing/criticism/records/judged_band.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

@@ -1,4 +1,4 @@
-#include "processing/criticism/held_out.hpp"
+#include "processing/criticism/fitting/held_out.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "processing/criticism/branch_order.hpp"
-#include "processing/criticism/record_parts.hpp"
+#include "processing/criticism/fitting/branch_order.hpp"
+#include "processing/criticism/fitting/record_parts.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

@@ -1,4 +1,4 @@
-#include "processing/criticism/impact_diagnosis.hpp"
+#include "processing/criticism/impact/impact_diagnosis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "processing/base/error.hpp"
-#include "processing/criticism/ball_planting.hpp"
-#include "processing/criticism/selftest.hpp"
-#include "processing/reduction/ball_flight.hpp"
+#include "processing/criticism/selftest/ball_planting.hpp"
+#include "processing/criticism/selftest/selftest.hpp"
+#include "processing/reduction/ball/ball_flight.hpp"
 #include "tests/unit/criticism/thrown_balls.hpp"
 
 namespace kolsky {

@@ -1,4 +1,4 @@
-#include "processing/criticism/impact_study.hpp"
+#include "processing/criticism/impact/impact_study.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "processing/base/error.hpp"
-#include "processing/criticism/impact_whitening.hpp"
+#include "processing/criticism/impact/impact_whitening.hpp"
 #include "tests/unit/criticism/thrown_balls.hpp"
 
 namespace kolsky {

@@ -1,4 +1,4 @@
-#include "processing/criticism/impact_waterfall.hpp"
+#include "processing/criticism/waterfall/impact_waterfall.hpp"
 
 #include <gtest/gtest.h>
 

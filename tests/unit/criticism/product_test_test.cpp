@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "processing/criticism/product_test.hpp"
+#include "processing/criticism/search/product_test.hpp"
 
 namespace kolsky {
 namespace {

@@ -1,4 +1,4 @@
-#include "processing/criticism/response_end.hpp"
+#include "processing/criticism/noise/response_end.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "processing/criticism/selftest.hpp"
+#include "processing/criticism/selftest/selftest.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "processing/base/error.hpp"
-#include "processing/criticism/planting.hpp"
+#include "processing/criticism/selftest/planting.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {

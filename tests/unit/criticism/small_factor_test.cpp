@@ -1,4 +1,4 @@
-#include "processing/criticism/small_factor.hpp"
+#include "processing/criticism/noise/small_factor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processing/criticism/solver_share.hpp"
+#include "processing/criticism/impact/solver_share.hpp"
 
 #include <gtest/gtest.h>
 

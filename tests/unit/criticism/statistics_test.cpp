@@ -1,11 +1,11 @@
-#include "processing/criticism/statistics.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "processing/criticism/smooth_power.hpp"
+#include "processing/criticism/noise/smooth_power.hpp"
 
 namespace kolsky {
 namespace {

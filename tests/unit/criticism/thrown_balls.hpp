@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "processing/criticism/impact_study.hpp"
+#include "processing/criticism/impact/impact_study.hpp"
 #include "tests/generators/impact_campaign.hpp"
 #include "tests/unit/impact/fine_meshes.hpp"
 

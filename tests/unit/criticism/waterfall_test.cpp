@@ -1,4 +1,4 @@
-#include "processing/criticism/waterfall.hpp"
+#include "processing/criticism/waterfall/waterfall.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "daemon/shots/summary.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "tests/unit/daemon/strain_bench.hpp"
 
 namespace kolsky {

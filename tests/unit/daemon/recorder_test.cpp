@@ -10,8 +10,8 @@
 
 #include "daemon/config.hpp"
 #include "daemon/shots/shot_context.hpp"
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "tests/unit/daemon/scripted_digitiser.hpp"
 #include "tests/unit/daemon/strain_bench.hpp"

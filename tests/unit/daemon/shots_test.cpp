@@ -12,7 +12,7 @@
 #include "daemon/shots/shot_id.hpp"
 #include "daemon/shots/store_lock.hpp"
 #include "daemon/shots/summary.hpp"
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "tests/unit/daemon/strain_bench.hpp"

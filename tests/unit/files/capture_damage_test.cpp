@@ -7,10 +7,10 @@
 #include <functional>
 #include <random>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/capture_seal.hpp"
-#include "drivers/files/hdf5_handles.hpp"
-#include "drivers/files/shot_codec.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/captures/capture_seal.hpp"
+#include "drivers/files/captures/hdf5_handles.hpp"
+#include "drivers/files/captures/shot_codec.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 #ifdef KOLSKY_SANITIZED

@@ -6,7 +6,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 

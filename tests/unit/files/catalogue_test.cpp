@@ -1,4 +1,4 @@
-#include "drivers/files/catalogue.hpp"
+#include "drivers/files/store/catalogue.hpp"
 
 #include <sqlite3.h>
 

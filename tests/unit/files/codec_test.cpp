@@ -1,6 +1,6 @@
 #include <random>
 
-#include "drivers/files/shot_codec.hpp"
+#include "drivers/files/captures/shot_codec.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {

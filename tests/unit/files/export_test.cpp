@@ -1,4 +1,4 @@
-#include "drivers/files/export.hpp"
+#include "drivers/files/exports/export.hpp"
 
 #include <hdf5.h>
 #include <matio.h>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "drivers/files/hdf5_handles.hpp"
+#include "drivers/files/captures/hdf5_handles.hpp"
 #include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 

@@ -1,5 +1,5 @@
-#include "drivers/files/capture.hpp"
-#include "drivers/files/journal.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/store/journal.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {

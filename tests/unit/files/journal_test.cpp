@@ -9,8 +9,8 @@
 #include <random>
 #include <thread>
 
-#include "drivers/files/journal.hpp"
-#include "drivers/files/journal_record.hpp"
+#include "drivers/files/store/journal.hpp"
+#include "drivers/files/store/journal_record.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {

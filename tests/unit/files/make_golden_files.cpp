@@ -1,7 +1,7 @@
 #include <cstdio>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/journal.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/store/journal.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 /// make_golden_files FOLDER: a capture and a journal of the shot that golden_test expects.

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {

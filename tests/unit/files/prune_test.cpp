@@ -10,9 +10,9 @@
 #include <optional>
 #include <set>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/journal.hpp"
-#include "drivers/files/store.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/store/journal.hpp"
+#include "drivers/files/store/store.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {

@@ -1,13 +1,13 @@
-#include "drivers/files/store.hpp"
+#include "drivers/files/store/store.hpp"
 
 #include <sys/file.h>
 
 #include <fstream>
 
-#include "drivers/files/capture.hpp"
-#include "drivers/files/catalogue.hpp"
-#include "drivers/files/journal.hpp"
-#include "drivers/files/new_file.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/store/catalogue.hpp"
+#include "drivers/files/store/journal.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {

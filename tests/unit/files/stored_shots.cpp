@@ -7,7 +7,7 @@
 #include <random>
 #include <span>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 
 namespace kolsky::testing {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "drivers/files/model_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/models/physics.hpp"
 #include "processing/models/transfers.hpp"

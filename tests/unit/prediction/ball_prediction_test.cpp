@@ -7,7 +7,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/impact/impact.hpp"
-#include "processing/reduction/contact_numbers.hpp"
+#include "processing/reduction/ball/contact_numbers.hpp"
 #include "tests/unit/impact/paper_ball.hpp"
 #include "tests/unit/reduction/ball_bench.hpp"
 

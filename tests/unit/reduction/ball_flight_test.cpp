@@ -1,5 +1,5 @@
 // A ball of known path through beams of known places.
-#include "processing/reduction/ball_flight.hpp"
+#include "processing/reduction/ball/ball_flight.hpp"
 
 #include <gtest/gtest.h>
 

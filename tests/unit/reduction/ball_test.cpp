@@ -7,8 +7,8 @@
 #include "processing/base/error.hpp"
 #include "processing/impact/bench_impact.hpp"
 #include "processing/impact/impact.hpp"
-#include "processing/reduction/ball_repeats.hpp"
-#include "processing/reduction/contact_numbers.hpp"
+#include "processing/reduction/ball/ball_repeats.hpp"
+#include "processing/reduction/ball/contact_numbers.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "tests/unit/reduction/ball_bench.hpp"
 

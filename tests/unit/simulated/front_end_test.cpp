@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "drivers/simulated/capture_source.hpp"
 #include "drivers/simulated/digitiser_setup.hpp"
 #include "drivers/simulated/scenario_source.hpp"

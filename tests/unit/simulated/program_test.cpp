@@ -14,8 +14,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "drivers/simulated/scenario.hpp"
 #include "tests/unit/simulated/served_ramp.hpp"
 

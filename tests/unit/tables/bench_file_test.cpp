@@ -1,4 +1,4 @@
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/bench_file.hpp"
-#include "drivers/files/material_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 
 namespace kolsky {
 namespace {
@@ -69,7 +69,8 @@ std::vector<std::string> keys_of(const std::string& source) {
 TEST(BenchPage, NamesEveryKey) {
   const std::string page = text_of("docs/bench-files.md");
   std::size_t keys = 0;
-  for (const char* reader : {"drivers/files/bench_file.cpp", "drivers/files/material_file.cpp"}) {
+  for (const char* reader :
+       {"drivers/files/settings/bench_file.cpp", "drivers/files/settings/material_file.cpp"}) {
     for (const std::string& key : keys_of(text_of(reader))) {
       ++keys;
       EXPECT_NE(page.find(key), std::string::npos) << key;

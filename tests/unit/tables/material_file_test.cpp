@@ -1,4 +1,4 @@
-#include "drivers/files/material_file.hpp"
+#include "drivers/files/settings/material_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "drivers/files/bench_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
 #include "tests/unit/tables/table_bench.hpp"
 
 namespace kolsky {

@@ -1,4 +1,4 @@
-#include "drivers/files/quantise.hpp"
+#include "drivers/files/tables/quantise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/table_import.hpp"
+#include "drivers/files/tables/table_import.hpp"
 #include "tests/unit/tables/scratch_folder.hpp"
 
 namespace kolsky::testing {

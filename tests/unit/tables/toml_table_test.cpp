@@ -1,10 +1,10 @@
-#include "drivers/files/toml_table.hpp"
+#include "drivers/files/settings/toml_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 
-#include "drivers/files/nearest_name.hpp"
+#include "drivers/files/settings/nearest_name.hpp"
 #include "tests/unit/tables/scratch_folder.hpp"
 
 namespace kolsky {

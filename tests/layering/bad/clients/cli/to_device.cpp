@@ -1,2 +1,2 @@
-#include "drivers/files/journal.hpp"
+#include "drivers/files/store/journal.hpp"
 #include "drivers/iio/iio_session.hpp"

@@ -1,1 +1,1 @@
-#include "drivers/files/capture.hpp"
+#include "drivers/files/captures/capture.hpp"

@@ -1,0 +1,213 @@
+#include "clients/cli/reports/comparison_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "clients/figure/layout.hpp"
+#include "clients/terminal/plot.hpp"
+
+namespace kolsky::cli {
+
+namespace {
+
+constexpr std::size_t kShown = 12;
+constexpr int kPlotColumns = 100;
+constexpr int kPlotRows = 9;
+
+JsonValue band_limits(const ComparedBand& band) {
+  return std::vector<double>{band.low_Hz, band.high_Hz};
+}
+
+struct Fades {
+  double in_s = 0.0;
+  double out_s = 0.0;
+};
+
+/// Half of a fade lies outside its window's limits.
+Fades fades_of(const ArrivalWindow& window, const WhiteResiduals& residuals, std::size_t shot) {
+  const double period_s = residuals.judged_period_s();
+  Fades fades;
+  for (std::size_t n = 0; n < window.weight.size(); ++n) {
+    const double t = residuals.judged_start_s(shot) + static_cast<double>(n) * period_s;
+    if (window.weight[n] > 0.0) {
+      fades.in_s += t < window.start_s ? 2.0 * period_s : 0.0;
+      fades.out_s += t > window.end_s ? 2.0 * period_s : 0.0;
+    }
+  }
+  return fades;
+}
+
+}  // namespace
+
+std::string band_text(const ComparedBand& band) {
+  const DisplayUnit unit = display_unit("Hz", band.high_Hz);
+  return fmt::format("{:.3g} to {:.3g} {}", band.low_Hz * unit.factor, band.high_Hz * unit.factor,
+                     unit.name);
+}
+
+std::string in_words(const Misfit& misfit) {
+  const double floor = misfit.noise_floor_share;
+  if (misfit.scatter_share > floor / 2.0) {
+    return fmt::format(
+        "Of the signal's energy {:.2g} % is noise; the model does not explain {:.2g} % that "
+        "differs "
+        "from shot to shot and {:.2g} % that repeats.",
+        100.0 * (floor - misfit.scatter_share), 100.0 * misfit.scatter_share,
+        100.0 * misfit.repeatable_share);
+  }
+  const std::string sizes = fmt::format(
+      "Of the signal's energy {:.2g} % is noise and {:.2g} % repeats from shot to shot without the "
+      "model explaining it",
+      100.0 * floor, 100.0 * misfit.repeatable_share);
+  const double ratio = floor > 0.0 ? misfit.repeatable_share / floor : 0.0;
+  if (ratio > 1.0) {
+    return sizes + fmt::format(": {:.3g} times the noise.", ratio);
+  }
+  return sizes + (ratio > 0.05 ? ": less than the noise." : ": next to nothing.");
+}
+
+JsonValue describe_tiles(const Comparison& comparison, const Campaign& campaign) {
+  JsonList list;
+  for (const Tile& tile : comparison.tiles) {
+    if (!tile.significant) {
+      continue;
+    }
+    const ComparedBand& band = comparison.bands[tile.band];
+    list.push_back(JsonObject{{"gauge", campaign.bench.gauges[tile.gauge].name},
+                              {"window", tile.window},
+                              {"band", band_text(band)},
+                              {"band_Hz", band_limits(band)},
+                              {"shot", campaign.shots[tile.shot].id},
+                              {"share", tile.share},
+                              {"sigma", tile.sigma},
+                              {"percent_of_peak", tile.percent_of_peak},
+                              {"log_p", tile.log_p},
+                              {"repeats", tile.repeats},
+                              {"significant", true}});
+  }
+  return list;
+}
+
+JsonValue describe_regions(const Comparison& comparison, const Campaign& campaign) {
+  JsonList list;
+  for (const Region& region : comparison.regions) {
+    const ComparedBand& band = comparison.bands[region.band];
+    list.push_back(JsonObject{{"gauge", campaign.bench.gauges[region.gauge].name},
+                              {"window", region.window},
+                              {"band", band_text(band)},
+                              {"band_Hz", band_limits(band)},
+                              {"share", region.share},
+                              {"sigma", region.sigma()},
+                              {"log_p", region.log_p},
+                              {"repeat_log_p", region.repeat_log_p},
+                              {"repeats", region.repeats},
+                              {"significant", region.significant}});
+  }
+  return list;
+}
+
+JsonValue describe_places(const Comparison& comparison, const Comparer& comparer, Study& study) {
+  JsonList bands;
+  for (const ComparedBand& band : comparison.bands) {
+    bands.push_back(band_limits(band));
+  }
+  JsonList shots;
+  JsonList windows;
+  const Campaign& campaign = study.campaign();
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const CampaignShot& shot = campaign.shots[n];
+    shots.push_back(shot.id);
+    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+      for (const ArrivalWindow& window : comparer.windows(n, j)) {
+        const Fades fades = fades_of(window, study.residuals(), n);
+        windows.push_back(JsonObject{{"shot", shot.id},
+                                     {"gauge", campaign.bench.gauges[j].name},
+                                     {"window", window.name},
+                                     {"start_s", window.start_s + shot.foot_s},
+                                     {"end_s", window.end_s + shot.foot_s},
+                                     {"fade_in_s", fades.in_s},
+                                     {"fade_out_s", fades.out_s}});
+      }
+    }
+  }
+  return JsonObject{
+      {"shots", std::move(shots)}, {"bands_Hz", std::move(bands)}, {"windows", std::move(windows)}};
+}
+
+std::string places_table(const Comparison& comparison, const Campaign& campaign) {
+  std::string text;
+  std::size_t shown = 0;
+  std::size_t more = 0;
+  for (const Region& region : comparison.regions) {
+    std::size_t shots = 0;
+    double percent = 0.0;
+    for (const Tile& tile : comparison.tiles) {
+      if (tile.gauge == region.gauge && tile.window == region.window && tile.band == region.band &&
+          tile.significant) {
+        ++shots;
+        percent = std::max(percent, tile.percent_of_peak);
+      }
+    }
+    if (shots == 0) {
+      continue;
+    }
+    if (shown == kShown) {
+      ++more;
+      continue;
+    }
+    ++shown;
+    text +=
+        fmt::format("  {:<8} {:<18} {:<18} {:>6.1f} % {:>8.2f} {:>8.2f} % {:>6} of {:<3} {}\n",
+                    campaign.bench.gauges[region.gauge].name, region.window,
+                    band_text(comparison.bands[region.band]), 100.0 * region.share, region.sigma(),
+                    percent, shots, campaign.shots.size(), region.repeats ? "yes" : "no");
+  }
+  if (shown == 0) {
+    return "  the model fails nowhere: every place is as noise alone leaves it\n";
+  }
+  return fmt::format("  {:<8} {:<18} {:<18} {:>8} {:>8} {:>10} {:>12}  {}\n", "gauge", "window",
+                     "band", "share", "sigma", "of peak", "shots", "repeats") +
+         text + (more > 0 ? fmt::format("  and {} places with less\n", more) : "");
+}
+
+std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& study,
+                       const Eigen::VectorXd& white, const Terminal& terminal) {
+  const WhiteResiduals& residuals = study.residuals();
+  const Campaign& campaign = study.campaign();
+  const auto worst = std::find_if(comparison.tiles.begin(), comparison.tiles.end(),
+                                  [](const Tile& tile) { return tile.significant; });
+  const std::size_t shot = worst != comparison.tiles.end() ? worst->shot : 0;
+  const std::size_t gauge = worst != comparison.tiles.end() ? worst->gauge : campaign.reference;
+  const std::span<const double> own(white.data() + shot * residuals.per_shot(),
+                                    residuals.per_shot());
+  const ComparedRecord record = comparer.record(own, shot, gauge);
+  const double noise = 2.0 * std::sqrt(residuals.noise().quiet_power(gauge));
+  Panel panel{fmt::format("{} in {}: deviation", campaign.bench.gauges[gauge].name,
+                          campaign.shots[shot].id),
+              {"time", "s"},
+              {"strain", "strain"},
+              {{"deviation", {}, record.deviation}, {"2 sigma of noise", {}, {}}}};
+  for (std::size_t n = 0; n < record.deviation.size(); ++n) {
+    panel.series[0].x.push_back(residuals.judged_start_s(shot) +
+                                residuals.judged_period_s() * static_cast<double>(n));
+  }
+  const double from = panel.series[0].x.front();
+  const double to = panel.series[0].x.back();
+  panel.series[1].x = {from, to, NAN, from, to};
+  panel.series[1].y = {noise, noise, NAN, -noise, -noise};
+  Panel above{fmt::format("{} in {}: prediction over measurement",
+                          campaign.bench.gauges[gauge].name, campaign.shots[shot].id),
+              {"time", "s"},
+              {"strain", "strain"},
+              {{"measured", panel.series[0].x, record.measured},
+               {"predicted", panel.series[0].x, record.measured}}};
+  for (std::size_t n = 0; n < record.deviation.size(); ++n) {
+    above.series[1].y[n] -= record.deviation[n];
+  }
+  const PlotSize size{std::min(terminal.columns, kPlotColumns), kPlotRows};
+  return plot_text(above, size, terminal.colour) + plot_text(panel, size, terminal.colour);
+}
+
+}  // namespace kolsky::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/terminal/terminal.hpp"
+#include "processing/criticism/comparing/comparison.hpp"
+
+namespace kolsky::cli {
+
+/// "12.5 to 25 kHz"
+[[nodiscard]] std::string band_text(const ComparedBand& band);
+
+/// What a misfit's numbers mean, in a sentence or two.
+[[nodiscard]] std::string in_words(const Misfit& misfit);
+
+/// Members `where` (significant tiles, largest share first) and `regions` (all places, shots taken
+/// together) of what `kolsky compare --json` prints.
+[[nodiscard]] JsonValue describe_tiles(const Comparison& comparison, const Campaign& campaign);
+[[nodiscard]] JsonValue describe_regions(const Comparison& comparison, const Campaign& campaign);
+/// Member `places`: all that these tiles are taken from, failing or not. Times of a window are from
+/// its record's first sample; it fades in and out around them, over so long.
+[[nodiscard]] JsonValue describe_places(const Comparison& comparison, const Comparer& comparer,
+                                        Study& study);
+
+/// The places that fail, as a table.
+[[nodiscard]] std::string places_table(const Comparison& comparison, const Campaign& campaign);
+
+/// Prediction over measurement at the gauge and shot that fail most (the first ones where none
+/// does), and below it the deviation with the noise's two deviations to either side.
+[[nodiscard]] std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& study,
+                                     const Eigen::VectorXd& white, const Terminal& terminal);
+
+}  // namespace kolsky::cli

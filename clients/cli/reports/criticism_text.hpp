@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "clients/cli/reports/json_value.hpp"
+#include "processing/criticism/fitting/misfit.hpp"
+
+namespace kolsky::cli {
+
+[[nodiscard]] JsonValue describe(const Misfit& misfit);
+[[nodiscard]] std::string misfit_text(const Misfit& misfit);
+
+}  // namespace kolsky::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "clients/cli/reports/json_value.hpp"
+#include "clients/report/html.hpp"
+#include "clients/terminal/terminal.hpp"
+#include "processing/criticism/impact/impact_study.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
+
+namespace kolsky::cli {
+
+/// @throws InputError where the captures are of another kind of bench than the model
+void require_kind(const Model& model, const Campaign& campaign);
+
+/// Members `where` (significant tiles, largest share first) and `speeds` of what `kolsky compare
+/// --json` prints of impacts.
+[[nodiscard]] JsonValue describe_tiles(const ImpactComparison& comparison,
+                                       const Campaign& campaign);
+[[nodiscard]] JsonValue describe_speeds(const ImpactComparison& comparison);
+
+/// Speed by speed: misfit, peak forces, restitution.
+[[nodiscard]] std::string speeds_table(const ImpactComparison& comparison);
+/// The places that fail most.
+[[nodiscard]] std::string places_table(const ImpactComparison& comparison,
+                                       const Campaign& campaign);
+/// Force, measured and foretold, at the speed that fails most.
+[[nodiscard]] std::string worst_plot(const ImpactComparison& comparison,
+                                     const std::vector<double>& times_s, const Terminal& terminal);
+
+/// What `kolsky compare --report` writes of impacts.
+[[nodiscard]] Page impact_page(const std::string& title, const std::string& note,
+                               const ImpactComparison& comparison, ImpactStudy& study,
+                               const Model& model);
+/// What `kolsky diagnose --report` writes of impacts. Fits both models again.
+[[nodiscard]] Page impact_diagnosis_page(const std::string& title, ImpactStudy& study,
+                                         const Model& before, const Diagnosis& diagnosis);
+
+}  // namespace kolsky::cli

@@ -1,0 +1,200 @@
+#include "clients/cli/reports/model_text.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <map>
+
+#include "clients/cli/captures.hpp"
+#include "drivers/files/captures/capture.hpp"
+#include "drivers/files/models/model_file.hpp"
+#include "processing/base/error.hpp"
+
+namespace kolsky::cli {
+
+namespace {
+
+std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : captures) {
+    for (const auto& file : captures_in(name)) {
+      files.push_back(file);
+    }
+  }
+  return files;
+}
+
+std::string name_of_parameter(const Model& model, const EffectUse& use,
+                              const EffectParameter& parameter) {
+  const std::string& id = use.effect->about().id;
+  if (id == "three-element-specimen") {
+    return parameter.name;
+  }
+  if (id == "three-element-bar") {
+    return model.kind == BenchKind::bar ? parameter.name : "bar." + parameter.name;
+  }
+  return use.id() + "." + parameter.name;
+}
+
+struct Strained {
+  std::string name;
+  double deviations;
+};
+
+std::vector<Strained> strained_numbers(const Model& model) {
+  constexpr double kMost = 3.0;
+  std::vector<Strained> list;
+  for (const EffectUse& use : model.effects) {
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      const double off =
+          value.prior_sd > 0.0 ? (value.value - value.prior_mean) / value.prior_sd : 0.0;
+      if (std::abs(off) > kMost) {
+        list.push_back({name_of_parameter(model, use, use.effect->about().parameters[p]), off});
+      }
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
+  std::vector<Shot> shots = captured_shots(captures);
+  const auto name_of_file = [](const Shot& shot) {
+    return std::filesystem::path(shot.id).filename().string();
+  };
+  std::map<std::string, std::size_t> called;
+  for (const Shot& shot : shots) {
+    ++called[name_of_file(shot)];
+  }
+  // Of two folders one name may stand for two captures: then as they were given.
+  const bool ambiguous =
+      std::any_of(called.begin(), called.end(), [](const auto& name) { return name.second > 1; });
+  for (Shot& shot : shots) {
+    shot.id = ambiguous ? shot.id : name_of_file(shot);
+  }
+  return shots;
+}
+
+std::size_t count_of(const std::vector<std::string>& captures) {
+  return files_of(captures).size();
+}
+
+std::string digest_of(const std::vector<std::string>& captures) {
+  return digest_of_files(files_of(captures));
+}
+
+double band_limit_of(std::optional<double> asked_Hz) {
+  if (asked_Hz && *asked_Hz <= 0.0) {
+    throw InputError("--band-limit", "must be above 0 Hz", "give a positive number in Hz");
+  }
+  return asked_Hz.value_or(0.0);
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+JsonValue describe_effects(const Model& model) {
+  JsonList list;
+  for (const EffectUse& use : model.effects) {
+    const EffectAbout& about = use.effect->about();
+    JsonObject parameters;
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      parameters.push_back(
+          {about.parameters[p].name, JsonObject{{"value", value.value},
+                                                {"sd", value.sd},
+                                                {"unit", about.parameters[p].unit},
+                                                {"free", value.free},
+                                                {"null", about.parameters[p].null_value}}});
+    }
+    list.push_back(
+        JsonObject{{"id", use.id()},
+                   {"stage", kolsky::name_of(about.stage)},
+                   {"per_shot", use.per_shot},
+                   {"alike", use.alike},
+                   {"known_unknown", !use.values.empty() && use.values[0].prior_sd > 0.0},
+                   {"parameters", std::move(parameters)}});
+  }
+  return list;
+}
+
+JsonValue describe_parameters(const Model& model) {
+  JsonObject object;
+  for (const EffectUse& use : model.effects) {
+    const EffectAbout& about = use.effect->about();
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      object.push_back({name_of_parameter(model, use, about.parameters[p]),
+                        JsonObject{{"value", value.value},
+                                   {"sd", value.sd},
+                                   {"unit", about.parameters[p].unit},
+                                   {"free", value.free}}});
+    }
+  }
+  return object;
+}
+
+std::string model_table(const Model& model) {
+  std::string text;
+  for (const EffectUse& use : model.effects) {
+    const EffectAbout& about = use.effect->about();
+    text += fmt::format("  {:<28} {:<12} {}\n", use.id(), kolsky::name_of(about.stage),
+                        about.definition);
+    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+      const ModelValue& value = use.values[p];
+      const std::string deviation = value.sd > 0.0 ? fmt::format(" ± {:.2g}", value.sd) : "";
+      const std::string held = value.prior_sd > 0.0
+                                   ? fmt::format("  filed within {:.2g}", value.prior_sd)
+                                   : (value.free ? "" : "  held");
+      text += fmt::format("      {} = {:.6g}{} {}{}\n", about.parameters[p].name, value.value,
+                          deviation, about.parameters[p].unit, held);
+    }
+  }
+  return text;
+}
+
+JsonValue describe_strained(const Model& model) {
+  JsonList list;
+  for (const Strained& number : strained_numbers(model)) {
+    list.push_back(JsonObject{{"name", number.name}, {"deviations", number.deviations}});
+  }
+  return list;
+}
+
+std::string strained_text(const Model& model) {
+  std::string text;
+  for (const Strained& number : strained_numbers(model)) {
+    text += fmt::format("{}{} {:+.1f}", text.empty() ? "" : ", ", number.name, number.deviations);
+  }
+  return text.empty() ? ""
+                      : "strained, in filed deviations: " + text +
+                            "\nthey are not as filed, or stand in for what the model lacks; "
+                            "`kolsky diagnose` tells which\n";
+}
+
+BenchKind bench_kind(const std::string& name) {
+  if (name == "bar") {
+    return BenchKind::bar;
+  }
+  return name == "shpb" ? BenchKind::shpb : BenchKind::impact;
+}
+
+std::string name_of(BenchKind kind) {
+  switch (kind) {
+    case BenchKind::bar:
+      return "bar";
+    case BenchKind::shpb:
+      return "shpb";
+    case BenchKind::impact:
+      return "impact";
+  }
+  return {};
+}
+
+}  // namespace kolsky::cli

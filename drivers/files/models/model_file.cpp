@@ -1,0 +1,238 @@
+#include "drivers/files/models/model_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "drivers/files/models/model_expressions.hpp"
+#include "drivers/files/models/toml_values.hpp"
+#include "drivers/files/settings/file_bytes.hpp"
+#include "drivers/files/settings/toml_table.hpp"
+#include "drivers/files/sha256.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr std::int64_t kFormat = 1;
+constexpr std::size_t kMostCaptureBytes = std::size_t{1} << 32U;
+
+ModelValue read_value(const TomlTable& table, const EffectParameter& parameter) {
+  table.expect({"value", "sd", "unit", "free", "prior_sd", "prior_mean"});
+  ModelValue value;
+  value.value = table.number("value");
+  value.sd = table.optional_number("sd").value_or(0.0);
+  value.prior_sd = table.optional_number("prior_sd").value_or(0.0);
+  value.prior_mean = table.optional_number("prior_mean").value_or(value.value);
+  value.free = table.optional_flag("free").value_or(true);
+  if (const auto unit = table.optional_text("unit"); unit && *unit != parameter.unit) {
+    throw table.error("unit",
+                      "is \"" + *unit + "\" and " + parameter.name + " is in " + parameter.unit,
+                      "give the value in " + parameter.unit);
+  }
+  if (value.value < parameter.lower || value.value > parameter.upper) {
+    throw table.error("value",
+                      fmt::format("{} is out of bounds for {}", value.value, parameter.name),
+                      fmt::format("give a number from {} to {} {}", parameter.lower,
+                                  parameter.upper, parameter.unit));
+  }
+  if (value.sd < 0.0) {
+    throw table.error("sd", "is negative", "give a standard deviation of 0 or more");
+  }
+  if (table.has("prior_sd") && !(value.prior_sd > 0.0)) {
+    throw table.error("prior_sd", "is not a standard deviation",
+                      "give more than 0, or `free = false` for a number that is known");
+  }
+  return value;
+}
+
+/// Positive definite, symmetric, ones on the diagonal: what a prior needs.
+void require_correlation(const TomlTable& table, const std::vector<double>& own,
+                         const EffectUse& use) {
+  const std::size_t count = use.values.size();
+  bool sound = own.size() == count * count;
+  for (std::size_t a = 0; sound && a < count; ++a) {
+    sound = std::abs(own[a * count + a] - 1.0) < 1e-9;
+    for (std::size_t b = 0; sound && b < a; ++b) {
+      sound = std::abs(own[a * count + b] - own[b * count + a]) < 1e-9;
+    }
+  }
+  // Cholesky's factor exists for nothing else.
+  std::vector<double> factor = own;
+  for (std::size_t a = 0; sound && a < count; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      double sum = factor[a * count + b];
+      for (std::size_t k = 0; k < b; ++k) {
+        sum -= factor[a * count + k] * factor[b * count + k];
+      }
+      if (a == b) {
+        sound = sound && sum > 0.0;
+        factor[a * count + a] = std::sqrt(std::max(sum, 0.0));
+      } else {
+        factor[a * count + b] = factor[b * count + b] > 0.0 ? sum / factor[b * count + b] : 0.0;
+      }
+    }
+  }
+  if (!sound) {
+    throw table.error(
+        "prior_correlation", "is not a correlation of this effect's parameters",
+        fmt::format("give {} x {} numbers, symmetric and positive definite", count, count));
+  }
+}
+
+EffectUse read_use(const TomlTable& table, const Model& model) {
+  table.expect({"id", "per_shot", "alike", "parameters", "prior_correlation"});
+  EffectUse use;
+  try {
+    use = use_named(table.text("id"), model);
+  } catch (const InputError& error) {
+    throw table.error("id", "\"" + table.text("id") + "\": " + error.problem(), error.mend());
+  }
+  use.alike = table.optional_flag("alike").value_or(false);
+  if (use.alike && !use.effect->about().each_gauge) {
+    throw table.error("alike", "is true, and " + use.id() + " has no strengths by gauge",
+                      "leave it out");
+  }
+  use.per_shot = table.optional_flag("per_shot").value_or(false);
+  if (use.per_shot && !use.effect->about().per_shot) {
+    throw table.error("per_shot", "is true, and " + use.id() + " is one for all shots",
+                      "remove it");
+  }
+  if (const auto parameters = table.optional_table("parameters")) {
+    const auto& known = use.effect->about().parameters;
+    for (std::size_t p = 0; p < known.size(); ++p) {
+      if (const auto own = parameters->optional_table(known[p].name)) {
+        use.values[p] = read_value(*own, known[p]);
+      }
+    }
+  }
+  if (table.has("prior_correlation")) {
+    use.prior_correlation = table.numbers("prior_correlation");
+    require_correlation(table, use.prior_correlation, use);
+  }
+  return use;
+}
+
+ModelFile read(const TomlTable& table) {
+  table.expect({"kolsky_model", "kind", "bar_source", "expressions", "effects", "history"});
+  if (table.integer("kolsky_model") != kFormat) {
+    throw table.error("kolsky_model", "is a format that this version does not know",
+                      "make the model anew with `kolsky model new`");
+  }
+  ModelFile file;
+  constexpr std::array kKinds{BenchKind::bar, BenchKind::shpb, BenchKind::impact};
+  file.model.kind = kKinds.at(table.choice("kind", {"bar", "shpb", "impact"}));
+  file.bar_source = table.optional_text("bar_source").value_or("");
+  const std::vector<TomlTable> expressions = table.tables("expressions");
+  for (const TomlTable& own : expressions) {
+    file.model.expressions.push_back(read_expression(own, file.model));
+  }
+  for (const TomlTable& own : table.tables("effects")) {
+    EffectUse use = read_use(own, file.model);
+    const auto& kinds = use.effect->about().kinds;
+    if (std::find(kinds.begin(), kinds.end(), file.model.kind) == kinds.end()) {
+      throw own.error("id", "\"" + use.id() + "\" does not belong to this kind of bench",
+                      "remove it");
+    }
+    if (file.model.find(use.id()) != nullptr) {
+      throw own.error("id", "\"" + use.id() + "\" is there twice", "keep one");
+    }
+    file.model.effects.push_back(std::move(use));
+  }
+  for (std::size_t i = 0; i < expressions.size(); ++i) {
+    require_admissible(expressions[i], *file.model.expressions[i], file.model);
+  }
+  for (const TomlTable& own : table.tables("history")) {
+    file.history.push_back(read_step(own));
+  }
+  table.finish();
+  return file;
+}
+
+std::string format_use(const EffectUse& use) {
+  std::string text = "\n[[effects]]\nid = " + toml_quoted(use.id()) + "\n";
+  if (use.alike) {
+    text += "alike = true\n";
+  }
+  if (use.per_shot) {
+    text += "per_shot = true\n";
+  }
+  if (!use.prior_correlation.empty()) {
+    text += "prior_correlation = [";
+    for (std::size_t i = 0; i < use.prior_correlation.size(); ++i) {
+      text += (i == 0 ? "" : ", ") + toml_number(use.prior_correlation[i]);
+    }
+    text += "]\n";
+  }
+  const auto& parameters = use.effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ModelValue& value = use.values[p];
+    text += "[effects.parameters." + parameters[p].name + "]\n";
+    text += "value = " + toml_number(value.value) + "\n";
+    if (value.sd > 0.0) {
+      text += "sd = " + toml_number(value.sd) + "\n";
+    }
+    if (value.prior_sd > 0.0) {
+      text += "prior_mean = " + toml_number(value.prior_mean) +
+              "\nprior_sd = " + toml_number(value.prior_sd) + "\n";
+    }
+    text += "unit = " + toml_quoted(parameters[p].unit) + "\n";
+    text += std::string("free = ") + (value.free ? "true" : "false") + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+ModelFile read_model(const std::filesystem::path& path) {
+  return read(TomlTable::open(path));
+}
+
+ModelFile parse_model(const std::string& text, const std::string& name) {
+  return read(TomlTable::parse(text, name));
+}
+
+std::string format_model(const ModelFile& file, bool with_history) {
+  const std::array<const char*, 3> kinds{"bar", "shpb", "impact"};
+  std::string text = fmt::format("kolsky_model = {}\nkind = \"{}\"\n", kFormat,
+                                 kinds.at(static_cast<std::size_t>(file.model.kind)));
+  if (!file.bar_source.empty()) {
+    text += "bar_source = " + toml_quoted(file.bar_source) + "\n";
+  }
+  for (const auto& expression : file.model.expressions) {
+    text += format_expression(expression->text());
+  }
+  for (const EffectUse& use : file.model.effects) {
+    text += format_use(use);
+  }
+  if (with_history) {
+    for (const ModelStep& step : file.history) {
+      text += format_step(step);
+    }
+  }
+  return text;
+}
+
+std::string digest_of_files(const std::vector<std::filesystem::path>& files) {
+  Sha256 all;
+  for (const auto& file : files) {
+    const std::string bytes = read_file_bytes(file, kMostCaptureBytes);
+    const std::string own = sha256_hex(std::as_bytes(std::span(bytes)));
+    all.add(std::as_bytes(std::span(own)));
+  }
+  return all.hex();
+}
+
+void begin_step(ModelFile& file, const std::string& action, const std::string& when) {
+  ModelStep step;
+  step.action = action;
+  step.when = when;
+  step.software = KOLSKY_VERSION;
+  step.before = format_model(file, false);
+  step.parent = sha256_hex(std::as_bytes(std::span(step.before)));
+  file.history.push_back(std::move(step));
+}
+
+}  // namespace kolsky

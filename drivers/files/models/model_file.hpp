@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drivers/files/models/model_step.hpp"
+#include "processing/models/model.hpp"
+
+namespace kolsky {
+
+/// A model with the lineage that its file carries along: nothing that it once was is lost.
+struct ModelFile {
+  Model model;
+  std::string bar_source;  ///< where the bars' moduli come from, for people; may be empty
+  std::vector<ModelStep> history;
+
+  [[nodiscard]] std::string parent() const {
+    return history.empty() ? std::string{} : history.back().parent;
+  }
+};
+
+/// @throws InputError: file, line, key and mend
+[[nodiscard]] ModelFile read_model(const std::filesystem::path& path);
+[[nodiscard]] ModelFile parse_model(const std::string& text, const std::string& name);
+
+/// TOML that reads back as the same bits; without the history where it is not asked for.
+[[nodiscard]] std::string format_model(const ModelFile& file, bool with_history = true);
+
+/// One digest of several captures, of their own digests in turn: by it a history knows what a fit
+/// saw. @throws InputError for a file that cannot be read
+[[nodiscard]] std::string digest_of_files(const std::vector<std::filesystem::path>& files);
+
+/// Appends a step: the file as it is now becomes the parent of what follows.
+void begin_step(ModelFile& file, const std::string& action, const std::string& when);
+
+}  // namespace kolsky

@@ -1,0 +1,107 @@
+#include "drivers/files/settings/material_file.hpp"
+
+#include <array>
+#include <charconv>
+
+#include "drivers/files/settings/toml_table.hpp"
+
+namespace kolsky {
+
+namespace {
+
+Material read(const TomlTable& table) {
+  table.expect({"density_kg_m3", "poisson_ratio", "E1_Pa", "E2_Pa", "eta2_Pa_s", "source",
+                "covariance", "identified"});
+  Material material;
+  material.density_kg_m3 = table.measured("density_kg_m3");
+  material.poisson_ratio = table.measured("poisson_ratio");
+  material.E1_Pa = table.measured("E1_Pa");
+  material.E2_Pa = table.measured("E2_Pa");
+  material.eta2_Pa_s = table.measured("eta2_Pa_s");
+  material.source = table.optional_text("source").value_or("");
+  // What an identification files beside the values, for its own use.
+  table.accept("covariance");
+  table.accept("identified");
+  table.finish();
+  try {
+    check(material);
+  } catch (const InputError& error) {
+    throw table.located(error);
+  }
+  return material;
+}
+
+// The shortest digits that read back as the same bits.
+std::string digits(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  std::string result(text.data(), end);
+  if (result.find_first_of(".e") == std::string::npos) {
+    result += ".0";
+  }
+  return result;
+}
+
+std::string number_line(const std::string& key, const Measured& number) {
+  std::string line = key + " = " + digits(number.value) + "\n";
+  if (number.sd != 0.0) {
+    line += key + "_sd = " + digits(number.sd) + "\n";
+  }
+  return line;
+}
+
+std::string quoted(const std::string& text) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      result += "\\u00";
+      result += kHex[byte >> 4U];
+      result += kHex[byte & 15U];
+    } else {
+      result += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    }
+  }
+  return result + "\"";
+}
+
+}  // namespace
+
+Material read_material(const std::filesystem::path& path) {
+  return read(TomlTable::open(path));
+}
+
+Material parse_material(const std::string& text, const std::string& name) {
+  return read(TomlTable::parse(text, name));
+}
+
+std::string format_material(const Material& material) {
+  std::string text;
+  if (!material.source.empty()) {
+    text += "source = " + quoted(material.source) + "\n";
+  }
+  text += number_line("density_kg_m3", material.density_kg_m3);
+  text += number_line("poisson_ratio", material.poisson_ratio);
+  text += number_line("E1_Pa", material.E1_Pa);
+  text += number_line("E2_Pa", material.E2_Pa);
+  text += number_line("eta2_Pa_s", material.eta2_Pa_s);
+  return text;
+}
+
+std::string format_material(const Material& material, const Identified& identified) {
+  std::string text = format_material(material) + "covariance = [";  // E1, E2, eta2, row by row
+  for (std::size_t i = 0; i < identified.covariance.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + digits(identified.covariance[i]);
+  }
+  text += "]\n\n[identified]\nshots = " + std::to_string(identified.shots) + "\n";
+  text += "band_limit_Hz = " + digits(identified.band_limit_Hz) + "\n";
+  text += "dispersion = " + quoted(identified.dispersion) + "\n";
+  text += "chi2_reduced = " + digits(identified.chi2_reduced) + "\n";
+  if (identified.temperature_K) {
+    text += "temperature_K = " + digits(*identified.temperature_K) + "\n";
+  }
+  return text;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,199 @@
+#include "processing/criticism/comparing/gauge_deviations.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "processing/criticism/fitting/statistics.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// A gauge is off beyond doubt where noise would have it so once in a million.
+const double kBeyondDoubt = std::log(1e-6);
+constexpr double kFilterPasses = 0.1;
+/// Noise of a gauge that is left out, over its own.
+constexpr double kLeftOut = 1e8;
+/// A long reference gauge's blind frequency: nothing is divided by less.
+constexpr double kBlind = 0.1;
+
+}  // namespace
+
+GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& composition,
+                                 const std::vector<double>& theta)
+    : residuals_(residuals),
+      transform_(2 * residuals.band().judged, residuals.judged_period_s(), 1.0) {
+  const JudgedBand& band = residuals.band();
+  const PlainResiduals plain = residuals.plain(composition, theta);
+  std::vector<double> filter;
+  while (bins_ < transform_.bins()) {
+    const double ratio = static_cast<double>(bins_) * transform_.bin_width_Hz() / band.filter_Hz;
+    const double passes = std::exp(-std::numbers::ln2 * std::pow(ratio, 4));
+    if (passes <= kFilterPasses) {
+      break;
+    }
+    filter.push_back(passes);
+    ++bins_;
+  }
+  const std::size_t last = 2 * band.bins_judged;
+  double held = 0.0;
+  for (std::size_t f = 0; f < bins_; ++f) {
+    gain_.push_back(1.0 / filter[std::min(f, last)]);
+    held += f > last ? std::pow(filter[f] * gain_.back(), 2) : 0.0;
+  }
+  bins_held_ = band.bins_judged + static_cast<std::size_t>(held / 2.0);
+
+  const std::size_t others = residuals.others().size();
+  std::vector<Spectrum> responses;
+  std::vector<double> lags(transform_.length());
+  for (const std::vector<double>& response : plain.responses) {
+    // Only what comes back within the record is carried in it.
+    std::fill(lags.begin(), lags.end(), 0.0);
+    for (std::size_t i = 0; i < plain.before + band.judged; ++i) {
+      lags[(i + lags.size() - plain.before) % lags.size()] = response[i];
+    }
+    responses.emplace_back(transform_.bins());
+    transform_.forward(lags, responses.back());
+  }
+  const auto mean = [&](std::size_t f) -> Complex {
+    if (responses.size() == others) {
+      return 1.0;
+    }
+    const Complex own = responses[others][f] / filter[f];
+    return std::abs(own) > kBlind ? own : Complex(kBlind);
+  };
+  const std::size_t gauges = residuals.campaign().gauges();
+  waves_.setOnes(static_cast<Eigen::Index>(gauges), static_cast<Eigen::Index>(bins_));
+  for (std::size_t f = 0; f < bins_; ++f) {
+    for (std::size_t i = 0; i < others; ++i) {
+      waves_(static_cast<Eigen::Index>(residuals.others()[i]), static_cast<Eigen::Index>(f)) =
+          responses[i][f] / (filter[f] * mean(f));
+    }
+  }
+  for (const auto& of_shot : plain.records) {
+    y_.emplace_back(gauges, Spectrum(transform_.bins(), 0.0));
+    for (std::size_t i = 0; i < others; ++i) {
+      Spectrum& own = y_.back()[residuals.others()[i]];
+      transform_.forward(of_shot[i], own);
+      for (std::size_t f = 0; f < bins_; ++f) {
+        own[f] /= mean(f);
+      }
+    }
+  }
+}
+
+std::size_t GaugeDeviations::judged_bin(std::size_t fine) const {
+  return std::clamp<std::size_t>((fine + 1) / 2, 1, residuals_.band().bins_judged) - 1;
+}
+
+/// Generalised least squares: s = w^H y / w^H k with w = P^-1 k, k the waves and P the noise.
+GaugeDeviations::Estimate GaugeDeviations::estimate(const std::vector<bool>& left_out) const {
+  const auto gauges = static_cast<Eigen::Index>(left_out.size());
+  Estimate out{Eigen::MatrixXcd(gauges, waves_.cols()), Eigen::MatrixXd(gauges, waves_.cols())};
+  Eigen::MatrixXd noise(gauges, gauges);
+  Eigen::MatrixXd weighted(gauges, gauges);
+  Eigen::MatrixXd inverse(gauges, gauges);
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors(gauges);
+  for (std::size_t f = 0; f < bins_; ++f) {
+    if (f == 0 || judged_bin(f) != judged_bin(f - 1)) {
+      residuals_.noise().put_covariance(judged_bin(f), noise);
+      weighted = noise;
+      for (Eigen::Index j = 0; j < gauges; ++j) {
+        weighted(j, j) *= left_out[static_cast<std::size_t>(j)] ? kLeftOut : 1.0;
+      }
+      inverse = factors.compute(weighted).inverse();
+    }
+    const auto wave = waves_.col(static_cast<Eigen::Index>(f));
+    auto weight = out.weight.col(static_cast<Eigen::Index>(f));
+    weight.noalias() = inverse * wave;
+    const double known = weight.dot(wave).real();
+    weight /= known;
+    for (Eigen::Index j = 0; j < gauges; ++j) {
+      // What the gauge has of the estimate's error, unlike it or not in it at all.
+      const double of_source = std::norm(wave[j]) / known;
+      const double square =
+          left_out[static_cast<std::size_t>(j)] ? noise(j, j) + of_source : noise(j, j) - of_source;
+      out.sd(j, static_cast<Eigen::Index>(f)) = std::sqrt(std::max(square, 1e-6 * noise(j, j)));
+    }
+  }
+  return out;
+}
+
+GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate, std::size_t first,
+                                              std::size_t end) const {
+  const std::size_t gauges = y_.front().size();
+  const std::size_t last = 2 * residuals_.band().bins_judged;
+  Found out;
+  out.energy.assign(gauges, 0.0);
+  for (std::size_t n = first; n < end; ++n) {
+    out.spectra.emplace_back(gauges, Spectrum(transform_.bins(), 0.0));
+    for (std::size_t f = 0; f < bins_; ++f) {
+      const auto bin = static_cast<Eigen::Index>(f);
+      Complex source = 0.0;
+      for (std::size_t j = 0; j < gauges; ++j) {
+        source += std::conj(estimate.weight(static_cast<Eigen::Index>(j), bin)) * y_[n][j][f];
+      }
+      for (std::size_t j = 0; j < gauges; ++j) {
+        const auto at = static_cast<Eigen::Index>(j);
+        Complex& z = out.spectra.back()[j][f];
+        z = std::numbers::sqrt2 * gain_[f] * (y_[n][j][f] - waves_(at, bin) * source) /
+            estimate.sd(at, bin);
+        // Bins are half as wide as judged ones.
+        out.energy[j] += f > 0 && f <= last ? 0.5 * std::norm(z) : 0.0;
+      }
+    }
+  }
+  return out;
+}
+
+/// The gauges that stand out beyond doubt, each beside those before it, as long as more agree.
+std::vector<bool> GaugeDeviations::at_fault(Found now, std::size_t first, std::size_t end) const {
+  const std::size_t gauges = now.energy.size();
+  const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged * (end - first));
+  std::vector<bool> out(gauges, false);
+  for (std::size_t most = (gauges - 1) / 2; most > 0; --most) {
+    std::size_t worst = gauges;
+    for (std::size_t j = 0; j < gauges; ++j) {
+      if (!out[j] && (worst == gauges || now.energy[j] > now.energy[worst])) {
+        worst = j;
+      }
+    }
+    if (log_chi2_tail(now.energy[worst], freedom) > kBeyondDoubt) {
+      break;
+    }
+    out[worst] = true;
+    if (most > 1) {
+      now = found(estimate(out), first, end);
+    }
+  }
+  return out;
+}
+
+std::vector<GaugeDeviation> GaugeDeviations::of_shots(std::size_t first, std::size_t end) {
+  const std::size_t gauges = y_.front().size();
+  Estimate used = estimate(std::vector<bool>(gauges, false));
+  Found all = found(used, first, end);
+  const std::vector<bool> faulty = at_fault(all, first, end);
+  if (std::find(faulty.begin(), faulty.end(), true) != faulty.end()) {
+    used = estimate(faulty);
+    all = found(used, first, end);
+  }
+  std::vector<GaugeDeviation> list;
+  for (std::size_t j = 0; j < gauges; ++j) {
+    GaugeDeviation own{j, {}, {}};
+    for (const std::vector<Spectrum>& of_shot : all.spectra) {
+      own.records.emplace_back(residuals_.band().judged);
+      transform_.inverse(of_shot[j], own.records.back());
+    }
+    for (std::size_t k = 1; k <= residuals_.band().bins_judged; ++k) {
+      own.scale.push_back(used.sd(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(2 * k)) /
+                          std::numbers::sqrt2);
+    }
+    list.push_back(std::move(own));
+  }
+  return list;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,256 @@
+#include "processing/criticism/fitting/composition.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/algebra/algebra.hpp"
+#include "processing/base/error.hpp"
+#include "processing/identification/known_unknowns.hpp"
+
+namespace kolsky {
+
+namespace {
+
+EffectUse filed(const std::string& id, std::vector<double> sds) {
+  EffectUse use = use_named(id);
+  for (std::size_t i = 0; i < sds.size(); ++i) {
+    use.values[i].prior_sd = sds[i];
+    use.values[i].prior_mean = use.effect->about().parameters[i].null_value;
+    use.values[i].free = sds[i] > 0.0;
+  }
+  return use;
+}
+
+/// Each bar's number is off by itself, but an effect on the first moves both.
+double beside(double first_sd, const Measured& second) {
+  return std::hypot(first_sd, relative_sd(second));
+}
+
+/// Without waves, or with a material that nobody states, nothing can be foretold.
+void require_whole(const Model& model, const Bench& bench) {
+  std::vector<std::string> needed;
+  if (bench.kind != BenchKind::impact) {
+    needed.emplace_back("elementary-waves");
+    if (!bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa)) {
+      needed.emplace_back("three-element-bar");
+    }
+  }
+  if (bench.kind == BenchKind::shpb) {
+    needed.emplace_back("three-element-specimen");
+  }
+  for (const std::string& id : needed) {
+    if (model.find(id) == nullptr) {
+      throw InputError("model", "lacks " + id + ", without which nothing can be foretold here",
+                       "add it with `kolsky model add`");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
+  std::vector<EffectUse> list;
+  for (const Gauge& gauge : bench.gauges) {
+    if (const double sd = gain_sd(gauge); sd > 0.0) {
+      list.push_back(filed("gauge-factor:" + gauge.name, {sd}));
+    }
+    if (gauge.position_m.sd > 0.0) {
+      list.push_back(filed("gauge-position:" + gauge.name, {gauge.position_m.sd}));
+    }
+  }
+  if (bench.input.length_m.sd > 0.0) {
+    list.push_back(filed("bar-length", {bench.input.length_m.sd}));
+  }
+  if (bench.input.density_kg_m3.sd > 0.0) {
+    list.push_back(filed("bar-density", {relative_sd(bench.input.density_kg_m3)}));
+  }
+  if (bench.output && bench.output->length_m.sd > 0.0) {
+    list.push_back(filed("output-bar-length", {bench.output->length_m.sd}));
+  }
+  if (bench.output && bench.output->density_kg_m3.sd > 0.0) {
+    list.push_back(filed("output-bar-density", {beside(relative_sd(bench.input.density_kg_m3),
+                                                       bench.output->density_kg_m3)}));
+  }
+  // What waves in one bar alone do depends on it only where they are dispersed, as a strength of
+  // that dispersion does.
+  if (bench.kind != BenchKind::bar && bench.input.diameter_m.sd > 0.0) {
+    list.push_back(filed("bar-diameter", {relative_sd(bench.input.diameter_m)}));
+  }
+  if (bench.output && bench.output->diameter_m.sd > 0.0) {
+    list.push_back(filed("output-bar-diameter",
+                         {beside(relative_sd(bench.input.diameter_m), bench.output->diameter_m)}));
+  }
+  if (bench.input.youngs_modulus_Pa && bench.input.youngs_modulus_Pa->sd > 0.0) {
+    const double sd = relative_sd(*bench.input.youngs_modulus_Pa);
+    list.push_back(filed("bar-modulus", {sd}));
+    if (bench.output && bench.output->youngs_modulus_Pa) {
+      list.push_back(filed("output-bar-modulus", {beside(sd, *bench.output->youngs_modulus_Pa)}));
+    }
+  }
+  if (bench.specimen &&
+      (bench.specimen->length_m.sd > 0.0 || bench.specimen->diameter_m.sd > 0.0)) {
+    list.push_back(
+        filed("specimen-dimensions", {bench.specimen->length_m.sd, bench.specimen->diameter_m.sd}));
+  }
+  return list;
+}
+
+Composition::Composition(const Model& model, const Campaign& campaign)
+    : shots_(campaign.shots.size()), gauges_(campaign.gauges()) {
+  if (model.kind != campaign.bench.kind) {
+    throw InputError("model", "is of another kind of bench than the captures",
+                     "make one with `kolsky model new --kind`");
+  }
+  require_whole(model, campaign.bench);
+  for (const EffectUse& use : model.effects) {
+    add(use, campaign);
+  }
+  for (const EffectUse& use : known_unknowns_of(campaign.bench)) {
+    if (model.find(use.id()) == nullptr) {
+      add(use, campaign);
+    }
+  }
+}
+
+void Composition::add(const EffectUse& use, const Campaign& campaign) {
+  const EffectAbout& about = use.effect->about();
+  std::size_t gauge = 0;
+  if (about.per_gauge) {
+    const auto& gauges = campaign.bench.gauges;
+    const auto found = std::find_if(gauges.begin(), gauges.end(),
+                                    [&](const Gauge& g) { return g.name == use.gauge; });
+    if (found == gauges.end()) {
+      throw InputError("effect " + use.id(), "names a gauge that the bench does not have",
+                       "name one of the bench file's gauges");
+    }
+    gauge = static_cast<std::size_t>(found - gauges.begin());
+  }
+  differs_by_shot_ = differs_by_shot_ || about.shot_facts;
+  changes_records_ = changes_records_ || about.stage == Stage::record;
+  std::vector<Slots> slots(about.parameters.size());
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    const EffectParameter& parameter = about.parameters[p];
+    const ModelValue& value = use.values[p];
+    const std::size_t by_shot = use.per_shot && !parameter.auxiliary() ? shots_ : 1;
+    const std::size_t by_gauge =
+        about.each_gauge && !use.alike && !parameter.auxiliary() ? gauges_ : 1;
+    Slots own{by_shot, by_gauge, std::vector<Slot>(by_shot * by_gauge)};
+    for (std::size_t place = 0; place < own.of.size(); ++place) {
+      Slot& slot = own.of[place];
+      slot.fixed = value.value;
+      // What is chosen among a few has no neighbourhood to search.
+      if (value.free && !parameter.chosen) {
+        slot.number = static_cast<std::ptrdiff_t>(numbers_.size());
+        const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
+        numbers_.push_back({uses_.size(), p, value.value, scale, parameter.lower, parameter.upper,
+                            value.prior_mean, value.prior_sd,
+                            by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1,
+                            parameter.difference, parameter.power});
+      }
+    }
+    slots[p] = std::move(own);
+  }
+  uses_.push_back(use);
+  gauge_of_use_.push_back(gauge);
+  slots_.push_back(std::move(slots));
+}
+
+double FreeNumber::theta_of(double value) const {
+  const double ratio = value / scale;
+  return power == 1.0 ? ratio : std::copysign(std::pow(std::abs(ratio), power), ratio);
+}
+
+double FreeNumber::value_at(double theta) const {
+  return scale * root(theta, power);
+}
+
+double FreeNumber::sd_at(double theta, double theta_sd) const {
+  const double value = value_at(theta);
+  const double below = std::max(theta - theta_sd, theta_of(lower));
+  return power == 1.0 ? theta_sd * scale
+                      : std::max(value_at(theta + theta_sd) - value, value - value_at(below));
+}
+
+double FreeNumber::inside(double theta) const {
+  return std::clamp(theta, theta_of(lower), theta_of(upper));
+}
+
+std::vector<double> Composition::start() const {
+  std::vector<double> theta;
+  for (const FreeNumber& number : numbers_) {
+    theta.push_back(number.theta_of(number.start));
+  }
+  return theta;
+}
+
+Eigen::MatrixXd Composition::prior_precision() const {
+  const auto count = static_cast<Eigen::Index>(numbers_.size());
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FreeNumber& number = numbers_[static_cast<std::size_t>(i)];
+    if (number.prior_sd > 0.0) {
+      precision(i, i) = number.scale * number.scale / (number.prior_sd * number.prior_sd);
+    }
+  }
+  for (std::size_t u = 0; u < uses_.size(); ++u) {
+    const std::vector<double>& correlation = uses_[u].prior_correlation;
+    if (correlation.empty()) {
+      continue;
+    }
+    // Of the numbers that are free, the others held where they are.
+    const std::vector<std::size_t> own = numbers_of(u);
+    const std::size_t all = uses_[u].values.size();
+    Eigen::MatrixXd among(own.size(), own.size());
+    for (std::size_t a = 0; a < own.size(); ++a) {
+      for (std::size_t b = 0; b < own.size(); ++b) {
+        among(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+            correlation[numbers_[own[a]].parameter * all + numbers_[own[b]].parameter];
+      }
+    }
+    const Eigen::MatrixXd inverse = inverse_of(among);
+    for (std::size_t a = 0; a < own.size(); ++a) {
+      for (std::size_t b = 0; b < own.size(); ++b) {
+        const FreeNumber& p = numbers_[own[a]];
+        const FreeNumber& q = numbers_[own[b]];
+        precision(static_cast<Eigen::Index>(own[a]), static_cast<Eigen::Index>(own[b])) =
+            p.scale * q.scale / (p.prior_sd * q.prior_sd) *
+            inverse(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      }
+    }
+  }
+  return precision;
+}
+
+std::vector<AppliedEffect> Composition::applied(const std::vector<double>& theta,
+                                                std::size_t shot) const {
+  std::vector<AppliedEffect> list;
+  for (std::size_t u = 0; u < uses_.size(); ++u) {
+    const EffectUse& use = uses_[u];
+    const bool each_gauge = use.effect->about().each_gauge;
+    const std::size_t copies = each_gauge ? gauges_ : 1;
+    for (std::size_t copy = 0; copy < copies; ++copy) {
+      AppliedEffect effect{use.effect, each_gauge ? copy : gauge_of_use_[u], {}};
+      for (const Slots& own : slots_[u]) {
+        const Slot& slot = own.at(shot, copy);
+        effect.values.push_back(slot.number < 0
+                                    ? slot.fixed
+                                    : numbers_[static_cast<std::size_t>(slot.number)].value_at(
+                                          theta[static_cast<std::size_t>(slot.number)]));
+      }
+      list.push_back(std::move(effect));
+    }
+  }
+  return list;
+}
+
+std::vector<std::size_t> Composition::numbers_of(std::size_t use) const {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    if (numbers_[i].use == use) {
+      list.push_back(i);
+    }
+  }
+  return list;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,309 @@
+#include "processing/criticism/fitting/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/criticism/fitting/fit_steps.hpp"
+#include "processing/reduction/first_pulse.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr int kMostIterations = 25;
+constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
+/// The same where residuals are calculated and rough by as much (a contact grows by nodes), and a
+/// square of a deviate counts over several.
+constexpr double kNear = 0.05;
+/// The same for a first look at what may be far behind.
+constexpr double kRoughly = 1.0;
+
+}  // namespace
+
+double ModelFit::degrees_of_freedom(const Composition& composition) const {
+  double used = 0.0;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    // A prior that decides by itself costs the data nothing.
+    const double from_prior =
+        number.prior_sd > 0.0
+            ? covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) *
+                  number.scale * number.scale / (number.prior_sd * number.prior_sd)
+            : 0.0;
+    used += 1.0 - std::min(1.0, from_prior);
+  }
+  return static_cast<double>(residual.size()) - used;
+}
+
+Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& residuals,
+                            const std::vector<double>& theta, const Eigen::VectorXd& at_theta,
+                            const std::vector<std::size_t>& numbers, const Workers& executor) {
+  Eigen::MatrixXd columns(at_theta.size(), static_cast<Eigen::Index>(numbers.size()));
+  executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
+    std::vector<double> moved = theta;
+    const FreeNumber& number = composition.numbers()[numbers[i]];
+    // Away from the bound that is next to the value.
+    const double room = number.theta_of(number.upper) - moved[numbers[i]];
+    const double step = room > number.difference ? number.difference : -number.difference;
+    moved[numbers[i]] += step;
+    const auto column = static_cast<Eigen::Index>(i);
+    if (number.shot >= 0 && !residuals.shots_hang_together()) {
+      const auto size = static_cast<Eigen::Index>(residuals.per_shot());
+      const Eigen::Index first = number.shot * size;
+      const auto shot = static_cast<std::size_t>(number.shot);
+      columns.col(column).setZero();
+      columns.col(column).segment(first, size) =
+          (residuals.evaluate_shot(composition, moved, shot, worker) -
+           at_theta.segment(first, size)) /
+          step;
+    } else {
+      columns.col(column) = (residuals.evaluate(composition, moved, worker) - at_theta) / step;
+    }
+  });
+  return columns;
+}
+
+ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
+                   const Workers& executor, std::vector<double> start,
+                   const Eigen::MatrixXd* chord) {
+  FitSteps steps(composition, residuals, executor, std::move(start));
+  if (steps.nothing_free()) {
+    return steps.done(true);
+  }
+  double damping = 0.0;
+  bool fresh = false;
+  bool short_before = false;  ///< the last step gained as little
+  bool converged = false;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    if (chord != nullptr && !fresh) {
+      steps.borrow(*chord);
+    } else {
+      steps.derive();
+      fresh = true;
+    }
+    bool better = false;
+    double gain = 0.0;
+    for (int attempt = 0; attempt < 12 && !better; ++attempt) {
+      FitSteps::Step step = steps.tried(damping);
+      gain = step.gain;
+      better = step.better();
+      if (better) {
+        steps.take(std::move(step));
+        damping = damping > 1e-6 ? damping / 10.0 : 0.0;
+      } else {
+        damping = std::max(1e-4, damping * 10.0);
+      }
+    }
+    const double promised = steps.promised();
+    if (chord != nullptr && !fresh) {
+      // The borrowed derivatives serve as long as what they promise comes true.
+      if (better && gain < kSettled) {
+        converged = true;
+        break;
+      }
+      fresh = !better || gain < 0.5 * promised;
+      continue;
+    }
+    // A short step gains little wherever it is, so that where a full one would gain more the next,
+    // longer one decides.
+    const bool at_rest = gain < kSettled && (damping == 0.0 || promised < kSettled || short_before);
+    short_before = gain < kSettled;
+    if (!better || at_rest) {
+      converged = better || damping > 1e3;
+      break;
+    }
+  }
+  return steps.done(converged);
+}
+
+ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals,
+                        const Workers& executor, std::vector<double> start,
+                        const Eigen::MatrixXd* chord, Settle settle) {
+  FitSteps steps(composition, residuals, executor, std::move(start));
+  if (steps.nothing_free()) {
+    return steps.done(true);
+  }
+  const bool roughly = settle == Settle::roughly;
+  bool fresh = chord == nullptr;  // derivatives made, and no step taken since
+  if (fresh) {
+    steps.derive();
+  } else {
+    steps.borrow(*chord);
+  }
+  double damping = 0.0;
+  int refused = 0;
+  bool converged = false;
+  constexpr int kMostSteps = 40;
+  constexpr int kMostRefused = 4;
+  for (int n = 0; n < kMostSteps && !converged; ++n) {
+    const double promised = steps.promised();
+    if (roughly ? promised < kRoughly : fresh && promised < kNear) {
+      converged = true;
+      break;
+    }
+    FitSteps::Step step = steps.tried(damping);
+    if (std::isfinite(step.chi2) && step.gain > 0.0) {
+      // What is learned serves as long as what it promises comes true.
+      const bool serves = step.gain > std::max(kNear, 0.1 * promised);
+      converged = fresh && step.gain < kNear;
+      if (serves) {
+        steps.learn(step);
+      }
+      steps.take(std::move(step));
+      damping = damping > 1e-2 ? damping / 10.0 : 0.0;
+      refused = 0;
+      if (serves) {
+        steps.go_on();
+      } else if (!converged) {
+        steps.derive();
+      }
+      fresh = !serves;
+    } else if (fresh) {
+      // Short steps gain less than the residuals' own roughness.
+      damping = std::max(1e-2, damping * 10.0);
+      converged = ++refused > kMostRefused;
+    } else {
+      steps.derive();
+      fresh = true;
+      damping = 0.0;
+    }
+  }
+  return steps.done(converged);
+}
+
+namespace {
+
+/// Half-height crossing of a gauge's first pulse [s from the first sample]; negative for none.
+double arrival_s(const CampaignShot& shot, std::size_t gauge, double period_s) {
+  const auto pulse = first_pulse(shot.strain[gauge], 1.0 / period_s);
+  return pulse ? static_cast<double>(pulse->rise) * period_s : -1.0;
+}
+
+/// Wave speed on the input bar from the first gauge to the last, 0 where it cannot be told.
+double measured_speed(const Campaign& campaign) {
+  const std::size_t first = campaign.reference;
+  std::size_t last = first;
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    const Gauge& gauge = campaign.bench.gauges[j];
+    if (gauge.bar != "output" && gauge.position_m > campaign.bench.gauges[last].position_m) {
+      last = j;
+    }
+  }
+  if (last == first) {
+    return 0.0;
+  }
+  const double distance_m =
+      campaign.bench.gauges[last].position_m - campaign.bench.gauges[first].position_m;
+  std::vector<double> speeds;
+  for (const CampaignShot& shot : campaign.shots) {
+    const double a = arrival_s(shot, first, campaign.period_s);
+    const double b = arrival_s(shot, last, campaign.period_s);
+    if (a >= 0.0 && b > a) {
+      speeds.push_back(distance_m / (b - a));
+    }
+  }
+  if (speeds.empty()) {
+    return 0.0;
+  }
+  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
+                   speeds.end());
+  return speeds[speeds.size() / 2];
+}
+
+double chi2_of(const Model& model, const Campaign& campaign, WhiteResiduals& residuals,
+               std::size_t worker) {
+  const Composition composition(model, campaign);
+  return residuals.evaluate(composition, composition.start(), worker).squaredNorm();
+}
+
+/// Scales three moduli together by powers of `ratio` around where they are; keeps the best.
+void search_moduli(Model& model, const std::string& id, double ratio, int reach,
+                   const Campaign& campaign, WhiteResiduals& residuals, std::size_t worker) {
+  const EffectUse start = *model.find(id);
+  double best = std::numeric_limits<double>::infinity();
+  EffectUse kept = start;
+  for (int i = -reach; i <= reach; ++i) {
+    EffectUse* use = model.find(id);
+    for (std::size_t p = 0; p < 3; ++p) {
+      use->values[p].value = start.values[p].value * std::pow(ratio, i);
+    }
+    const double chi2 = chi2_of(model, campaign, residuals, worker);
+    if (chi2 < best) {
+      best = chi2;
+      kept = *use;
+    }
+  }
+  *model.find(id) = kept;
+}
+
+bool all_free(const EffectUse& use) {
+  return std::all_of(use.values.begin(), use.values.end(),
+                     [](const ModelValue& value) { return value.free; });
+}
+
+}  // namespace
+
+void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
+                  std::size_t worker) {
+  EffectUse* bar = model.find("three-element-bar");
+  if (bar != nullptr && all_free(*bar) && campaign.bench.kind == BenchKind::bar) {
+    const double speed = measured_speed(campaign);
+    if (speed > 0.0) {
+      const double rho = campaign.bench.input.density_kg_m3;
+      // A pulse travels between the relaxed and the instantaneous speed.
+      constexpr double kAboveMeasured = 1.08;
+      const double scale = kAboveMeasured * rho * speed * speed / bar->values[0].value;
+      if (std::abs(scale - 1.0) > 0.1) {
+        for (ModelValue& value : bar->values) {
+          value.value *= scale;
+        }
+      }
+    }
+    search_moduli(model, "three-element-bar", 1.03, 5, campaign, residuals, worker);
+  }
+  EffectUse* specimen = model.find("three-element-specimen");
+  if (specimen != nullptr && all_free(*specimen)) {
+    search_moduli(model, "three-element-specimen", 2.0, 14, campaign, residuals, worker);
+  }
+}
+
+Model fitted(const Model& model, const Composition& composition, const ModelFit& fit) {
+  Model out = model;
+  for (std::size_t u = 0; u < composition.uses().size(); ++u) {
+    EffectUse use = composition.uses()[u];
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      double sum = 0.0;
+      double square = 0.0;
+      double variance = 0.0;
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < fit.theta.size(); ++i) {
+        const FreeNumber& number = composition.numbers()[i];
+        if (number.use == u && number.parameter == p) {
+          const double value = number.value_at(fit.theta[i]);
+          sum += value;
+          square += value * value;
+          const auto at = static_cast<Eigen::Index>(i);
+          const double theta_variance =
+              fit.covariance(at, at) + (fit.doubt.size() > 0 ? fit.doubt(at, at) : 0.0);
+          const double sd = number.sd_at(fit.theta[i], std::sqrt(theta_variance));
+          variance += sd * sd;
+          ++count;
+        }
+      }
+      if (count > 0) {
+        const auto n = static_cast<double>(count);
+        use.values[p].value =
+            use.effect->about().each_gauge && count > 1 ? std::sqrt(square / n) : sum / n;
+        use.values[p].sd = std::sqrt(variance) / n;
+      }
+    }
+    if (EffectUse* own = out.find(use.id())) {
+      *own = use;
+    } else {
+      out.effects.push_back(use);
+    }
+  }
+  return out;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,154 @@
+#include "processing/criticism/fitting/fit_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "processing/algebra/algebra.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// How far theta is from the middle of the priors, in scales.
+Eigen::VectorXd from_priors(const Composition& composition, const std::vector<double>& theta) {
+  Eigen::VectorXd off(static_cast<Eigen::Index>(theta.size()));
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    off[static_cast<Eigen::Index>(i)] = theta[i] - number.theta_of(number.prior_mean);
+  }
+  return off;
+}
+
+double penalty_of(const Composition& composition, const Eigen::MatrixXd& precision,
+                  const std::vector<double>& theta) {
+  const Eigen::VectorXd off = from_priors(composition, theta);
+  return off.dot(precision * off);
+}
+
+void keep_inside(const Composition& composition, std::vector<double>& theta) {
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    theta[i] = number.inside(theta[i]);
+  }
+}
+
+bool at_bound(const FreeNumber& number, double theta, double downhill) {
+  const double value = number.value_at(theta);
+  const double reach = 1e-9 * (number.upper - number.lower);
+  return (value <= number.lower + reach && downhill < 0.0) ||
+         (value >= number.upper - reach && downhill > 0.0);
+}
+
+}  // namespace
+
+FitSteps::FitSteps(const Composition& composition, ShotResiduals& residuals,
+                   const Workers& executor, std::vector<double> start)
+    : composition_(composition),
+      residuals_(residuals),
+      executor_(executor),
+      precision_(composition.prior_precision()) {
+  fit_.theta = start.empty() ? composition.start() : std::move(start);
+  keep_inside(composition, fit_.theta);
+  fit_.residual = residuals.evaluate_on(executor, composition, fit_.theta);
+  fit_.chi2 = fit_.residual.squaredNorm();
+  fit_.penalty = penalty_of(composition, precision_, fit_.theta);
+}
+
+bool FitSteps::Step::better() const {
+  return std::isfinite(chi2) && gain > -1e-6;
+}
+
+void FitSteps::derive() {
+  std::vector<std::size_t> all(fit_.theta.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  fit_.jacobian = derivatives(composition_, residuals_, fit_.theta, fit_.residual, all, executor_);
+  linearise();
+}
+
+void FitSteps::borrow(const Eigen::MatrixXd& jacobian) {
+  fit_.jacobian = jacobian;
+  linearise();
+}
+
+void FitSteps::learn(const Step& step) {
+  Eigen::VectorXd moved(static_cast<Eigen::Index>(step.theta.size()));
+  for (std::size_t i = 0; i < step.theta.size(); ++i) {
+    moved[static_cast<Eigen::Index>(i)] = step.theta[i] - fit_.theta[i];
+  }
+  const Eigen::VectorXd weighted = fit_.information.diagonal().cwiseProduct(moved);
+  const double length = weighted.dot(moved);
+  if (length > 0.0 && step.residual.allFinite()) {
+    const Eigen::VectorXd unforeseen = step.residual - fit_.residual - fit_.jacobian * moved;
+    fit_.jacobian += unforeseen * (weighted / length).transpose();
+  }
+}
+
+void FitSteps::linearise() {
+  const auto count = static_cast<Eigen::Index>(fit_.theta.size());
+  fit_.information = fit_.jacobian.transpose() * fit_.jacobian;
+  downhill_ = -fit_.jacobian.transpose() * fit_.residual;
+  fit_.information += precision_;
+  downhill_ -= precision_ * from_priors(composition_, fit_.theta);
+  // A number that is held by its bound takes no part in this step.
+  information_ = fit_.information;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (at_bound(composition_.numbers()[at], fit_.theta[at], downhill_[i])) {
+      downhill_[i] = 0.0;
+      information_.row(i).setZero();
+      information_.col(i).setZero();
+      information_(i, i) = 1.0;
+    }
+  }
+  promised_ = downhill_.dot(solve_symmetric(information_, downhill_));
+}
+
+FitSteps::Step FitSteps::tried(double damping) {
+  const auto count = static_cast<Eigen::Index>(fit_.theta.size());
+  Eigen::MatrixXd damped = information_;
+  damped.diagonal() += damping * information_.diagonal() +
+                       Eigen::VectorXd::Constant(count, 1e-12 * information_.diagonal().maxCoeff());
+  const Eigen::VectorXd move = solve_symmetric(damped, downhill_);
+  Step step;
+  step.theta = fit_.theta;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    step.theta[static_cast<std::size_t>(i)] += move[i];
+  }
+  keep_inside(composition_, step.theta);
+  step.residual = residuals_.evaluate_on(executor_, composition_, step.theta);
+  step.chi2 = step.residual.squaredNorm();
+  step.penalty = penalty_of(composition_, precision_, step.theta);
+  step.gain = fit_.objective() - step.chi2 - step.penalty;
+  return step;
+}
+
+void FitSteps::take(Step step) {
+  fit_.theta = std::move(step.theta);
+  fit_.residual = std::move(step.residual);
+  fit_.chi2 = step.chi2;
+  fit_.penalty = step.penalty;
+}
+
+ModelFit FitSteps::done(bool converged) {
+  fit_.converged = converged;
+  const auto count = static_cast<Eigen::Index>(fit_.theta.size());
+  if (count == 0) {
+    // Nothing is free: the model is what it is.
+    fit_.jacobian.resize(fit_.residual.size(), 0);
+    fit_.covariance.resize(0, 0);
+    return std::move(fit_);
+  }
+  // Numbers that neither data nor prior hold are left out of the inverse.
+  SymmetricEigen solver(fit_.information);
+  Eigen::VectorXd inverse = solver.eigenvalues();
+  const double least = 1e-13 * inverse.maxCoeff();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    inverse[i] = 1.0 / std::max(inverse[i], least);
+  }
+  fit_.covariance =
+      solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  return std::move(fit_);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,200 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "processing/criticism/fitting/composition.hpp"
+#include "processing/criticism/fitting/shot_residuals.hpp"
+#include "processing/criticism/noise/gauge_noise.hpp"
+#include "processing/criticism/records/campaign.hpp"
+#include "processing/criticism/records/judged_band.hpp"
+#include "processing/models/transfers.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+/// Residuals before they are whitened, over the judged window at its own rate, filtered beyond the
+/// judged band.
+struct PlainResiduals {
+  std::vector<std::vector<std::vector<double>>> records;  ///< by shot and other gauge
+  /// What they hold of the reference gauge's record, by other gauge, from lag -before on, filtered
+  /// alike; then, where that gauge is long, of the others' own, and the filter alone.
+  std::vector<std::vector<double>> responses;
+  std::size_t before = 0;
+};
+
+/// By step of a specimen's histories (`SpecimenScene::further_strain`).
+struct SpecimenHistories {
+  std::vector<double> stress_Pa;
+  std::vector<double> strain;
+};
+
+/// Whitened residuals of a campaign under compositions of effects.
+///
+/// Each shot's source is free at all times and eliminated exactly: with H_j a gauge's reading of a
+/// unit source and y its record,
+///     r_j(t) = y_j - (H_j / H_ref) y_ref,     j != reference,
+/// (with means over the reference gauge's length m: m y_j - (H_j m / H_ref) y_ref)
+/// is causal, so that a record cut while waves ring loses nothing, and under the true model noise
+/// alone, of covariance G P G^H at each frequency (P the gauges' noise, G = [-H_j/H_ref, 1]).
+/// Whitened with it, their sum of squares is that of all records with the source at its best:
+/// the covariance follows the parameters, or what is noise in y_ref would pull at them.
+///
+/// The covariance is that of a shot of mean amplitude and temperature.
+///
+/// Work space is per worker; evaluations in different workers may run at once.
+class WhiteResiduals : public ShotResiduals {
+ public:
+  /// @param band_limit_Hz  0: where the pulses fall below the noise, at most where surface gauges
+  /// go blind
+  WhiteResiduals(const Campaign& campaign, double band_limit_Hz, std::size_t workers);
+  ~WhiteResiduals() override;
+
+  /// Takes from this composition how residuals are shared out among the gauges, and what they say
+  /// of each gauge's noise.
+  void freeze(const Composition& composition, const std::vector<double>& theta);
+
+  /// Adds to what is known of each gauge's noise what a coarse converter's steps leave of records
+  /// like those foretold when `freeze` was called.
+  /// @return whether any gauge's converter is coarse
+  bool know_steps();
+
+  /// Takes the quiet parts at their word about noise again; `freeze` is to follow.
+  void believe_quiet();
+
+  /// A gauge's record less what is known of its noise since `freeze`.
+  [[nodiscard]] std::vector<double> signal(std::size_t shot, std::size_t gauge);
+
+  /// What a specimen goes through under a shot's source, as all gauges together have it: errors of
+  /// these histories are independent of the residuals. @param theta  as frozen
+  [[nodiscard]] SpecimenHistories specimen_histories(const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t shot);
+
+  /// Corrects what is known of each gauge's noise by what the residuals of a fit show of it: at
+  /// each frequency the part that does not follow the shots' sources cannot be an unchanging error
+  /// of the model. How it is shared out matters as much as how much it is: with a wrong share for
+  /// the reference, noise in the source would pull at the parameters. Its power over that measured
+  /// before the pulses is taken as s0 + s1/f + s2/f^2 for each gauge. One shot cannot tell its
+  /// noise from what a model lacks: its residuals are taken for noise up to four times that power.
+  void calibrate(const Composition& composition, const std::vector<double>& theta,
+                 NoiseShown shown = NoiseShown::all);
+
+  /// All shots' residuals, shot by shot, of unit variance under the true model.
+  [[nodiscard]] Eigen::VectorXd evaluate(const Composition& composition,
+                                         const std::vector<double>& theta,
+                                         std::size_t worker = 0) override;
+  /// Those of one shot.
+  [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
+                                              const std::vector<double>& theta, std::size_t shot,
+                                              std::size_t worker) override;
+
+  /// Whitened as they would be under another composition.
+  [[nodiscard]] Eigen::VectorXd evaluate_in_noise_of(const Composition& known,
+                                                     const std::vector<double>& known_theta,
+                                                     const Composition& composition,
+                                                     const std::vector<double>& theta,
+                                                     std::size_t worker);
+  /// The residuals themselves. @param theta  as frozen
+  [[nodiscard]] PlainResiduals plain(const Composition& composition,
+                                     const std::vector<double>& theta);
+
+  [[nodiscard]] std::size_t size() const { return per_shot() * campaign_.shots.size(); }
+  [[nodiscard]] std::size_t per_shot() const override;
+  [[nodiscard]] const JudgedBand& band() const { return band_; }
+  [[nodiscard]] const Campaign& campaign() const { return campaign_; }
+
+  /// Gauges in the order of a residual's components: all but the reference.
+  [[nodiscard]] const std::vector<std::size_t>& others() const { return others_; }
+  /// Index within a shot's residuals of the real part at a judged bin; the imaginary part follows.
+  [[nodiscard]] std::size_t index(std::size_t bin, std::size_t other) const {
+    return 2 * (bin * others_.size() + other);
+  }
+  [[nodiscard]] const GaugeNoise& noise() const { return noise_; }
+
+  /// What whitened residuals of one shot are at every gauge, the reference included: the best
+  /// estimate of each gauge's deviation from a wave common to all, in strain.
+  /// @return by gauge, over the judged window at the decimated rate
+  [[nodiscard]] std::vector<std::vector<double>> deviations(std::span<const double> white) const;
+  /// Whitened residuals of one shot at a bin, times this, are the spectrum of all gauges'
+  /// deviations there: gauges x others.
+  [[nodiscard]] const Eigen::MatrixXcd& spread(std::size_t bin) const { return spread_[bin]; }
+  /// The judged window of one gauge's record, filtered and decimated alike.
+  [[nodiscard]] const std::vector<double>& judged_record(std::size_t shot,
+                                                         std::size_t gauge) const {
+    return judged_records_[shot][gauge];
+  }
+  /// Energy of all records over that of their noise, in the units of whitened residuals.
+  [[nodiscard]] double signal_energy() const { return signal_energy_; }
+  [[nodiscard]] double judged_period_s() const;
+  [[nodiscard]] double judged_start_s(std::size_t shot) const;
+  /// Spectrum over the judged bins of a shot's source at the reference gauge, as all gauges
+  /// together have it: unlike the record there, its error is independent of the residuals.
+  [[nodiscard]] std::vector<Complex> source_spectrum(std::size_t shot, const Eigen::VectorXd& white,
+                                                     std::size_t worker = 0);
+
+ private:
+  struct Workspace;
+  using Spectrum = std::vector<Complex>;
+
+  /// Each gauge's reading over the reference's, along the damped path. A reference gauge as long
+  /// as a wave is blind to it, and nothing can be divided by what it reads of it: the others'
+  /// records take the mean over its length instead.
+  struct Ratios : Transfers {
+    Spectrum mean;  ///< that all others take; empty: the reference is a point
+
+    [[nodiscard]] Complex mean_at(std::size_t k) const { return mean.empty() ? 1.0 : mean[k]; }
+  };
+  [[nodiscard]] Ratios ratios_of(const Scene& scene) const;
+  void know_waves(Workspace& work, const Composition& composition,
+                  std::vector<AppliedEffect> effects, std::size_t shot) const;
+  [[nodiscard]] Ratios usual_ratios(Workspace& work, const Composition& composition,
+                                    const std::vector<AppliedEffect>& effects) const;
+  void know_noise(Workspace& work, const Composition& composition,
+                  const std::vector<AppliedEffect>& effects) const;
+  void carry_noise(Workspace& work, const Ratios& ratios) const;
+  void put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
+                    Eigen::MatrixXcd& whitener) const;
+  void find_residuals(Workspace& work, const Composition& composition,
+                      const std::vector<double>& theta, std::size_t shot) const;
+  void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
+                      std::size_t first, std::size_t end, std::size_t worker, double* out);
+  void whiten_shots(const Composition& composition, const std::vector<double>& theta,
+                    std::size_t first, std::size_t end, std::size_t worker, double* out);
+  void prepare_spectra();
+  [[nodiscard]] std::vector<double> judged_part(Workspace& work, const Spectrum& damped) const;
+  void measure_signal();
+  void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
+  void smooth(Workspace& work, std::vector<double>& record) const;
+  void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
+                     std::size_t shot) const;
+  [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
+  void put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const;
+  void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
+  void forget_whitener();
+  [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
+                                        const std::vector<std::vector<Spectrum>>& noise,
+                                        const std::vector<Spectrum>& sources) const;
+  void plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const;
+
+  const Campaign& campaign_;
+  JudgedBand band_;
+  GaugeNoise noise_;
+  std::vector<std::size_t> others_;
+  std::vector<Complex> damped_path_;
+  std::vector<Complex> plain_path_;
+  std::vector<double> filter_;          ///< at the judged bins
+  std::vector<Complex> damped_filter_;  ///< at the carried bins
+  /// The same, so much later that what it smears before a response's first sample is there too.
+  std::vector<Complex> filter_of_response_;
+  std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
+  ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
+  std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
+  Eigen::VectorXd frozen_;                ///< whitened residuals as frozen; none before
+  std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
+  double signal_energy_ = 0.0;
+  std::vector<std::unique_ptr<Workspace>> work_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,84 @@
+#include "processing/criticism/fitting/study.hpp"
+
+#include "processing/criticism/fitting/branch_order.hpp"
+#include "processing/criticism/fitting/effect_starts.hpp"
+
+namespace kolsky {
+
+Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
+    : campaign_(campaign),
+      executor_(std::move(executor)),
+      residuals_(campaign, band_limit_Hz, executor_.workers) {}
+
+Model Study::begun(Model model) {
+  start_moduli(model, campaign_, residuals_);
+  return at_best_starts(std::move(model), campaign_,
+                        [&](const Composition& composition, bool first) {
+                          if (first) {
+                            residuals_.freeze(composition, composition.start());
+                          }
+                          return fit_model(composition, residuals_, executor_).objective();
+                        });
+}
+
+Studied Study::fit(const Model& model, LearnNoise learn) {
+  const Model started = begun(model);
+  Composition composition(started, campaign_);
+  residuals_.freeze(composition, composition.start());
+  ModelFit fit = fit_model(composition, residuals_, executor_);
+  residuals_.freeze(composition, fit.theta);
+  fit = fit_model(composition, residuals_, executor_, fit.theta);
+  if (learn == LearnNoise::yes) {
+    residuals_.calibrate(composition, fit.theta);
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
+  if (put_branches_in_order(composition, fit.theta)) {
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
+  const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
+  Model after = fitted(started, composition, fit);
+  return {std::move(after), std::move(composition), std::move(fit), misfit};
+}
+
+Studied Study::refit(const Studied& studied) {
+  residuals_.freeze(studied.composition, studied.fit.theta);
+  ModelFit fit = fit_model(studied.composition, residuals_, executor_, studied.fit.theta);
+  if (put_branches_in_order(studied.composition, fit.theta)) {
+    fit = fit_model(studied.composition, residuals_, executor_, fit.theta);
+  }
+  const Misfit misfit =
+      misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(studied.composition));
+  Model after = fitted(studied.model, studied.composition, fit);
+  return {std::move(after), studied.composition, std::move(fit), misfit};
+}
+
+Studied Study::as_it_is(const Model& model) {
+  Composition composition(model, campaign_);
+  ModelFit fit;
+  fit.theta = composition.start();
+  fit.converged = true;
+  return beside_quiet({model, std::move(composition), std::move(fit), {}});
+}
+
+Studied Study::beside_quiet(Studied studied) {
+  // Quiet stretches tell all of white noise and little of slow noise.
+  constexpr double kWhite = 0.98;
+  const Composition& composition = studied.composition;
+  ModelFit& fit = studied.fit;
+  residuals_.believe_quiet();
+  residuals_.freeze(composition, fit.theta);
+  if (campaign_.shots.size() > 1 && residuals_.noise().flatness() < kWhite) {
+    residuals_.calibrate(composition, fit.theta, NoiseShown::what_quiet_hides);
+  }
+  if (residuals_.know_steps()) {
+    residuals_.freeze(composition, fit.theta);
+  }
+  fit.residual = residuals_.evaluate(composition, fit.theta);
+  fit.chi2 = fit.residual.squaredNorm();
+  const double freedom = fit.covariance.size() > 0 ? fit.degrees_of_freedom(composition)
+                                                   : static_cast<double>(fit.residual.size());
+  studied.misfit = misfit_of(residuals_, fit.residual, freedom);
+  return studied;
+}
+
+}  // namespace kolsky

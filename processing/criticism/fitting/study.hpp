@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/fitting/fit.hpp"
+#include "processing/criticism/fitting/misfit.hpp"
+
+namespace kolsky {
+
+/// A model fitted to a campaign.
+struct Studied {
+  Model model;  ///< with values and deviations, the bench's known unknowns among its effects
+  Composition composition;
+  ModelFit fit;
+  Misfit misfit;
+};
+
+/// Whether a fit's residuals say of the noise what the quiet before the pulses does not.
+enum class LearnNoise { yes, no };
+
+/// A campaign under study: its records ready, models fitted and compared one after the other.
+class Study {
+ public:
+  /// @param campaign  outlives this
+  /// @param band_limit_Hz  0: where the pulses fall below the noise
+  Study(const Campaign& campaign, double band_limit_Hz, Workers executor);
+
+  /// Fits from wherever the model's moduli are. What was just added begins at the best of its
+  /// auxiliary parameters' starts or of a few sizes, and what is free to choose among a few is held
+  /// at the best from then on.
+  [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
+  /// The same from where it is, with the noise as known by now.
+  [[nodiscard]] Studied refit(const Studied& studied);
+  /// The model as it is, nothing moved, its misfit as `beside_quiet` has it.
+  [[nodiscard]] Studied as_it_is(const Model& model);
+  /// What was fitted, its misfit beside the noise that the quiet parts show, slow noise corrected
+  /// as far as they are too short for it. A fit counts as noise what does not repeat from shot to
+  /// shot, a pulse that the record cuts among it: by that measure a model that lacks an end's
+  /// reflection fitted as well as one that has it.
+  [[nodiscard]] Studied beside_quiet(Studied studied);
+
+  [[nodiscard]] WhiteResiduals& residuals() { return residuals_; }
+  [[nodiscard]] const Campaign& campaign() const { return campaign_; }
+  [[nodiscard]] const Workers& executor() const { return executor_; }
+
+ private:
+  [[nodiscard]] Model begun(Model model);
+
+  const Campaign& campaign_;
+  Workers executor_;
+  WhiteResiduals residuals_;
+};
+
+}  // namespace kolsky

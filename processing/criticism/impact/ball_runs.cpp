@@ -1,0 +1,84 @@
+#include "processing/criticism/impact/ball_runs.hpp"
+
+#include <algorithm>
+
+#include "processing/impact/bench_impact.hpp"
+#include "processing/impact/impact.hpp"
+
+namespace kolsky {
+
+namespace {
+
+impact::BallMaterial material_of(const BallLayer& layer, int reading, bool cauchy) {
+  impact::BallMaterial material;
+  material.material.density_kg_m3 = {layer.density_kg_m3, 0.0};
+  material.material.poisson_ratio = {layer.poisson_ratio, 0.0};
+  material.material.E1_Pa = {layer.solid.E1_Pa, 0.0};
+  material.material.E2_Pa = {layer.solid.E2_Pa, 0.0};
+  material.material.eta2_Pa_s = {layer.solid.eta2_Pa_s, 0.0};
+  material.reading = static_cast<impact::Reading>(reading);
+  material.nonlinearity = layer.nonlinearity;
+  material.law = cauchy ? impact::FiniteStrain::cauchy : impact::FiniteStrain::kirchhoff;
+  if (!layer.solid.relaxations.empty()) {
+    material.second = {layer.solid.relaxations[0].D_per_Pa, layer.solid.relaxations[0].tau_s};
+  }
+  return material;
+}
+
+void append(const BallLayer& layer, std::vector<double>& key) {
+  key.insert(key.end(), {layer.solid.E1_Pa, layer.solid.E2_Pa, layer.solid.eta2_Pa_s,
+                         layer.density_kg_m3, layer.poisson_ratio, layer.nonlinearity});
+  // A relaxation of no compliance is none, whatever its time.
+  double D_per_Pa = 0.0;
+  double tau_s = 0.0;
+  for (const Solid::Relaxation& relaxation : layer.solid.relaxations) {
+    D_per_Pa = relaxation.D_per_Pa;
+    tau_s = D_per_Pa > 0.0 ? relaxation.tau_s : 0.0;
+  }
+  key.insert(key.end(), {D_per_Pa, tau_s});
+}
+
+}  // namespace
+
+std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed_m_per_s,
+                                             std::size_t elements, bool cauchy) {
+  std::vector<double> key{speed_m_per_s,      static_cast<double>(elements),
+                          cauchy ? 1.0 : 0.0, static_cast<double>(ball.reading),
+                          ball.friction,      ball.offset_m,
+                          ball.sabot_mass_kg};
+  append(ball.core, key);
+  append(ball.cover, key);
+  {
+    const std::scoped_lock held(lock_);
+    if (const auto found = known_.find(key); found != known_.end()) {
+      return found->second;
+    }
+  }
+  impact::ImpactModel model = impact::impact_on(
+      bench_, material_of(ball.core, ball.reading, cauchy),
+      material_of(ball.cover, ball.reading, cauchy), impact::TargetKind::dashpot, speed_m_per_s);
+  model.friction = ball.friction;
+  model.offset_m = ball.offset_m;
+  model.sabot_mass_kg = ball.sabot_mass_kg;
+  model.elements = elements;
+  model.output_interval_s = kRunStep_s;
+  impact::ImpactHistory history = impact::simulate(model);
+  auto own = std::make_shared<BallRun>();
+  own->force_N = std::move(history.force_N);
+  own->rebound_m_per_s = history.rebound_speed_m_per_s;
+  own->falling_share = *std::ranges::max_element(history.falling_share);
+  const std::scoped_lock held(lock_);
+  return known_.emplace(std::move(key), std::move(own)).first->second;
+}
+
+BallRun sum_of(const BallRun& a, double share, const BallRun& b) {
+  BallRun sum = a;
+  sum.force_N.resize(std::max(a.force_N.size(), b.force_N.size()), 0.0);
+  for (std::size_t n = 0; n < b.force_N.size(); ++n) {
+    sum.force_N[n] += share * b.force_N[n];
+  }
+  sum.rebound_m_per_s += share * b.rebound_m_per_s;
+  return sum;
+}
+
+}  // namespace kolsky

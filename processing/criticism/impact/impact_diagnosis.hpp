@@ -1,0 +1,21 @@
+#pragma once
+
+#include "processing/criticism/impact/impact_study.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
+
+namespace kolsky {
+
+/// Finds what a model of impacts lacks, as diagnose() does for bars, with two differences. What the
+/// solver itself may be off by (mesh, contact, finite-strain law) is never claimed as an effect: it
+/// is part of the residuals' covariance or a known unknown. And certified is only what foretells
+/// shots and speeds that the fit did not see, with one strength at all speeds. The readings of the
+/// law in three dimensions are rivals of whatever is found.
+[[nodiscard]] Diagnosis diagnose_impacts(ImpactStudy& study, const Model& model,
+                                         const DiagnosisOptions& options);
+
+/// What the records hold of each material's three numbers, in a line each: how many combinations
+/// are known to a tenth, and the one that is known least.
+[[nodiscard]] std::vector<std::string> what_records_hold(ImpactStudy& study,
+                                                         const Studied& studied);
+
+}  // namespace kolsky

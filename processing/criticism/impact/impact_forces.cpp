@@ -1,0 +1,88 @@
+#include "processing/criticism/impact/impact_residuals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// A ball's force grows by the power 1.2 of its speed, and what its strain adds by about 2.
+constexpr double kChangeBySpeed = 1.5;
+
+}  // namespace
+
+BallRun ImpactResiduals::force(const BallScene& ball, std::size_t group, bool high) {
+  const SpeedGroup& own = records_.groups[group];
+  const double speed = high ? own.high_m_per_s : own.low_m_per_s;
+  const Anchor& anchor = anchors_[group][high ? 1 : 0];
+  const BallRun coarse = *runs_->run(ball, own.speed_m_per_s, meshes_.coarse);
+  const double growth = std::pow(speed / own.speed_m_per_s, kChangeBySpeed);
+  const BallRun moved = sum_of(anchor.fine, growth, sum_of(coarse, -1.0, anchor.coarse));
+  return sum_of(moved, ball.cauchy_share, anchor.law);
+}
+
+void ImpactResiduals::anchor(const Composition& composition, const std::vector<double>& theta,
+                             AnchorBy by) {
+  BallScene ball;
+  static_cast<void>(transfers(composition, theta, 0, ball));
+  const bool finest = by == AnchorBy::fine;
+  struct Task {
+    double speed_m_per_s;
+    std::size_t elements;
+    bool cauchy;
+  };
+  std::vector<Task> tasks;
+  for (const SpeedGroup& group : records_.groups) {
+    for (const double speed : {group.low_m_per_s, group.high_m_per_s}) {
+      if (finest) {
+        tasks.push_back({speed, meshes_.fine, false});
+      }
+      tasks.push_back({speed, meshes_.middle, false});
+      tasks.push_back({speed, meshes_.middle, true});
+    }
+    tasks.push_back({group.speed_m_per_s, meshes_.coarse, false});
+  }
+  // The long ones first: no worker is left with one at the end.
+  std::stable_sort(tasks.begin(), tasks.end(),
+                   [](const Task& a, const Task& b) { return a.elements > b.elements; });
+  const auto run = [&](const Task& task) {
+    return runs_->run(ball, task.speed_m_per_s, task.elements, task.cauchy);
+  };
+  executor_.run(tasks.size(),
+                [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
+  anchored_at_ = theta;
+  anchors_.resize(records_.groups.size());
+  for (std::size_t g = 0; g < records_.groups.size(); ++g) {
+    const SpeedGroup& group = records_.groups[g];
+    const BallRun coarse = *run({group.speed_m_per_s, meshes_.coarse, false});
+    for (const bool high : {false, true}) {
+      const double speed = high ? group.high_m_per_s : group.low_m_per_s;
+      const BallRun middle = *run({speed, meshes_.middle, false});
+      Anchor& own = anchors_[g][high ? 1 : 0];
+      if (finest) {
+        own.mesh = sum_of(*run({speed, meshes_.fine, false}), -1.0, middle);
+      }
+      own.fine = sum_of(middle, 1.0, own.mesh);
+      own.coarse = coarse;
+      own.law = sum_of(*run({speed, meshes_.middle, true}), -1.0, middle);
+    }
+  }
+}
+
+void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {
+  solver_share_ = 1.0;
+  anchor(composition, theta, AnchorBy::fine);
+  Foretold foretold = foretell(composition, theta, executor_.first);
+  if (!foretold.sound) {
+    throw InputError("model", "has a ball that the solver refuses", "bring its numbers nearer");
+  }
+  touch_s_ = foretold.arrival_s;
+  records_.judge_from(touch_s_);
+  foretold = foretell(composition, theta, executor_.first);
+  set_whitening(foretold, composition, theta);
+}
+
+}  // namespace kolsky

@@ -1,0 +1,298 @@
+#include "processing/criticism/impact/impact_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/impact/solver_share.hpp"
+#include "processing/criticism/search/own_strengths.hpp"
+#include "processing/criticism/search/search_trials.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr std::size_t kMostRefits = 12;
+
+/// Every strength over its reach would change the records by less than noise does.
+bool beyond_reach(const Candidate& candidate, const Direction& direction) {
+  if (direction.freedom <= 0.0 || !std::isfinite(direction.gain) ||
+      direction.information.rows() == 0) {
+    return true;
+  }
+  const EffectParameter& p = candidate.use.effect->about().parameters.front();
+  const double scale =
+      candidate.use.values[0].prior_sd > 0.0 ? candidate.use.values[0].prior_sd : p.typical;
+  const double information = direction.information.diagonal().maxCoeff();
+  return !(information > 0.0) || scale / std::sqrt(information) > p.upper - p.lower;
+}
+
+/// Where first order says the strengths are.
+std::vector<double> begin_near(const Candidate& candidate, const Direction& direction,
+                               const Studied& base, const Composition& composition) {
+  std::vector<double> start = carry(base.composition, base.fit.theta, composition);
+  Eigen::Index k = 0;
+  for (std::size_t i = 0; i < start.size() && !candidate.frees_prior; ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    const EffectUse& use = composition.uses()[number.use];
+    if (use.id() == candidate.id() &&
+        !use.effect->about().parameters[number.parameter].auxiliary() &&
+        k < direction.step.size()) {
+      start[i] = number.inside(start[i] + direction.step[k++]);
+    }
+  }
+  return start;
+}
+
+/// Derivatives for a refit from those at hand: the model's own and the candidate's at null. Empty
+/// where a number has none there (a time that goes with a strength).
+Eigen::MatrixXd borrowed(const Candidate& candidate, const Direction& direction,
+                         const Studied& base, const Composition& composition) {
+  const std::vector<FreeNumber>& held = base.composition.numbers();
+  std::vector<bool> taken(held.size(), false);
+  Eigen::MatrixXd columns(base.fit.residual.size(),
+                          static_cast<Eigen::Index>(composition.numbers().size()));
+  Eigen::Index added = 0;
+  for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+    const FreeNumber& wanted = composition.numbers()[i];
+    const std::string id = composition.uses()[wanted.use].id();
+    const auto column = static_cast<Eigen::Index>(i);
+    std::size_t k = 0;
+    while (k < held.size() && (taken[k] || held[k].parameter != wanted.parameter ||
+                               base.composition.uses()[held[k].use].id() != id)) {
+      ++k;
+    }
+    if (k < held.size()) {
+      taken[k] = true;
+      columns.col(column) =
+          base.fit.jacobian.col(static_cast<Eigen::Index>(k)) * (wanted.scale / held[k].scale);
+    } else if (id == candidate.id() && added < direction.columns.cols()) {
+      columns.col(column) = direction.columns.col(added++);
+    } else {
+      return {};
+    }
+  }
+  return columns;
+}
+
+/// Whether a candidate is one filed number set free: what it does far from there, first order does
+/// not say (friction acts most where there is little of it).
+bool is_filed_number(const Candidate& candidate) {
+  return candidate.frees_prior && candidate.use.values.size() == 1;
+}
+
+/// From three filed deviations to either side. @return the best of these and `fit`
+ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& composition,
+                   const std::vector<double>& start, ShotResiduals& residuals,
+                   const Workers& executor) {
+  for (const double deviations : {-3.0, 3.0}) {
+    std::vector<double> there = start;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[i];
+      if (composition.uses()[number.use].id() == candidate.id()) {
+        const ModelValue& filed = candidate.use.values.front();
+        there[i] = number.inside(number.theta_of(filed.prior_mean + deviations * filed.prior_sd));
+      }
+    }
+    ModelFit other =
+        fit_by_secants(composition, residuals, executor, there, nullptr, Settle::roughly);
+    if (std::isfinite(other.objective()) && !(fit.objective() <= other.objective())) {
+      fit = std::move(other);
+    }
+  }
+  return fit;
+}
+
+}  // namespace
+
+ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
+    : study_(study),
+      base_(base),
+      candidates_(candidates_for(base, study.campaign())),
+      directions_(candidates_.size()),
+      evidence_(candidates_.size(), 0.0) {
+  study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
+    const Candidate& own = candidates_[i];
+    Direction& direction = directions_[i];
+    direction = direction_of(own, base, study.campaign(), study.residuals(), worker);
+    if (beyond_reach(own, direction)) {
+      direction.freedom = direction.gain = 0.0;
+    } else {
+      evidence_[i] =
+          equivalent_square(log_gain_tail(direction.gain, direction.freedom, own.one_sided));
+    }
+  });
+  trials_ = independent_trials(base, candidates_, directions_);
+}
+
+double ImpactSearch::log_trials() const {
+  return std::log(trials_);
+}
+
+double ImpactSearch::with_search(double log_p) const {
+  return std::min(0.0, log_p + std::log(trials_));
+}
+
+double ImpactSearch::solver_share() const {
+  return largest_solver_share(study_.residuals().whitening(), base_.fit, candidates_, directions_);
+}
+
+/// The best variant of each effect within the margin: first order says little where much is
+/// missing.
+std::vector<std::size_t> ImpactSearch::worth_refitting() const {
+  std::map<std::string, std::size_t> best;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const EffectUse& use = candidates_[i].use;
+    const auto [held, is_new] = best.try_emplace(use.id() + (use.per_shot ? " per shot" : ""), i);
+    if (!is_new && evidence_[i] > evidence_[held->second]) {
+      held->second = i;
+    }
+  }
+  std::vector<std::size_t> ranked;
+  for (const auto& [id, i] : best) {
+    ranked.push_back(i);
+  }
+  std::sort(ranked.begin(), ranked.end(),
+            [&](std::size_t a, std::size_t b) { return evidence_[a] > evidence_[b]; });
+  std::vector<std::size_t> chosen;
+  constexpr double kWorthIt = 4.0;
+  for (const std::size_t i : ranked) {
+    const double first = evidence_[ranked.front()];
+    const double margin = std::max(150.0, 0.6 * first);
+    const bool near = evidence_[i] > kWorthIt && evidence_[i] > first - margin;
+    const bool filed = directions_[i].freedom > 0.0 && is_filed_number(candidates_[i]);
+    if (chosen.size() < kMostRefits && (near || filed)) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor) {
+  const Candidate& candidate = candidates_[index];
+  const Model model = with(base_.model, candidate, true);
+  Composition composition(model, study_.campaign());
+  const Eigen::MatrixXd chord = borrowed(candidate, directions_[index], base_, composition);
+  ModelFit fit = fit_by_secants(composition, study_.residuals(), executor,
+                                begin_near(candidate, directions_[index], base_, composition),
+                                chord.size() > 0 ? &chord : nullptr, Settle::roughly);
+  if (!std::isfinite(fit.objective())) {
+    // First order led to a ball that the solver refuses: begin at null.
+    fit = fit_by_secants(composition, study_.residuals(), executor,
+                         carry(base_.composition, base_.fit.theta, composition), nullptr,
+                         Settle::roughly);
+  }
+  if (is_filed_number(candidate)) {
+    fit = from_afar(candidate, std::move(fit), composition,
+                    carry(base_.composition, base_.fit.theta, composition), study_.residuals(),
+                    executor);
+  }
+  return described(index, model, std::move(composition), std::move(fit));
+}
+
+std::optional<ImpactRefit> ImpactSearch::described(std::size_t index, const Model& model,
+                                                   Composition composition, ModelFit fit) const {
+  if (!std::isfinite(fit.objective()) || !fit.covariance.allFinite()) {
+    return std::nullopt;
+  }
+  const Candidate& candidate = candidates_[index];
+  ImpactRefit out{index, study_.finish(model, std::move(composition), std::move(fit))};
+  if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign(), Claim::fresh)) {
+    return std::nullopt;
+  }
+  const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
+                         out.studied.fit.degrees_of_freedom(out.studied.composition);
+  out.freedom = candidate.frees_prior ? 1.0 : std::max(1.0, std::round(freedom));
+  out.gain = (base_.fit.objective() - out.studied.fit.objective()) /
+             std::max(1.0, out.studied.misfit.noise_scale);
+  return out;
+}
+
+void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
+  const auto best = std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
+    return a.studied.fit.objective() < b.studied.fit.objective();
+  });
+  const auto [chi2, known] = study_.repeated(best->studied.fit.residual);
+  scale_ = std::max(kSolverDoubt, chi2 / known);
+  for (ImpactRefit& refit : list) {
+    const bool one_sided = candidate(refit).one_sided && refit.freedom < 1.5;
+    const double squares = std::max(0.0, refit.gain) / scale_;
+    const double by_chi2 = log_gain_tail(squares, refit.freedom, one_sided);
+    refit.evidence = equivalent_square(by_chi2);
+    refit.log_p = scale_ > kSolverDoubt
+                      ? log_f_tail(squares / refit.freedom, refit.freedom, known) -
+                            (one_sided ? std::log(2.0) : 0.0)
+                      : by_chi2;
+  }
+}
+
+/// One to a worker; fewer than there are workers one after the other, each with all of them.
+void ImpactSearch::share_out(std::size_t count,
+                             const std::function<void(std::size_t, const Workers&)>& work) {
+  if (count < study_.executor().workers) {
+    for (std::size_t i = 0; i < count; ++i) {
+      work(i, study_.executor());
+    }
+    return;
+  }
+  study_.executor().run(count,
+                        [&](std::size_t i, std::size_t worker) { work(i, serial_on(worker)); });
+}
+
+/// Fits to the end what may be claimed, and what may stand beside it.
+void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
+  const auto best = std::max_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
+    return a.evidence < b.evidence;
+  });
+  constexpr double kInSight = -3.0;  ///< ln p: what a rough fit misses moves it by less than a half
+  constexpr double kNearBest = 15.0;  ///< twice what a tie needs
+  if (best == list.end() || with_search(best->log_p) > kInSight) {
+    return;
+  }
+  std::vector<ImpactRefit*> near;
+  for (ImpactRefit& own : list) {
+    if (own.evidence >= best->evidence - kNearBest) {
+      near.push_back(&own);
+    }
+  }
+  share_out(near.size(), [&](std::size_t i, const Workers& executor) {
+    ImpactRefit& own = *near[i];
+    const Studied& rough = own.studied;
+    ModelFit fit = fit_by_secants(rough.composition, study_.residuals(), executor, rough.fit.theta,
+                                  &rough.fit.jacobian);
+    if (auto refined = described(own.candidate, rough.model, rough.composition, std::move(fit))) {
+      own = std::move(*refined);
+    }
+  });
+  rate(list);
+}
+
+std::vector<ImpactRefit> ImpactSearch::refits() {
+  std::vector<std::size_t> chosen = worth_refitting();
+  const auto from_afar_too =
+      std::stable_partition(chosen.begin(), chosen.end(),
+                            [&](std::size_t i) { return !is_filed_number(candidates_[i]); });
+  const auto near = static_cast<std::size_t>(from_afar_too - chosen.begin());
+  std::vector<std::optional<ImpactRefit>> done(chosen.size());
+  share_out(near,
+            [&](std::size_t i, const Workers& executor) { done[i] = refit(chosen[i], executor); });
+  for (std::size_t i = near; i < chosen.size(); ++i) {
+    done[i] = refit(chosen[i], study_.executor());
+  }
+  std::vector<ImpactRefit> list;
+  for (auto& own : done) {
+    if (own) {
+      list.push_back(std::move(*own));
+    }
+  }
+  if (!list.empty()) {
+    rate(list);
+    refine(list);
+  }
+  std::sort(list.begin(), list.end(),
+            [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+  return list;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "processing/criticism/impact/impact_study.hpp"
+#include "processing/criticism/search/candidates.hpp"
+
+namespace kolsky {
+
+/// A candidate refitted in full.
+struct ImpactRefit {
+  std::size_t candidate = 0;
+  Studied studied;
+  double freedom = 1.0;
+  double gain = 0.0;      ///< of the objective, over the noise
+  double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
+  double log_p = 0.0;
+};
+
+/// One search for what a fitted model of impacts lacks.
+///
+/// A gain counts against what the best of the refits leaves of the means per degree of freedom
+/// (`scale`), and against no less than kSolverDoubt: a regression's F test where the calculation is
+/// further off than was allowed for, else a chi2 test.
+class ImpactSearch {
+ public:
+  /// @param base  the model as fitted; outlives this
+  ImpactSearch(ImpactStudy& study, const Studied& base);
+
+  [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// Of the candidates, one each; without freedom where every strength within reach is lost in the
+  /// noise.
+  [[nodiscard]] const std::vector<Direction>& directions() const { return directions_; }
+  [[nodiscard]] const Candidate& candidate(const ImpactRefit& refit) const {
+    return candidates_[refit.candidate];
+  }
+  [[nodiscard]] double log_trials() const;
+  /// ln of the chance that the best of all candidates does as well on noise.
+  [[nodiscard]] double with_search(double log_p) const;
+  /// The candidates worth it, refitted; the best first.
+  [[nodiscard]] std::vector<ImpactRefit> refits();
+  /// Of what is allowed for the calculation's error, what the records leave open
+  /// (solver_share.hpp).
+  [[nodiscard]] double solver_share() const;
+  /// Squares of deviates are over this.
+  [[nodiscard]] double scale() const { return scale_; }
+
+ private:
+  [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
+  [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor);
+  [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
+                                                     Composition composition, ModelFit fit) const;
+  void share_out(std::size_t count, const std::function<void(std::size_t, const Workers&)>& work);
+  void refine(std::vector<ImpactRefit>& list);
+  void rate(std::vector<ImpactRefit>& list);
+
+  ImpactStudy& study_;
+  const Studied& base_;
+  std::vector<Candidate> candidates_;
+  std::vector<Direction> directions_;
+  std::vector<double> evidence_;  ///< at first order, as ImpactRefit's
+  double trials_ = 1.0;
+  double scale_ = kSolverDoubt;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,219 @@
+#include "processing/criticism/impact/impact_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/fitting/effect_starts.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/candidates.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Rows of a group's shots, one below the other.
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& all, const SpeedGroup& group, Eigen::Index size) {
+  Eigen::MatrixXd rows(size * static_cast<Eigen::Index>(group.shots.size()), all.cols());
+  Eigen::Index at = 0;
+  for (const std::size_t n : group.shots) {
+    rows.middleRows(at, size) = all.middleRows(static_cast<Eigen::Index>(n) * size, size);
+    at += size;
+  }
+  return rows;
+}
+
+/// Something filed is some two of its deviations off.
+bool strained(const Composition& composition, const std::vector<double>& theta) {
+  constexpr double kFar = 1.9;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    if (number.prior_sd > 0.0 &&
+        std::abs(number.value_at(theta[i]) - number.prior_mean) > kFar * number.prior_sd) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFit fit) const {
+  const double used =
+      static_cast<double>(fit.residual.size()) - fit.degrees_of_freedom(composition);
+  const Misfit misfit = misfit_of(fit.residual, used);
+  if (fit.covariance.size() > 0) {
+    fit.doubt = residuals_.doubt_of(fit.jacobian, fit.covariance);
+    if (second_minimum_ && second_minimum_->theta.size() == fit.theta.size()) {
+      // Two minima: the covariance of a mixture, each by what its squares count.
+      const double here = 1.0 / (1.0 + std::exp(-0.5 * second_minimum_->behind / kSolverDoubt));
+      const Eigen::VectorXd apart =
+          Eigen::Map<const Eigen::VectorXd>(second_minimum_->theta.data(), fit.doubt.rows()) -
+          Eigen::Map<const Eigen::VectorXd>(fit.theta.data(), fit.doubt.rows());
+      fit.doubt += here * (1.0 - here) * apart * apart.transpose();
+    }
+  }
+  Model after = fitted(model, composition, fit);
+  return {std::move(after), std::move(composition), std::move(fit), misfit};
+}
+
+bool judges_whole(const Model& model) {
+  return model.find("end-reflection") != nullptr;
+}
+
+/// A ball with little friction has a second minimum where friction is filed, with moduli and law in
+/// its place, and coarse forces do not lead from there to the other. So where what is filed is
+/// strained the two are compared, each with forces that were taken where it is (docs/impact.md).
+ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composition& composition,
+                                              ModelFit fit) {
+  const EffectUse* friction = model.find("contact-friction");
+  const bool filed =
+      friction != nullptr && friction->values[0].free && friction->values[0].prior_sd > 0.0;
+  if (!filed || !strained(composition, fit.theta)) {
+    return fit;
+  }
+  const auto again_at = [&](const std::vector<double>& theta, Settle settle) {
+    residuals_.anchor(composition, theta, ImpactResiduals::AnchorBy::middle);
+    return fit_by_secants(composition, residuals_, executor_, theta, nullptr, settle);
+  };
+  constexpr double kFiledDeviations = 3.0;
+  const ModelValue& mu = friction->values[0];
+  std::size_t own = 0;
+  while (composition.uses()[composition.numbers()[own].use].id() != friction->id()) {
+    ++own;
+  }
+  const FreeNumber& number = composition.numbers()[own];
+  std::vector<double> little = composition.start();
+  little[own] = number.inside(number.theta_of(mu.prior_mean - kFiledDeviations * mu.prior_sd));
+  const ModelFit near = again_at(fit.theta, Settle::fully);
+  const ModelFit other = again_at(again_at(little, Settle::roughly).theta, Settle::fully);
+  const double ahead = near.objective() - other.objective();
+  if (!std::isfinite(ahead)) {
+    residuals_.anchor(composition, composition.start());
+    return fit;
+  }
+  constexpr double kElsewhere = 2.0;  ///< of chi2: more than forces are rough by
+  const bool moves = ahead > kElsewhere;
+  const std::vector<double>& left = moves ? near.theta : other.theta;
+  constexpr double kSame = 0.5;  ///< of what is filed: the same minimum, come to from elsewhere
+  if (std::abs(number.value_at(other.theta[own]) - number.value_at(near.theta[own])) >
+      kSame * mu.prior_sd) {
+    second_minimum_ = SecondMinimum{left, number.value_at(left[own]), std::abs(ahead)};
+  }
+  residuals_.anchor(composition, moves ? other.theta : composition.start());
+  return moves ? other : fit;
+}
+
+Studied ImpactStudy::fit(const Model& begun) {
+  const Model model =
+      at_best_starts(begun, campaign_, [&](const Composition& composition, bool first) {
+        if (first) {
+          residuals_.prepare(composition, composition.start());
+        }
+        return fit_by_secants(composition, residuals_, executor_).objective();
+      });
+  Composition composition(model, campaign_);
+  second_minimum_.reset();
+  residuals_.prepare(composition, composition.start());
+  ModelFit fit = or_with_little_friction(model, composition,
+                                         fit_by_secants(composition, residuals_, executor_));
+  residuals_.calibrate(composition, fit.theta);
+  fit = fit_by_secants(composition, residuals_, executor_, fit.theta);
+  return finish(model, std::move(composition), std::move(fit));
+}
+
+Studied ImpactStudy::refit(const Model& model, const Workers& executor, Settle settle) {
+  Composition composition(model, campaign_);
+  ModelFit fit = fit_by_secants(composition, residuals_, executor, {}, nullptr, settle);
+  return finish(model, std::move(composition), std::move(fit));
+}
+
+Studied ImpactStudy::refit_near(const Model& model, const Studied& other) {
+  Composition composition(model, campaign_);
+  ModelFit near = fit_by_secants(composition, residuals_, executor_,
+                                 carry(other.composition, other.fit.theta, composition));
+  ModelFit own = fit_by_secants(composition, residuals_, executor_);
+  const bool better = !(near.objective() <= own.objective());
+  return finish(model, std::move(composition), better ? std::move(own) : std::move(near));
+}
+
+Studied ImpactStudy::settled(const Studied& studied) {
+  residuals_.anchor(studied.composition, studied.fit.theta);
+  ModelFit fit = fit_by_secants(studied.composition, residuals_, executor_, studied.fit.theta);
+  return finish(studied.model, studied.composition, std::move(fit));
+}
+
+Studied ImpactStudy::allowing(double share, const Studied& studied) {
+  residuals_.allow(share, studied.composition, studied.fit.theta);
+  ModelFit fit = fit_by_secants(studied.composition, residuals_, executor_, studied.fit.theta);
+  return finish(studied.model, studied.composition, std::move(fit));
+}
+
+Studied ImpactStudy::as_it_is(const Model& model) {
+  Composition composition(model, campaign_);
+  ModelFit fit;
+  fit.theta = composition.start();
+  residuals_.prepare(composition, fit.theta);
+  residuals_.calibrate(composition, fit.theta);
+  fit.residual = residuals_.evaluate(composition, fit.theta, executor_.first);
+  fit.chi2 = fit.residual.squaredNorm();
+  fit.converged = true;
+  const Misfit misfit = misfit_of(fit.residual, 0.0);
+  return {model, std::move(composition), std::move(fit), misfit};
+}
+
+std::pair<double, double> ImpactStudy::repeated(const Eigen::VectorXd& white) const {
+  const auto size = static_cast<Eigen::Index>(residuals_.per_shot());
+  double chi2 = 0.0;
+  double freedom = 0.0;
+  for (const SpeedGroup& group : residuals_.records().groups) {
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    for (const std::size_t n : group.shots) {
+      mean += white.segment(static_cast<Eigen::Index>(n) * size, size);
+    }
+    chi2 += mean.squaredNorm() / static_cast<double>(group.shots.size());
+    freedom += static_cast<double>(size) - residuals_.eliminated();
+  }
+  const ImpactRecords& records = residuals_.records();
+  for (std::size_t g = 0; g < records.groups.size(); ++g) {
+    freedom -= records.unsaid_rebounds(g) == records.groups[g].shots.size() ? 1.0 : 0.0;
+  }
+  return {chi2, freedom};
+}
+
+Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
+  Misfit misfit;
+  const auto shots = static_cast<double>(campaign_.shots.size());
+  const double all =
+      shots * (static_cast<double>(residuals_.per_shot()) - residuals_.eliminated()) -
+      static_cast<double>(residuals_.records().unsaid_rebounds());
+  misfit.degrees_of_freedom = std::max(1.0, all - used);
+  misfit.chi2_reduced = white.squaredNorm() / misfit.degrees_of_freedom;
+  const auto [chi2, freedom] = repeated(white);
+  misfit.noise_scale = all > freedom ? (white.squaredNorm() - chi2) / (all - freedom) : 1.0;
+  misfit.repeatable_share = std::max(0.0, chi2 - freedom) / residuals_.signal_energy();
+  misfit.noise_floor_share = all / residuals_.signal_energy();
+  misfit.repeatable_log_p = log_chi2_tail(chi2 / std::max(1.0, misfit.noise_scale), freedom);
+  return misfit;
+}
+
+std::vector<double> held_out_speeds(const Studied& studied, const ImpactRecords& records,
+                                    std::size_t per_shot) {
+  const ModelFit& fit = studied.fit;
+  const auto size = static_cast<Eigen::Index>(per_shot);
+  std::vector<double> squares;
+  for (const SpeedGroup& group : records.groups) {
+    const Eigen::VectorXd own = rows_of(fit.residual, group, size);
+    if (fit.theta.empty() || records.groups.size() < 2) {
+      squares.push_back(own.squaredNorm());
+      continue;
+    }
+    const Eigen::MatrixXd columns = rows_of(fit.jacobian, group, size);
+    const Eigen::MatrixXd others = fit.information - columns.transpose() * columns;
+    const Eigen::VectorXd move = least_norm_solution(others, columns.transpose() * own);
+    squares.push_back((own + columns * move).squaredNorm());
+  }
+  return squares;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "processing/criticism/noise/carried_noise.hpp"
+#include "processing/criticism/records/campaign.hpp"
+#include "processing/criticism/records/judged_band.hpp"
+
+namespace kolsky {
+
+class NoiseSpectrum;
+
+/// How much of what residuals show counts as noise.
+enum class NoiseShown {
+  all,              ///< scatter from shot to shot too, whatever it comes from
+  what_quiet_hides  ///< as much as the quiet parts are too short to show
+};
+
+/// The noise of all gauges at the judged bins: its spectrum and how far gauges share it from the
+/// quiet parts of all shots, times what residuals have shown of it since.
+class GaugeNoise {
+ public:
+  GaugeNoise(const Campaign& campaign, const JudgedBand& band);
+  ~GaugeNoise();
+  GaugeNoise(const GaugeNoise&) = delete;
+  GaugeNoise& operator=(const GaugeNoise&) = delete;
+
+  /// Covariance of the gauges at a bin, in power of the judged window's transform.
+  void put_covariance(std::size_t bin, Eigen::MatrixXd& all) const;
+  /// That of two gauges.
+  [[nodiscard]] double covariance(std::size_t bin, std::size_t a, std::size_t b) const {
+    return std::sqrt(scale_[a][bin] * scale_[b][bin]) *
+           quiet_[bin](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+  /// That of one gauge.
+  [[nodiscard]] double power(std::size_t gauge, std::size_t bin) const;
+  /// That over what the quiet parts say.
+  [[nodiscard]] double scale(std::size_t gauge, std::size_t bin) const {
+    return scale_[gauge][bin];
+  }
+  /// Of a gauge before residuals said anything, strain^2 per judged sample.
+  [[nodiscard]] double quiet_power(std::size_t gauge) const;
+
+  /// What the other gauges' residuals hold of the reference gauge's noise, as the quiet parts have
+  /// it. Parameters as CarriedNoise::through.
+  void carry(std::span<const std::vector<double>> responses, CarriedNoise::Memory& memory,
+             std::vector<CarriedBin>& bins) const;
+
+  /// Takes the quiet parts at their word again.
+  void forget();
+  /// Whether steps of this gauge's converter exceed its noise.
+  [[nodiscard]] bool is_coarse(std::size_t gauge) const;
+  /// Adds what a coarse converter's steps leave of records that move, where the quiet parts do not
+  /// tell. @param clean  a gauge's records by shot, over the judged window at their own rate
+  void add_steps(std::size_t gauge, std::span<const std::vector<double>> clean);
+  /// @param power_over_quiet  of a gauge at each bin, as residuals show it; made smooth
+  void learn(std::size_t gauge, const std::vector<double>& power_over_quiet, NoiseShown shown);
+
+  /// How near the least white gauge's noise is to white: the geometric over the arithmetic mean of
+  /// its power over the judged bins. Where it is 1, all frequencies tell of the noise at each.
+  [[nodiscard]] double flatness() const;
+
+ private:
+  [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
+  [[nodiscard]] double most_hidden(std::size_t bin) const;
+  void measure(const std::vector<NoiseSpectrum>& spectra, const Eigen::MatrixXd& correlation);
+
+  const Campaign& campaign_;
+  JudgedBand band_;
+  std::vector<Eigen::MatrixXd> quiet_;      ///< by bin
+  std::vector<std::vector<double>> scale_;  ///< by gauge and bin
+  std::unique_ptr<CarriedNoise> carried_;
+};
+
+}  // namespace kolsky

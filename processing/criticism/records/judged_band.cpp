@@ -1,0 +1,148 @@
+#include "processing/criticism/records/judged_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "processing/base/error.hpp"
+#include "processing/reduction/pulse.hpp"
+#include "processing/waves/band_limit.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Zeros before and after each record, in time: the filter reaches to both sides, and what it
+/// smears before the first sample would come round to the end, where undamping raises it.
+constexpr double kLead_s = 100e-6;
+/// The filter passes half at this multiple of the highest frequency that is judged.
+constexpr double kFilterOverBand = 1.6;
+/// Beyond this multiple of the filter's limit it has left nothing.
+constexpr double kFilteredFrom = 2.2;
+/// What the filter smears over the cut ends of a record reaches this many of its widths into it.
+constexpr double kEdge = 8.0;
+constexpr std::size_t kFewestJudged = 64;
+constexpr std::size_t kMostDecimation = 8;
+/// Power over noise at the highest frequency judged. Where the source is as much noise as signal,
+/// an effect's test rests on how well the noise of each gauge is known, and says little of the
+/// effect.
+constexpr double kPowerOverNoise = 30.0;
+
+std::size_t small_factors(std::size_t n) {
+  for (;; ++n) {
+    std::size_t left = n;
+    for (const std::size_t factor : {2U, 3U, 5U}) {
+      while (left % factor == 0) {
+        left /= factor;
+      }
+    }
+    if (left == 1) {
+      return n;
+    }
+  }
+}
+
+std::size_t shortest(const Campaign& campaign) {
+  std::size_t samples = campaign.shots.front().strain.front().size();
+  for (const CampaignShot& shot : campaign.shots) {
+    samples = std::min(samples, shot.strain.front().size());
+  }
+  return samples;
+}
+
+std::size_t longest(const Campaign& campaign) {
+  std::size_t samples = 0;
+  for (const CampaignShot& shot : campaign.shots) {
+    samples = std::max(samples, shot.strain.front().size());
+  }
+  return samples;
+}
+
+/// A length that stays even with small factors however far it is decimated.
+std::size_t transform_length(std::size_t samples) {
+  return 2 * kMostDecimation *
+         small_factors((samples + 2 * kMostDecimation - 1) / (2 * kMostDecimation));
+}
+
+/// Where the middle shot's pulse falls below the noise of the reference gauge.
+double limit_by_noise_Hz(const Campaign& campaign) {
+  DampedTransform transform(longest(campaign), campaign.period_s, kWrapDamping);
+  BandLimit limit(transform, transform.length());
+  std::vector<double> limits_Hz;
+  for (const CampaignShot& shot : campaign.shots) {
+    const auto& record = shot.strain[campaign.reference];
+    const double step = campaign.step[campaign.reference];
+    const double noise =
+        std::hypot(quiet_before(record, shot.quiet_samples).noise_rms, step / std::sqrt(12.0));
+    limits_Hz.push_back(limit.from_noise(record, noise, kPowerOverNoise));
+  }
+  const auto middle = limits_Hz.begin() + static_cast<std::ptrdiff_t>(limits_Hz.size() / 2);
+  std::nth_element(limits_Hz.begin(), middle, limits_Hz.end());
+  return *middle;
+}
+
+/// Surface gauges see little of waves as short as the bar is thick.
+double limit_by_bars_Hz(const Bench& bench) {
+  constexpr double kBlind = 0.25;
+  constexpr double kSlow_m_per_s = 2200.0;  // PMMA, where no modulus is filed
+  const auto limit_Hz = [&](const Bar& bar) {
+    const double speed = bar.youngs_modulus_Pa
+                             ? std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3)
+                             : kSlow_m_per_s;
+    return kBlind * speed / bar.dispersion_radius_m();
+  };
+  const double input_Hz = limit_Hz(bench.input);
+  return bench.output ? std::min(input_Hz, limit_Hz(*bench.output)) : input_Hz;
+}
+
+/// Samples of the longest window with a length that transforms like.
+std::size_t judged_samples(std::size_t samples, const JudgedBand& band) {
+  std::size_t judged = (samples - 2 * band.edge) / band.decimation;
+  judged -= judged % 2;
+  while (small_factors(judged) != judged || judged % 2 != 0) {
+    --judged;
+  }
+  return judged;
+}
+
+}  // namespace
+
+JudgedBand judged_band(const Campaign& campaign, double asked_Hz) {
+  const double rate_Hz = 1.0 / campaign.period_s;
+  JudgedBand band;
+  band.limit_Hz = asked_Hz > 0.0
+                      ? asked_Hz
+                      : std::min({limit_by_noise_Hz(campaign), limit_by_bars_Hz(campaign.bench),
+                                  rate_Hz / 2.0 / (kFilterOverBand * kFilteredFrom)});
+  band.filter_Hz = kFilterOverBand * band.limit_Hz;
+  while (2 * band.decimation <= kMostDecimation &&
+         rate_Hz / static_cast<double>(2 * band.decimation) / 2.0 >
+             kFilteredFrom * band.filter_Hz) {
+    band.decimation *= 2;
+  }
+  const std::size_t d = band.decimation;
+  band.lead = d * static_cast<std::size_t>(std::ceil(kLead_s * rate_Hz / static_cast<double>(d)));
+  band.edge = d * static_cast<std::size_t>(std::ceil(kEdge * BandLimit::smear_s(band.filter_Hz) *
+                                                     rate_Hz / static_cast<double>(d)));
+  const std::size_t samples = shortest(campaign);
+  if (samples < 2 * band.edge + kFewestJudged * d) {
+    throw InputError("samples", "are too few for the band", "give longer records");
+  }
+  band.judged = judged_samples(samples, band);
+  band.bin_width_Hz = rate_Hz / static_cast<double>(d * band.judged);
+  band.bins_judged =
+      std::min(band.judged / 2 - 1, static_cast<std::size_t>(band.limit_Hz / band.bin_width_Hz));
+  if (band.bins_judged < 4) {
+    throw InputError("band limit", "leaves no frequency to judge",
+                     "give a wider band or a longer record");
+  }
+  band.transformed = transform_length(longest(campaign) + 2 * band.lead);
+  const double carried_Hz = rate_Hz / static_cast<double>(band.transformed);
+  band.bins_carried =
+      std::min(band.transformed / d / 2 + 1,
+               static_cast<std::size_t>(kFilteredFrom * band.filter_Hz / carried_Hz) + 1);
+  return band;
+}
+
+}  // namespace kolsky

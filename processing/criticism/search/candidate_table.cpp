@@ -1,0 +1,244 @@
+#include "processing/criticism/search/candidate_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/common_amplitude.hpp"
+#include "processing/criticism/search/search_trials.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kDetected = 6.0;   ///< sigma
+constexpr double kToldApart = 5.0;  ///< sigma beside a rival
+
+/// The strength that stands at 5 sigma beside whichever other effect resembles it most.
+void set_identifiable(const Tried& tried, std::size_t i, double power, CandidateResult& result) {
+  const Direction& own = tried.directions[i];
+  result.identifiable = result.detectable;
+  if (own.information.rows() != 1) {
+    return;
+  }
+  double closest = 0.0;
+  for (std::size_t k = 0; k < tried.directions.size(); ++k) {
+    const Direction& other = tried.directions[k];
+    if (tried.candidates[k].id() == tried.candidates[i].id() || other.information.rows() != 1 ||
+        other.freedom != 1.0) {
+      continue;
+    }
+    // Less what both share through the model's own numbers.
+    const double shared =
+        tried.base.fit.covariance.size() > 0
+            ? own.model_share.col(0).dot(tried.base.fit.covariance * other.model_share.col(0))
+            : 0.0;
+    const double cross = (own.columns.col(0).dot(other.columns.col(0)) - shared) /
+                         std::sqrt(own.information(0, 0) * other.information(0, 0));
+    if (cross * cross > closest) {
+      closest = std::min(1.0, cross * cross);
+      result.nearest_rival = tried.candidates[k].id();
+    }
+  }
+  result.identifiable =
+      std::max(result.detectable, result.sd * root(kToldApart * std::sqrt(tried.scale) /
+                                                       std::sqrt(std::max(1e-12, 1.0 - closest)),
+                                                   power));
+}
+
+/// ln of the chance of a candidate's gain at first order. One that has one sign only has a chance
+/// above one half where the records ask for the other.
+double first_order_log_p(const Tried& tried, std::size_t i) {
+  const Direction& direction = tried.directions[i];
+  if (!(direction.freedom > 0.0)) {
+    return 0.0;
+  }
+  const auto two_sided = [&](double gain) {
+    const double over = gain / tried.scale;
+    return tried.known.empty()
+               ? log_gain_tail(over, direction.freedom, false)
+               : log_f_tail(over / direction.freedom, direction.freedom, tried.known[i]);
+  };
+  const Candidate& candidate = tried.candidates[i];
+  if (!candidate.one_sided || direction.information.rows() != 1) {
+    return two_sided(direction.gain);
+  }
+  const EffectParameter& strength = candidate.use.effect->about().parameters.front();
+  const bool up = strength.null_value <= strength.lower;
+  const double half =
+      0.5 *
+      std::exp(two_sided(direction.pull[0] * direction.pull[0] / direction.information(0, 0)));
+  return (direction.pull[0] > 0.0) == up ? std::log(half) : std::log1p(-half);
+}
+
+/// Chances of an effect, of whose variants the best counts: by itself, and among all that was
+/// tried.
+void set_chances(const Tried& tried, const std::vector<std::size_t>& variants,
+                 CandidateResult& result) {
+  double least = 0.0;
+  for (const std::size_t i : variants) {
+    least = std::min(least, first_order_log_p(tried, i));
+  }
+  const double trials = variants.size() > 1 ? independent_trials(tried.base, tried.candidates,
+                                                                 tried.directions, variants)
+                                            : 1.0;
+  constexpr double kTiny = -20.0;
+  result.own_log_p = least < kTiny ? least + std::log(trials)
+                                   : std::log(-std::expm1(trials * std::log1p(-std::exp(least))));
+  result.log_p = std::min(0.0, least + std::max(std::log(trials), tried.log_trials));
+}
+
+/// An amplitude that is the same at all gauges is the same in all shots, too.
+void set_common_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
+  std::map<std::ptrdiff_t, std::array<std::size_t, 2>> places;
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.parameter < 2 && studied.composition.uses()[number.use].id() == id) {
+      places[number.shot][number.parameter] = i;
+    }
+  }
+  std::vector<QuadratureParts> shots;
+  double scale = 1.0;
+  for (const auto& [shot, place] : places) {
+    const std::array at{static_cast<Eigen::Index>(place[0]), static_cast<Eigen::Index>(place[1])};
+    const Eigen::MatrixXd covariance = studied.fit.covariance(at, at);
+    const Eigen::Vector2d parts(studied.fit.theta[place[0]], studied.fit.theta[place[1]]);
+    QuadratureParts own{Eigen::Vector2d::Zero(), inverse_of(covariance)};
+    own.pull = own.information * parts;  // of the prior, none: it is one about nothing
+    const FreeNumber& number = studied.composition.numbers()[place[0]];
+    scale = number.scale;
+    if (number.prior_sd > 0.0) {
+      own.information.diagonal().array() -= scale * scale / (number.prior_sd * number.prior_sd);
+    }
+    shots.push_back(own);
+  }
+  const Amplitude amplitude = common_amplitude(shots);
+  result.strength = scale * amplitude.value;
+  result.sd = scale * amplitude.sd;
+}
+
+/// Root mean square over shots and gauges of an amplitude in cosine and sine parts.
+void set_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
+  const ModelFit& fit = studied.fit;
+  Eigen::VectorXd parts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.theta.size()));
+  double scale = 1.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.parameter < 2 && studied.composition.uses()[number.use].id() == id) {
+      parts[static_cast<Eigen::Index>(i)] = fit.theta[i];
+      scale = number.scale;
+      count += number.parameter == 0 ? 1.0 : 0.0;
+    }
+  }
+  const double amplitude = count > 0.0 ? std::sqrt(parts.squaredNorm() / count) : 0.0;
+  result.strength = scale * amplitude;
+  if (amplitude > 0.0) {
+    result.sd = scale * std::sqrt(parts.dot(fit.covariance * parts)) / (count * amplitude);
+  }
+}
+
+}  // namespace
+
+std::vector<CandidateResult> first_order_table(const Tried& tried) {
+  std::vector<CandidateResult> table;
+  std::map<std::string, std::size_t> at;
+  std::map<std::string, std::vector<std::size_t>> variants;
+  for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
+    variants[tried.candidates[i].id()].push_back(i);
+  }
+  for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
+    const Candidate& candidate = tried.candidates[i];
+    const Direction& direction = tried.directions[i];
+    const auto known = at.find(candidate.id());
+    if (known != at.end() && table[known->second].gain >= direction.gain) {
+      continue;
+    }
+    CandidateResult result;
+    result.effect = candidate.id();
+    const EffectParameter& parameter = candidate.use.effect->about().parameters.front();
+    result.parameter = parameter.name;
+    result.unit = parameter.unit;
+    result.gain = direction.gain;
+    if (direction.freedom > 0.0 && direction.information.rows() > 0) {
+      const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
+                               ? candidate.use.values[0].prior_sd
+                               : parameter.typical;
+      const double sd = 1.0 / std::sqrt(direction.information(0, 0));
+      result.strength = parameter.null_value + scale * root(direction.step[0], parameter.power);
+      result.sd = scale * root(sd, parameter.power);
+      result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
+      set_identifiable(tried, i, parameter.power, result);
+      result.verdict = "not needed";
+    } else {
+      result.detectable = result.identifiable = INFINITY;
+      result.strength = result.sd = NAN;
+      result.verdict = "untestable";
+    }
+    if (known != at.end()) {
+      table[known->second] = result;
+    } else {
+      at[candidate.id()] = table.size();
+      table.push_back(std::move(result));
+    }
+  }
+  for (CandidateResult& result : table) {
+    if (result.verdict != "untestable") {
+      set_chances(tried, variants[result.effect], result);
+    }
+  }
+  return table;
+}
+
+void note_refits(const Search& search, const std::vector<Refit>& refits,
+                 const std::vector<Certification>& held_out, const std::vector<std::size_t>& which,
+                 std::size_t residuals_per_shot, std::vector<CandidateResult>& table) {
+  for (const std::size_t i : which) {
+    const Refit& refit = refits[i];
+    for (CandidateResult& result : table) {
+      if (result.effect == search.candidates()[refit.candidate].id()) {
+        result.gain = refit.gain;
+        result.log_p = search.with_search(refit.log_p);
+        result.own_log_p = search.without_search(refit);
+        result.held_out_gain = held_out[i].gain;
+        set_strength(refit.studied, result.effect, residuals_per_shot, result);
+      }
+    }
+  }
+}
+
+void set_strength(const Studied& studied, const std::string& id, CandidateResult& result) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || use->values.empty()) {
+    return;
+  }
+  const auto& parameters = use->effect->about().parameters;
+  const std::size_t at = use->effect->about().strength;
+  result.parameter = parameters[at].name;
+  result.unit = parameters[at].unit;
+  result.strength = use->values[at].value;
+  result.sd = use->values[at].sd;
+  if (use->effect->about().quadrature) {
+    result.parameter = "A";
+    if (use->alike && use->per_shot) {
+      set_common_amplitude(studied, id, result);
+    } else {
+      set_amplitude(studied, id, result);
+    }
+  }
+}
+
+void set_strength(const Studied& studied, const std::string& id, std::size_t residuals_per_shot,
+                  CandidateResult& result) {
+  set_strength(studied, id, result);
+  if (studied.model.find(id) != nullptr) {
+    result.sd *= std::sqrt(scatter_over_noise(studied, id, residuals_per_shot) *
+                           std::max(1.0, studied.misfit.noise_scale));
+  }
+}
+
+}  // namespace kolsky

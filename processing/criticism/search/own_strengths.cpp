@@ -1,0 +1,189 @@
+#include "processing/criticism/search/own_strengths.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/search/search_trials.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Least-squares slope over time of what came before the pulse.
+double slope_before(const CampaignShot& shot, const std::vector<double>& record) {
+  const auto count = static_cast<double>(shot.quiet_samples);
+  double t_mean = 0.0;
+  double y_mean = 0.0;
+  for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
+    t_mean += shot.facts.time_s[n] / count;
+    y_mean += record[n] / count;
+  }
+  double cross = 0.0;
+  double square = 0.0;
+  for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
+    const double t = shot.facts.time_s[n] - t_mean;
+    cross += t * (record[n] - y_mean);
+    square += t * t;
+  }
+  return cross / square;
+}
+
+/// Standard deviation over mean.
+double spread_of(const Eigen::VectorXd& sizes) {
+  const double mean = sizes.mean();
+  const auto count = static_cast<double>(sizes.size());
+  const double variance = (sizes.array() - mean).square().sum() / std::max(1.0, count - 1.0);
+  return mean > 0.0 ? std::sqrt(variance) / mean : 1.0;
+}
+
+/// A hum is as strong in every shot; slow noise that was taken for one is not. Its amplitudes are
+/// normal in cosine and sine: so much alike they must be as fewer than one in a hundred such sets.
+bool amplitudes_agree(const Eigen::VectorXd& sizes) {
+  constexpr int kDraws = 20000;
+  constexpr double kChance = 0.01;
+  if (sizes.size() < 3) {
+    return false;
+  }
+  const double found = spread_of(sizes);
+  std::mt19937_64 random(kSearchSeed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd draw(sizes.size());
+  int alike = 0;
+  for (int n = 0; n < kDraws; ++n) {
+    for (double& size : draw) {
+      const double cosine = normal(random);
+      size = std::hypot(cosine, normal(random));
+    }
+    alike += spread_of(draw) <= found ? 1 : 0;
+  }
+  return alike < kChance * kDraws;
+}
+
+/// The slopes before the pulses must follow those found: regression through the origin.
+bool slopes_agree(const std::vector<double>& found, const std::vector<double>& before) {
+  double cross = 0.0;
+  double square = 0.0;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    cross += found[n] * before[n];
+    square += found[n] * found[n];
+  }
+  const double share = cross / square;
+  double rest = 0.0;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    const double e = before[n] - share * found[n];
+    rest += e * e;
+  }
+  const double sd = std::sqrt(rest / (static_cast<double>(found.size()) - 1.0) / square);
+  constexpr double kSigma = 4.0;
+  return found.size() > 2 && share > 0.5 && share < 1.5 && share > kSigma * sd;
+}
+
+/// Nearer to products than noise comes in one of a thousand, and not for one gauge's sake. What was
+/// found so once falls only by half: else it would come and go with the rest of the model.
+bool are_products(const ProductTest& test, Claim claim) {
+  const double share = claim == Claim::fresh ? 1.0 : 0.5;
+  constexpr double kChance = -6.9;
+  constexpr double kBeyond = 25.0;
+  return test.log_p < share * kChance && test.beyond_one_gauge > share * kBeyond;
+}
+
+/// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
+/// as fitted and of the records.
+struct Slopes {
+  std::vector<double> found;
+  std::vector<double> before;
+};
+
+Slopes slopes_of(const Studied& studied, const std::string& id, const Campaign& campaign) {
+  Slopes slopes;
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const CampaignShot& shot = campaign.shots[n];
+    Scene scene(campaign.bench, shot.facts, {});
+    scene.record.additions.resize(campaign.gauges());
+    const Effect* effect = studied.model.find(id)->effect;
+    for (const AppliedEffect& own : studied.composition.applied(studied.fit.theta, n)) {
+      if (own.effect == effect &&
+          (!effect->about().per_gauge ||
+           campaign.bench.gauges[own.gauge].name == studied.model.find(id)->gauge)) {
+        effect->apply(scene, own.values, own.gauge);
+      }
+    }
+    double found = 0.0;
+    double before = 0.0;
+    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+      if (!scene.record.additions[j].empty()) {
+        found += slope_before(shot, scene.record.additions[j]);
+        before += slope_before(shot, shot.strain[j]);
+      }
+    }
+    slopes.found.push_back(found);
+    slopes.before.push_back(before);
+  }
+  return slopes;
+}
+
+/// Amplitudes by shot and, where they differ, gauge, their cosine and sine parts as one complex
+/// number.
+Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
+                               const Campaign& campaign) {
+  // In the order of the composition: by parameter, then shot, then gauge.
+  std::vector<std::vector<double>> found(2);
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id &&
+        number.parameter < found.size()) {
+      found[number.parameter].push_back(number.value_at(studied.fit.theta[i]));
+    }
+  }
+  const auto shots = static_cast<Eigen::Index>(campaign.shots.size());
+  Eigen::MatrixXcd amplitudes(shots, static_cast<Eigen::Index>(found[0].size()) / shots);
+  for (Eigen::Index n = 0; n < amplitudes.rows(); ++n) {
+    for (Eigen::Index j = 0; j < amplitudes.cols(); ++j) {
+      const auto at = static_cast<std::size_t>(n * amplitudes.cols() + j);
+      amplitudes(n, j) = {found[0][at], found[1][at]};
+    }
+  }
+  return amplitudes;
+}
+
+}  // namespace
+
+bool own_strengths_confirmed(const Studied& studied, const std::string& id,
+                             const Campaign& campaign, Claim claim) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || !use->per_shot) {
+    return true;
+  }
+  if (const auto test = product_test_of(studied, id, campaign)) {
+    return are_products(*test, claim);
+  }
+  if (use->alike && !amplitudes_agree(amplitudes_of(studied, id, campaign).col(0).cwiseAbs())) {
+    return false;
+  }
+  const Slopes slopes = slopes_of(studied, id, campaign);
+  return slopes_agree(slopes.found, slopes.before);
+}
+
+std::optional<ProductTest> product_test_of(const Studied& studied, const std::string& id,
+                                           const Campaign& campaign) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr || !use->per_shot || !use->effect->about().each_gauge || use->alike) {
+    return std::nullopt;
+  }
+  // In the order of the composition: by parameter, then shot, then gauge.
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id) {
+      own.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> theta(studied.fit.theta.data(),
+                                                studied.fit.covariance.rows());
+  const Eigen::MatrixXd covariance = studied.fit.covariance(own, own);
+  return test_products(theta(own), symmetric_inverse(covariance), campaign.shots.size(),
+                       campaign.gauges());
+}
+
+}  // namespace kolsky

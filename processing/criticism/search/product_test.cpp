@@ -1,0 +1,162 @@
+#include "processing/criticism/search/product_test.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/search/search_trials.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr int kDraws = 100;
+constexpr int kSteps = 8;
+constexpr double kSeen = 1e-2;  ///< of the prior's information
+
+/// Products sought by alternating least squares.
+class Products {
+ public:
+  /// @param root  from strengths to measurements of unit noise
+  Products(const Eigen::MatrixXd& root, std::size_t shots, std::size_t gauges)
+      : root_(root),
+        shots_(static_cast<Eigen::Index>(shots)),
+        gauges_(static_cast<Eigen::Index>(gauges)) {}
+
+  /// The square of what the best products explain of measurements.
+  [[nodiscard]] double explained(const Eigen::VectorXd& z) const {
+    double best = 0.0;
+    const Eigen::VectorXd strengths = root_.transpose() * z;
+    const Eigen::Map<const Eigen::MatrixXd> by_gauge(strengths.data(), gauges_, 2 * shots_);
+    const Eigen::MatrixXd left = singular_values(by_gauge).left;
+    const Eigen::Index starts = std::min<Eigen::Index>(2, left.cols());
+    for (Eigen::Index start = 0; start < starts; ++start) {
+      Eigen::VectorXd shares = left.col(start);
+      double found = 0.0;
+      for (int step = 0; step < kSteps; ++step) {
+        const Eigen::MatrixXd of_shots = by_shot(shares);
+        const Eigen::VectorXd amplitudes = least_squares(of_shots, z);
+        const Eigen::MatrixXd of_gauges = by_share(amplitudes);
+        shares = least_squares(of_gauges, z);
+        found = share_of(of_gauges, shares, z);
+        shares.normalize();
+      }
+      best = std::max(best, found);
+    }
+    return best;
+  }
+
+  /// The same for strengths at one gauge only, each shot's its own.
+  [[nodiscard]] double at_one_gauge(const Eigen::VectorXd& z) const {
+    double best = 0.0;
+    for (Eigen::Index gauge = 0; gauge < gauges_; ++gauge) {
+      const Eigen::MatrixXd of_shots = by_shot(Eigen::VectorXd::Unit(gauges_, gauge));
+      best = std::max(best, share_of(of_shots, least_squares(of_shots, z), z));
+    }
+    return best;
+  }
+
+ private:
+  static double share_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& z) {
+    return z.squaredNorm() - (z - columns * x).squaredNorm();
+  }
+  /// Columns of the amplitudes (cosine parts, then sine parts, by shot) for given shares.
+  [[nodiscard]] Eigen::MatrixXd by_shot(const Eigen::VectorXd& shares) const {
+    Eigen::MatrixXd columns(root_.rows(), 2 * shots_);
+    for (Eigen::Index c = 0; c < 2 * shots_; ++c) {
+      columns.col(c).noalias() = root_.middleCols(c * gauges_, gauges_) * shares;
+    }
+    return columns;
+  }
+  [[nodiscard]] Eigen::MatrixXd by_share(const Eigen::VectorXd& amplitudes) const {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(root_.rows(), gauges_);
+    for (Eigen::Index c = 0; c < 2 * shots_; ++c) {
+      columns.noalias() += amplitudes[c] * root_.middleCols(c * gauges_, gauges_);
+    }
+    return columns;
+  }
+
+  const Eigen::MatrixXd& root_;
+  Eigen::Index shots_;
+  Eigen::Index gauges_;
+};
+
+struct Moments {
+  double mean = 0.0;
+  double variance = 0.0;
+};
+
+/// The share that products explain of noise: of strengths that are independent from place to place,
+/// with the powers of cosine and sine that were found over all places.
+Moments shares_of_noise(const Products& products, const Eigen::MatrixXd& root,
+                        const Eigen::VectorXd& white, std::size_t places) {
+  const auto count = static_cast<Eigen::Index>(places);
+  const Eigen::VectorXd found = root.transpose() * solve_symmetric(root * root.transpose(), white);
+  const Eigen::Map<const Eigen::MatrixXd> parts(found.data(), count, 2);
+  const Eigen::Matrix2d power = parts.transpose() * parts / static_cast<double>(places);
+  const Eigen::Matrix2d spread = power.llt().matrixU();
+  std::mt19937_64 random(kSearchSeed);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd drawn(count, 2);
+  Moments shares;
+  double squares = 0.0;
+  for (int n = 0; n < kDraws; ++n) {
+    for (double& value : drawn.reshaped()) {
+      value = normal(random);
+    }
+    const Eigen::MatrixXd noise = drawn * spread;
+    const Eigen::VectorXd z = root * noise.reshaped();
+    const double share = products.explained(z) / z.squaredNorm();
+    shares.mean += share / kDraws;
+    squares += share * share / kDraws;
+  }
+  shares.variance = squares - shares.mean * shares.mean;
+  return shares;
+}
+
+/// ln of the chance that a beta-distributed share with these moments is as large.
+double log_beta_tail(double share, double mean, double variance) {
+  const double both = mean * (1.0 - mean) / variance - 1.0;
+  const double tail = boost::math::ibetac(mean * both, (1.0 - mean) * both, std::min(share, 1.0));
+  return std::log(std::max(tail, std::numeric_limits<double>::min()));
+}
+
+}  // namespace
+
+ProductTest test_products(const Eigen::VectorXd& strengths, const Eigen::MatrixXd& information,
+                          std::size_t shots, std::size_t gauges) {
+  if (shots < 2 || gauges < 3) {
+    return {};
+  }
+  // What the records say without the prior, in the directions in which they say anything.
+  const SymmetricEigen solver(information);
+  const Eigen::VectorXd lambda = solver.eigenvalues().array() - 1.0;
+  const Eigen::Index seen = (lambda.array() > kSeen).count();
+  const Eigen::MatrixXd root = lambda.tail(seen).cwiseSqrt().asDiagonal() *
+                               solver.eigenvectors().rightCols(seen).transpose();
+  const Eigen::VectorXd white =
+      lambda.tail(seen).cwiseSqrt().cwiseInverse().asDiagonal() *
+      (solver.eigenvectors().rightCols(seen).transpose() * (information * strengths));
+  const Products products(root, shots, gauges);
+  const double all = white.squaredNorm();
+  const double explained = products.explained(white);
+
+  const double share = all > 0.0 ? explained / all : 0.0;
+  const auto [mean, variance] = shares_of_noise(products, root, white, shots * gauges);
+  if (share <= mean || variance <= 0.0) {
+    return {};
+  }
+  ProductTest test;
+  test.log_p = log_beta_tail(share, mean, variance);
+  const double freedom = static_cast<double>(seen) * (1.0 - mean);
+  const double rest = std::max(all - explained, 1e-12 * all) / freedom;
+  test.beyond_one_gauge = (explained - products.at_one_gauge(white)) / rest;
+  return test;
+}
+
+}  // namespace kolsky

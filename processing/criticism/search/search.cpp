@@ -1,0 +1,507 @@
+#include "processing/criticism/search/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "processing/criticism/fitting/branch_order.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/beside.hpp"
+#include "processing/criticism/search/own_strengths.hpp"
+#include "processing/criticism/search/search_trials.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
+constexpr std::size_t kMostRefits = 14;
+constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
+constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
+
+/// Two sensor effects of one gauge.
+bool at_one_gauge(const Candidate& a, const Candidate& b) {
+  return !a.use.gauge.empty() && a.use.gauge == b.use.gauge && !a.frees_prior &&
+         a.use.effect->about().stage == Stage::sensor;
+}
+
+/// The model's own numbers may have gone far for want of an effect: much misfit shows it, or a
+/// modulus that nothing holds any longer.
+bool astray(const Studied& studied) {
+  return studied.misfit.chi2_reduced > kFarOff ||
+         std::any_of(
+             studied.model.effects.begin(), studied.model.effects.end(), [](const auto& use) {
+               return use.effect->about().base &&
+                      std::any_of(use.values.begin(), use.values.end(), [](const ModelValue& own) {
+                        return own.free && own.prior_sd == 0.0 && own.sd > std::abs(own.value);
+                      });
+             });
+}
+
+/// The material's effects take each other's places at a finite size: what a dashpot does, the
+/// material's own branch and a further one can do together.
+bool of_material(const Candidate& candidate) {
+  return candidate.use.effect->about().stage == Stage::material;
+}
+
+}  // namespace
+
+double lead(const Refit& ahead, const Refit& behind) {
+  return (ahead.evidence - behind.evidence) / std::max(ahead.doubt, behind.doubt);
+}
+
+Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
+    : study_(study),
+      base_(base),
+      safeguards_(safeguards),
+      candidates_(candidates_for(base, study.campaign())),
+      directions_(candidates_.size()) {
+  study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
+    directions_[i] = direction_of(candidates_[i], base_, study_, worker);
+  });
+  if (astray(base_)) {
+    begun_ = start;
+    start_moduli(*begun_, study.campaign(), study.residuals());
+  }
+  if (safeguards_.search_count) {
+    trials_ = independent_trials(base_, candidates_, directions_);
+  }
+}
+
+double Search::with_search(double log_p) const {
+  return std::min(0.0, log_p + std::log(trials_));
+}
+
+double Search::without_search(const Refit& refit) const {
+  return refit.products ? with_search(refit.log_p) : refit.log_p;
+}
+
+double Search::log_trials() const {
+  return std::log(trials_);
+}
+
+std::vector<double> Search::known() const {
+  std::vector<double> list;
+  for (const Candidate& candidate : candidates_) {
+    list.push_back(known_of(candidate.use));
+  }
+  return list;
+}
+
+/// Degrees of freedom by which noise is known in an effect's direction: what differs between the
+/// shots tells of it too, unless each shot has a strength of its own.
+double Search::known_of(const EffectUse& use) const {
+  const std::size_t shots = study_.campaign().shots.size();
+  const double believed = belief_in(*use.effect, study_.residuals().noise(), shots);
+  return use.per_shot ? believed : believed + static_cast<double>(shots - 1);
+}
+
+std::vector<Refit> Search::refits() {
+  const std::vector<std::size_t> chosen = worth_refitting();
+  std::vector<std::optional<Refit>> done(chosen.size());
+  study_.executor().run(chosen.size(), [&](std::size_t i, std::size_t worker) {
+    done[i] = refit(chosen[i], worker);
+  });
+  std::vector<Refit> list;
+  for (auto& own : done) {
+    if (own && admissible(*own)) {
+      list.push_back(std::move(*own));
+    } else if (own) {
+      note_unconfirmed(*own);
+    }
+  }
+  rate_in_order(list);
+  refine(list);
+  return list;
+}
+
+bool Search::admissible(const Refit& refit) const {
+  return std::isfinite(refit.studied.fit.objective()) && !beyond_the_record(refit.studied, refit) &&
+         fits_the_signal(refit) &&
+         (!safeguards_.own_strengths ||
+          own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
+                                  study_.campaign(), Claim::fresh));
+}
+
+void Search::note_unconfirmed(const Refit& refit) {
+  const EffectUse& use = candidates_[refit.candidate].use;
+  if (!use.per_shot || !is_addition(*use.effect) || !fits_the_signal(refit)) {
+    return;
+  }
+  const double noise = noise_of(refit.studied.misfit, study_.campaign().shots.size());
+  const double gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+  const double evidence = equivalent_square(log_gain_tail(gain, refit.freedom, false));
+  if (!unconfirmed_ || evidence > unconfirmed_->evidence) {
+    unconfirmed_ = {refit.candidate, evidence};
+  }
+}
+
+/// What explains less than something slow that nothing confirms must do so beside it, too: else it
+/// may be only the part of it that comes again in every shot.
+double Search::share_beside_unconfirmed(const Refit& refit, double evidence) const {
+  const Candidate& own = candidates_[refit.candidate];
+  if (!unconfirmed_ || evidence > unconfirmed_->evidence || own.use.per_shot ||
+      own.id() == candidates_[unconfirmed_->candidate].id()) {
+    return 1.0;
+  }
+  return share_beside(directions_[refit.candidate], candidates_[unconfirmed_->candidate],
+                      directions_[unconfirmed_->candidate], base_.fit.covariance);
+}
+
+/// What fits better for counting more as noise fits nothing: where a gauge sees hardly a signal,
+/// its factor runs away, and the noise carried to it is all that is compared.
+bool Search::fits_the_signal(const Refit& refit) const {
+  constexpr double kShare = 0.5;
+  const ModelFit& fit = refit.studied.fit;
+  return base_.fit.objective() - fit.penalty - refit.chi2_in_base_noise >=
+         kShare * (base_.fit.objective() - fit.objective());
+}
+
+void Search::rate_in_order(std::vector<Refit>& list) const {
+  rate(list);
+  std::sort(list.begin(), list.end(),
+            [](const Refit& a, const Refit& b) { return a.evidence > b.evidence; });
+}
+
+/// What stands near the best is fitted with derivatives of its own.
+void Search::refine(std::vector<Refit>& list) {
+  constexpr double kNear = 30.0;  // as a square of a normal deviate
+  constexpr double kShare = 0.05;
+  const auto near = [&](const Refit& own) {
+    const double best = list.front().evidence;
+    return own.rough && own.evidence > best - std::max(kNear, kShare * best);
+  };
+  while (true) {
+    std::vector<std::size_t> at;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (near(list[i])) {
+        at.push_back(i);
+      }
+    }
+    if (at.empty()) {
+      return;
+    }
+    study_.executor().run(at.size(), [&](std::size_t i, std::size_t worker) {
+      Refit& own = list[at[i]];
+      Studied& studied = own.studied;
+      ModelFit fit =
+          fit_model(studied.composition, study_.residuals(), serial_on(worker), studied.fit.theta);
+      const Model model = with(base_.model, candidates_[own.candidate], true);
+      own = described(own.candidate, model, std::move(studied.composition), std::move(fit), worker);
+    });
+    std::erase_if(list, [&](const Refit& own) { return !admissible(own); });
+    rate_in_order(list);
+  }
+}
+
+/// A relaxation much slower than the record, or quicker than a sample, is another effect's limit
+/// (a dashpot, a spring) that it only imitates. So is one whose strength and time grow together
+/// without end, which shows in both being less than their own deviations, and one that has taken
+/// the material's own place, whose branch stands in for a dashpot or for what is slow: it is slower
+/// than the record by far, or than a third of it and of a strength that is less than its deviation.
+/// A strength alone is as uncertain where the time is near that of the material's own branch, from
+/// which it is told by a little only.
+bool Search::beyond_the_record(const Studied& studied, const Refit& refit) const {
+  const Candidate& candidate = candidates_[refit.candidate];
+  const EffectUse* use = studied.model.find(candidate.id());
+  const auto& parameters = candidate.use.effect->about().parameters;
+  constexpr double kMuchSlower = 5.0;
+  const double period_s = study_.residuals().judged_period_s();
+  const double record_s = period_s * static_cast<double>(study_.residuals().band().judged);
+  const OwnBranch beside = own_branch(studied.model, candidate.use.effect->about().id);
+  constexpr double kSlow = 0.3;  // shows as a dashpot only
+  if (beside.time_s > (beside.strength_known ? kMuchSlower : kSlow) * record_s) {
+    return true;
+  }
+  bool timeless = false;
+  bool unbounded = false;
+  for (std::size_t p = 0; use != nullptr && p < parameters.size(); ++p) {
+    const ModelValue& own = use->values[p];
+    if (!parameters[p].auxiliary()) {
+      unbounded = unbounded || std::abs(own.value - parameters[p].null_value) < own.sd;
+    } else if (parameters[p].unit == "s") {
+      timeless = timeless || own.value < own.sd;
+      if (own.value > kMuchSlower * record_s || own.value < 0.5 * study_.campaign().period_s) {
+        return true;
+      }
+    }
+  }
+  return timeless && unbounded;
+}
+
+double Search::evidence_of(const Direction& direction, const Candidate& candidate) const {
+  return direction.freedom > 0.0 ? equivalent_square(log_gain_tail(
+                                       direction.gain, direction.freedom, candidate.one_sided))
+                                 : 0.0;
+}
+
+/// The best variant of each effect, those near the best of all; first-order ties can separate at
+/// finite size, the more so the larger the misfit.
+std::vector<std::size_t> Search::worth_refitting() const {
+  std::map<std::string, std::pair<double, std::size_t>> best;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const double evidence = evidence_of(directions_[i], candidates_[i]);
+    const EffectUse& use = candidates_[i].use;
+    auto& own = best[use.id() + (use.per_shot ? " per shot" : "") + (use.alike ? " alike" : "")];
+    if (evidence > own.first) {
+      own = {evidence, i};
+    }
+  }
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (const auto& [id, own] : best) {
+    if (own.first > 0.0) {
+      ranked.push_back(own);
+    }
+  }
+  std::sort(ranked.rbegin(), ranked.rend());
+  std::vector<std::size_t> chosen;
+  for (const auto& [evidence, i] : ranked) {
+    const double margin = std::max(25.0, 0.6 * ranked.front().first);
+    // Far from the records, first order says little of what fits best.
+    const bool far = base_.misfit.chi2_reduced > kFarOff;
+    const bool near = evidence > ranked.front().first - margin ||
+                      ((far || chosen.size() < kAlwaysRefits) && evidence > kWorthRefitting);
+    if (chosen.size() < kMostRefits && near) {
+      chosen.push_back(i);
+    }
+  }
+  add_relatives(ranked, chosen);
+  return chosen;
+}
+
+/// What differs from a chosen candidate by more than first order only.
+void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ranked,
+                           std::vector<std::size_t>& chosen) const {
+  const auto is_chosen = [&](std::size_t i) {
+    return std::find(chosen.begin(), chosen.end(), i) != chosen.end();
+  };
+  // At one gauge a delay, a filter and a length.
+  for (const auto& [evidence, i] : ranked) {
+    if (at_one_gauge(candidates_[i], candidates_[ranked.front().second]) && !is_chosen(i)) {
+      chosen.push_back(i);
+    }
+  }
+  // Of the material, what can say nothing at first order for standing at its bound.
+  const bool material = std::any_of(chosen.begin(), chosen.end(),
+                                    [&](std::size_t i) { return of_material(candidates_[i]); });
+  for (std::size_t i = 0; material && i < candidates_.size(); ++i) {
+    const EffectUse& use = candidates_[i].use;
+    if (of_material(candidates_[i]) && candidates_[i].one_sided &&
+        use.effect->about().parameters.size() == 1 && !use.per_shot && !is_chosen(i)) {
+      chosen.push_back(i);
+    }
+  }
+}
+
+/// Where first order says the strengths and the model's numbers are, or as far on the way as
+/// makes things better.
+std::vector<double> Search::begin_near(const Candidate& candidate, const Direction& direction,
+                                       const Composition& composition, std::size_t worker) const {
+  std::vector<std::size_t> strengths;
+  for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    const EffectUse& use = composition.uses()[number.use];
+    if (use.id() == candidate.id() &&
+        !use.effect->about().parameters[number.parameter].auxiliary()) {
+      strengths.push_back(i);
+    }
+  }
+  std::vector<double> best = carry(base_.composition, base_.fit.theta, composition);
+  if (candidate.frees_prior ||
+      static_cast<Eigen::Index>(strengths.size()) != direction.step.size()) {
+    return best;
+  }
+  const std::vector<double> null = best;
+  const Eigen::VectorXd along = -base_.fit.covariance * direction.model_share * direction.step;
+  double least = study_.residuals().evaluate(composition, best, worker).squaredNorm();
+  for (const double share : {1.0, 0.3, 0.1}) {
+    std::vector<double> moved = base_.fit.theta;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const FreeNumber& number = base_.composition.numbers()[i];
+      moved[i] = number.inside(moved[i] + share * along[static_cast<Eigen::Index>(i)]);
+    }
+    std::vector<double> start = carry(base_.composition, moved, composition);
+    for (std::size_t i = 0; i < strengths.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[strengths[i]];
+      start[strengths[i]] =
+          number.inside(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)]);
+    }
+    const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
+    if (chi2 < least) {
+      least = chi2;
+      best = std::move(start);
+    }
+  }
+  return best;
+}
+
+std::vector<double> Search::begin_large(const Candidate& candidate, const Composition& composition,
+                                        std::size_t worker) const {
+  std::vector<double> best;
+  double least = HUGE_VAL;
+  for (const double typicals : {3.0, 6.0, 12.0}) {
+    std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const FreeNumber& number = composition.numbers()[i];
+      const EffectUse& use = composition.uses()[number.use];
+      const EffectParameter& parameter = use.effect->about().parameters[number.parameter];
+      if (use.id() == candidate.id() && !parameter.auxiliary()) {
+        const double side = parameter.null_value >= parameter.upper ? -1.0 : 1.0;
+        start[i] = number.inside(
+            number.theta_of(parameter.null_value + side * typicals * parameter.typical));
+      }
+    }
+    const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
+    if (chi2 < least) {
+      least = chi2;
+      best = std::move(start);
+    }
+  }
+  return best;
+}
+
+/// Derivatives by a composition's numbers as they are beside the model without the candidate; none
+/// where these say too little: of a relaxation time while its strength is null, of what grows by
+/// its square, or where the model is far off.
+std::optional<Eigen::MatrixXd> Search::chord_of(const Candidate& candidate,
+                                                const Direction& direction,
+                                                const Composition& composition) const {
+  if (begun_) {
+    return std::nullopt;
+  }
+  const auto& numbers = composition.numbers();
+  Eigen::MatrixXd chord(base_.fit.residual.size(), static_cast<Eigen::Index>(numbers.size()));
+  std::vector<bool> taken(base_.fit.theta.size(), false);
+  Eigen::Index strength = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::optional<std::size_t> held = place_in(base_.composition, composition, i, taken);
+    const auto column = static_cast<Eigen::Index>(i);
+    if (numbers[i].power != 1.0) {
+      return std::nullopt;
+    }
+    if (held) {
+      taken[*held] = true;
+      const double scale = numbers[i].scale / base_.composition.numbers()[*held].scale;
+      chord.col(column) = scale * base_.fit.jacobian.col(static_cast<Eigen::Index>(*held));
+    } else if (composition.uses()[numbers[i].use].id() == candidate.id() &&
+               strength < direction.columns.cols()) {
+      chord.col(column) = direction.columns.col(strength++);
+    } else {
+      return std::nullopt;
+    }
+  }
+  return chord;
+}
+
+std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
+  const Candidate& candidate = candidates_[index];
+  const Direction& direction = directions_[index];
+  const Model model = with(base_.model, candidate, true);
+  Composition composition(model, study_.campaign());
+  const auto chord = chord_of(candidate, direction, composition);
+  ModelFit fit =
+      fit_model(composition, study_.residuals(), serial_on(worker),
+                begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
+  if (begun_) {
+    // Begin again from where the model's numbers started.
+    const Composition again(with(*begun_, candidate, true), study_.campaign());
+    ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
+                               carry(again, again.start(), composition));
+    if (other.objective() < fit.objective()) {
+      fit = std::move(other);
+    }
+  }
+  const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
+  if (candidate.one_sided &&
+      (evidence_of(direction, candidate) < kWorthRefitting || (even && begun_))) {
+    // At null its first order is what others take up, or a large one bends away from it: only a
+    // finite size shows what it does.
+    ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
+                               begin_large(candidate, composition, worker));
+    if (other.objective() < fit.objective()) {
+      fit = std::move(other);
+    }
+  }
+  if (put_branches_in_order(composition, fit.theta)) {
+    fit = fit_model(composition, study_.residuals(), serial_on(worker), fit.theta);
+  }
+  Refit out = described(index, model, std::move(composition), std::move(fit), worker);
+  out.rough = chord.has_value();
+  return out;
+}
+
+Refit Search::described(std::size_t index, const Model& model, Composition composition,
+                        ModelFit fit, std::size_t worker) {
+  const Candidate& candidate = candidates_[index];
+  const Misfit misfit =
+      misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition), worker);
+  Refit out{index,
+            {fitted(model, composition, fit), std::move(composition), std::move(fit), misfit}};
+  const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
+                         out.studied.fit.degrees_of_freedom(out.studied.composition);
+  out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
+  out.one_sided = candidate.one_sided && freedom < 1.5;
+  out.scatter = scatter_over_noise(out.studied, candidate.id(), study_.residuals().per_shot());
+  out.chi2_in_base_noise =
+      study_.residuals()
+          .evaluate_in_noise_of(base_.composition, base_.fit.theta, out.studied.composition,
+                                out.studied.fit.theta, worker)
+          .squaredNorm();
+  out.products = product_test_of(out.studied, candidate.id(), study_.campaign());
+  return out;
+}
+
+/// Rates rivals by one measure of the noise, that of the best: what they leave of each other's
+/// misfit must not count as noise.
+void Search::rate(std::vector<Refit>& list) const {
+  const auto best = std::min_element(list.begin(), list.end(), [](const Refit& a, const Refit& b) {
+    return a.studied.fit.objective() < b.studied.fit.objective();
+  });
+  if (best == list.end()) {
+    return;
+  }
+  const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
+  for (Refit& refit : list) {
+    double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+    over_noise *= share_beside_unconfirmed(
+        refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.one_sided)));
+    refit.gain = over_noise / refit.scatter;
+    refit.log_p = chance_of(refit);
+    // The shots' scatter tells how well a gain is known, and only roughly: divided by one rival's
+    // own, what fits best would come behind what fits worse. But slow noise gives additions more
+    // than their rivals.
+    const bool addition = is_addition(*candidates_[refit.candidate].use.effect);
+    refit.doubt = addition ? 1.0 : refit.scatter;
+    refit.evidence = equivalent_square(
+        log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));
+    if (refit.products) {
+      // What differs between the shots may have been taken for noise: then its gain says too
+      // little.
+      refit.evidence = std::max(refit.evidence, equivalent_square(refit.log_p));
+    }
+  }
+}
+
+/// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no
+/// better than so many degrees of freedom do.
+double Search::chance_of(const Refit& refit) const {
+  const EffectUse& use = candidates_[refit.candidate].use;
+  if (refit.products) {
+    // Nothing else is judged by products: what has been sought among is the effect's own variants.
+    const auto variants = std::count_if(candidates_.begin(), candidates_.end(), [&](const auto& c) {
+      return c.id() == use.id() && c.use.per_shot && !c.use.alike;
+    });
+    return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
+  }
+  if (use.per_shot || refit.gain <= 0.0) {
+    return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
+  }
+  const double freedom = std::max(refit.freedom, 1.0);
+  const double log_p = log_f_tail(refit.gain / freedom, freedom, known_of(use));
+  return refit.one_sided ? log_p - std::log(2.0) : log_p;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processing/criticism/search/candidates.hpp"
+#include "processing/criticism/search/product_test.hpp"
+#include "processing/criticism/search/safeguards.hpp"
+
+namespace kolsky {
+
+/// A candidate refitted in full beside the model.
+struct Refit {
+  std::size_t candidate = 0;
+  Studied studied;
+  double freedom = 1.0;
+  bool one_sided = false;
+  double chi2_in_base_noise = 0.0;  ///< its residuals whitened as those without the candidate
+  double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
+  /// That strengths which every shot and gauge has of its own are products all the same.
+  std::optional<ProductTest> products = std::nullopt;
+  double gain = 0.0;      ///< of the objective, over the noise and the shots' scatter
+  double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
+  double doubt = 1.0;     ///< the scatter, where the evidence is that over the noise alone
+  double log_p = 0.0;
+  /// With derivatives of the model without the candidate: cheap, and near enough for what is far
+  /// behind.
+  bool rough = false;
+};
+
+/// By how much one refit stands before another, as a square of a normal deviate. Noise that is
+/// greater in the direction of either than its spectrum says makes the difference weigh less.
+[[nodiscard]] double lead(const Refit& ahead, const Refit& behind);
+
+/// One search for what a fitted model lacks: every candidate tested at first order, those near the
+/// best refitted in full.
+class Search {
+ public:
+  /// @param base   the model as fitted; outlives this
+  /// @param start  the same before anything was fitted
+  Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards = {});
+
+  [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// Of the candidates, one each.
+  [[nodiscard]] const std::vector<Direction>& directions() const { return directions_; }
+
+  /// ln of the chance that the best of all candidates does as well on noise.
+  [[nodiscard]] double with_search(double log_p) const;
+
+  [[nodiscard]] double log_trials() const;
+  /// ln of the chance of what was refitted, sought among its own variants only.
+  [[nodiscard]] double without_search(const Refit& refit) const;
+  /// By candidate: degrees of freedom by which noise is known in its direction.
+  [[nodiscard]] std::vector<double> known() const;
+
+  /// The candidates worth it, refitted; the best first.
+  [[nodiscard]] std::vector<Refit> refits();
+
+ private:
+  [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
+  [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const;
+  [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
+  void add_relatives(const std::vector<std::pair<double, std::size_t>>& ranked,
+                     std::vector<std::size_t>& chosen) const;
+  [[nodiscard]] std::vector<double> begin_near(const Candidate& candidate,
+                                               const Direction& direction,
+                                               const Composition& composition,
+                                               std::size_t worker) const;
+  [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
+                                                const Composition& composition,
+                                                std::size_t worker) const;
+  [[nodiscard]] std::optional<Eigen::MatrixXd> chord_of(const Candidate& candidate,
+                                                        const Direction& direction,
+                                                        const Composition& composition) const;
+  [[nodiscard]] std::optional<Refit> refit(std::size_t index, std::size_t worker);
+  [[nodiscard]] Refit described(std::size_t index, const Model& model, Composition composition,
+                                ModelFit fit, std::size_t worker);
+  void refine(std::vector<Refit>& list);
+  [[nodiscard]] bool admissible(const Refit& refit) const;
+  [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
+  void rate_in_order(std::vector<Refit>& list) const;
+  void rate(std::vector<Refit>& list) const;
+  void note_unconfirmed(const Refit& refit);
+  [[nodiscard]] double share_beside_unconfirmed(const Refit& refit, double evidence) const;
+  [[nodiscard]] double known_of(const EffectUse& use) const;
+  [[nodiscard]] double chance_of(const Refit& refit) const;
+
+  Study& study_;
+  const Studied& base_;
+  std::optional<Model> begun_;  ///< where fits begin again, if the model may have gone astray
+  Safeguards safeguards_;
+  std::vector<Candidate> candidates_;
+  std::vector<Direction> directions_;
+  double trials_ = 1.0;
+  /// Strengths of single shots that explain most of all and that nothing confirms: slow noise, or
+  /// something slow that the library lacks.
+  struct Unconfirmed {
+    std::size_t candidate = 0;
+    double evidence = 0.0;
+  };
+  std::optional<Unconfirmed> unconfirmed_;
+};
+
+}  // namespace kolsky

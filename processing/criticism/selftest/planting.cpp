@@ -1,0 +1,260 @@
+#include "processing/criticism/selftest/planting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "processing/bridge/bridge.hpp"
+#include "processing/criticism/search/candidates.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kBeyond = 2.0;    ///< smoothing sets in so far above the judged band
+constexpr double kGate_s = 10e-6;  ///< before the foot, over which the wave sets in
+
+std::vector<Complex> spectrum_of(DampedTransform& transform, const std::vector<double>& record) {
+  std::vector<Complex> spectrum(transform.bins());
+  transform.forward(record, spectrum);
+  return spectrum;
+}
+
+/// A Gaussian of frequency, made flat to sixth order: what is planted must be whole in the judged
+/// band. Its transform holds for complex s as it stands.
+Complex smoothing(Complex s) {
+  const Complex x = 0.5 * s * s;
+  return std::exp(x) * (1.0 - x + 0.5 * x * x);
+}
+
+/// What smoothing sends ahead of a record's start comes back at the transform's end, grown by the
+/// damping: it must not be the record's.
+std::size_t padded(std::size_t samples) {
+  return samples + samples / 4;
+}
+
+/// Zero until a little before the foot.
+double gate(double time_s) {
+  if (time_s >= 0.0) {
+    return 1.0;
+  }
+  const double place = 1.0 + time_s / kGate_s;
+  return place <= 0.0 ? 0.0 : 0.5 * (1.0 - std::cos(std::numbers::pi * place));
+}
+
+std::int32_t rounded(const ChannelRecord& channel, double code) {
+  return static_cast<std::int32_t>(std::lround(std::clamp(
+      code, static_cast<double>(channel.code_min), static_cast<double>(channel.code_max))));
+}
+
+}  // namespace
+
+Model with_use(const Model& model, const EffectUse& use) {
+  Model after = model;
+  std::erase_if(after.effects, [&](const EffectUse& own) { return own.id() == use.id(); });
+  after.effects.push_back(use);
+  return after;
+}
+
+bool two_sided(const EffectUse& use) {
+  const EffectParameter& strength = use.effect->about().parameters.front();
+  return strength.lower < strength.null_value && strength.upper > strength.null_value;
+}
+
+Planter::Planter(const std::vector<Shot>& shots, Study& study, const Studied& studied)
+    : shots_(shots),
+      campaign_(study.campaign()),
+      studied_(studied),
+      smoothing_rad_per_s_(kBeyond * 2.0 * std::numbers::pi * study.residuals().band().limit_Hz) {
+  find_waves();
+}
+
+void Planter::find_waves() {
+  const std::size_t samples = campaign_.shots.front().strain.front().size();
+  DampedTransform transform(padded(samples), campaign_.period_s);
+  for (std::size_t k = 0; k < transform.bins(); ++k) {
+    path_.push_back(transform.s(k));
+  }
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    const CampaignShot& shot = campaign_.shots[n];
+    std::vector<double> record = shot.strain[campaign_.reference];
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record[i] *= gate(shot.facts.time_s[i]);
+    }
+    auto spectrum = spectrum_of(transform, record);
+    Scene scene(campaign_.bench, shot.facts, path_);
+    shape(studied_.composition.applied(studied_.fit.theta, n), scene);
+    const Transfers transfers = transfers_of(scene, campaign_.reference);
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+      const Complex mean = mean_over_length(scene, campaign_.reference, k);
+      spectrum[k] *= smoothing(path_[k] / smoothing_rad_per_s_) /
+                     (transfers.reading[campaign_.reference][k] / mean * invertible(mean));
+    }
+    std::vector<double> wave(samples);
+    transform.inverse(spectrum, wave);
+    waves_.push_back(std::move(wave));
+  }
+}
+
+std::vector<Planter::Record> Planter::through(const Composition& composition,
+                                              const std::vector<double>& theta,
+                                              std::size_t shot) const {
+  const CampaignShot& own = campaign_.shots[shot];
+  DampedTransform transform(padded(waves_[shot].size()), campaign_.period_s);
+  Scene scene(campaign_.bench, own.facts, path_);
+  shape(composition.applied(theta, shot), scene);
+  const Transfers transfers = transfers_of(scene, campaign_.reference);
+  const auto wave = spectrum_of(transform, waves_[shot]);
+  std::vector<Record> readings;
+  std::vector<Complex> spectrum(wave.size());
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    for (std::size_t k = 0; k < wave.size(); ++k) {
+      spectrum[k] = transfers.reading[j][k] * wave[k];
+    }
+    Record reading(waves_[shot].size());
+    transform.inverse(spectrum, reading);
+    const std::vector<double>& addition = scene.record.additions[j];
+    for (std::size_t i = 0; i < reading.size(); ++i) {
+      const double strain = reading[i];
+      reading[i] *= 1.0 + scene.record.bridge_b * strain + scene.record.bridge_c * strain * strain;
+      reading[i] += addition.empty() ? 0.0 : addition[i];
+    }
+    readings.push_back(std::move(reading));
+  }
+  return readings;
+}
+
+std::string Planter::impossible_because(const EffectUse& use) const {
+  const Composition composition(with_use(studied_.model, use), campaign_);
+  Scene scene(campaign_.bench, campaign_.shots.front().facts, path_);
+  shape(composition.applied(composition.start(), 0), scene);
+  if (scene.specimen && scene.specimen->nonlinear()) {
+    return "the specimen's answer is not linear: records cannot be changed by adding to them";
+  }
+  if (!scene.record.maps.empty()) {
+    return "a map of records that an expression gives is not planted yet";
+  }
+  return use.effect->untestable_because(campaign_.bench);
+}
+
+std::vector<double> numbers_with(const Studied& studied, const Composition& composition,
+                                 const EffectUse& use, std::size_t gauges) {
+  const Composition& base = studied.composition;
+  std::vector<double> theta = carry(base, studied.fit.theta, composition);
+  const bool filed = std::any_of(base.uses().begin(), base.uses().end(),
+                                 [&](const EffectUse& own) { return own.id() == use.id(); });
+  const bool each_gauge = use.effect->about().each_gauge;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    if (composition.uses()[number.use].id() == use.id()) {
+      // Alike at all gauges it would be a wave's: every other gauge has the opposite.
+      const bool strength =
+          !use.effect->about().parameters[number.parameter].auxiliary() && each_gauge;
+      const double sign = strength && place++ % gauges % 2 == 1 ? -1.0 : 1.0;
+      const double value = sign * use.values[number.parameter].value;
+      // A filed number is moved from where the fit has it.
+      theta[i] =
+          filed ? theta[i] + (value - use.effect->about().parameters[number.parameter].null_value) /
+                                 number.scale
+                : number.theta_of(value);
+    }
+  }
+  return theta;
+}
+
+void add_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
+                const std::vector<double>& more, ChannelRecord& channel) {
+  const Gauge& own = campaign.bench.gauges[gauge];
+  const BridgeConversion bridge(own, campaign.bench.bar_of(own), campaign.bench.positive);
+  for (std::size_t i = 0; i < channel.codes.size(); ++i) {
+    const double reading = bridge.reading(strain[i] + more[i]) - bridge.reading(strain[i]);
+    channel.codes[i] =
+        rounded(channel, static_cast<double>(channel.codes[i]) + reading / channel.scale);
+  }
+}
+
+void replace_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
+                    std::size_t quiet, ChannelRecord& channel) {
+  const Gauge& own = campaign.bench.gauges[gauge];
+  const BridgeConversion bridge(own, campaign.bench.bar_of(own), campaign.bench.positive);
+  double baseline = 0.0;
+  for (std::size_t i = 0; i < quiet; ++i) {
+    baseline += static_cast<double>(channel.codes[i]) / static_cast<double>(quiet);
+  }
+  for (std::size_t i = 0; i < channel.codes.size(); ++i) {
+    channel.codes[i] = rounded(channel, baseline + bridge.reading(strain[i]) / channel.scale);
+  }
+}
+
+std::vector<Shot> Planter::planted(const EffectUse& use) const {
+  const Composition composition(with_use(studied_.model, use), campaign_);
+  const std::vector<double> theta = numbers_with(studied_, composition, use, campaign_.gauges());
+  std::vector<Shot> shots = shots_;
+  for (std::size_t n = 0; n < shots.size(); ++n) {
+    const auto with = through(composition, theta, n);
+    const auto without = through(studied_.composition, studied_.fit.theta, n);
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      Record more = with[j];
+      for (std::size_t i = 0; i < more.size(); ++i) {
+        more[i] -= without[j][i];
+      }
+      add_strain(campaign_, j, campaign_.shots[n].strain[j], more, shots[n].channels[j]);
+    }
+  }
+  return shots;
+}
+
+std::vector<std::vector<double>> fresh_noise(const Campaign& campaign, std::size_t shot,
+                                             std::uint64_t seed) {
+  // White numbers through what was recorded before a pulse: the sum over shots has the mean of
+  // their correlations, between samples and between gauges.
+  const std::size_t samples = campaign.shots[shot].strain.front().size();
+  std::mt19937_64 random(seed * 1000003U + shot);
+  std::normal_distribution<double> normal;
+  std::vector<std::vector<double>> noise(campaign.gauges(), std::vector<double>(samples, 0.0));
+  const double shots = static_cast<double>(campaign.shots.size());
+  for (const CampaignShot& own : campaign.shots) {
+    const std::size_t quiet = own.quiet_samples;
+    DampedTransform transform(samples + 2 * quiet, campaign.period_s);
+    std::vector<double> drawn(samples + quiet);
+    for (double& value : drawn) {
+      value = normal(random) / std::sqrt(shots * static_cast<double>(quiet));
+    }
+    const auto white = spectrum_of(transform, drawn);
+    for (std::size_t j = 0; j < noise.size(); ++j) {
+      auto spectrum = spectrum_of(
+          transform,
+          {own.strain[j].begin(), own.strain[j].begin() + static_cast<std::ptrdiff_t>(quiet)});
+      for (std::size_t k = 0; k < spectrum.size(); ++k) {
+        spectrum[k] *= white[k];
+      }
+      std::vector<double> whole(samples + quiet);
+      transform.inverse(spectrum, whole);
+      for (std::size_t i = 0; i < samples; ++i) {
+        noise[j][i] += whole[i + quiet];
+      }
+    }
+  }
+  return noise;
+}
+
+std::vector<Shot> Planter::drawn_anew(std::uint64_t seed) const {
+  std::vector<Shot> shots = shots_;
+  for (std::size_t n = 0; n < shots.size(); ++n) {
+    auto strain = through(studied_.composition, studied_.fit.theta, n);
+    const auto noise = fresh_noise(campaign_, n, seed);
+    for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+      for (std::size_t i = 0; i < strain[j].size(); ++i) {
+        strain[j][i] += noise[j][i];
+      }
+      replace_strain(campaign_, j, strain[j], campaign_.shots[n].quiet_samples,
+                     shots[n].channels[j]);
+    }
+  }
+  return shots;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/search/candidate_table.hpp"
+#include "processing/criticism/search/safeguards.hpp"
+
+namespace kolsky {
+
+enum class DiagnosisVerdict { named, tied, unknown, adequate, untestable, bad_data };
+
+[[nodiscard]] std::string name_of(DiagnosisVerdict verdict);
+
+struct HeldOut {
+  double before = 0.0;  ///< chi2 per residual on shots the fit did not see, what is filed included
+  double after = 0.0;
+  double floor = 1.0;  ///< what noise alone leaves
+};
+
+struct NextExperiment {
+  std::string change;
+  std::vector<std::string> separates;
+};
+
+struct Diagnosis {
+  DiagnosisVerdict verdict = DiagnosisVerdict::adequate;
+  std::vector<std::string> effects;  ///< certified, in the order added
+  std::map<std::string, std::vector<std::string>> tied_with;
+  Misfit before;
+  Misfit after;
+  HeldOut held_out;
+  std::vector<CandidateResult> candidates;
+  std::vector<NextExperiment> next_experiment;
+  std::vector<std::string> notes;  ///< how it was certified and what limits it, for people
+  std::optional<Model> model;      ///< with the certified effects, fitted
+  double unexplained_log_p = 0.0;  ///< ln probability of what remains in the final residuals
+};
+
+struct DiagnosisOptions {
+  std::size_t most_effects = 3;
+  double log_alpha = -5.8;  ///< ln of the chance of a false claim, or a false "unknown": 0.3 %
+  std::function<void(const std::string&)> progress = [](const std::string&) {};
+  Safeguards safeguards{};
+};
+
+/// Finds what a model lacks (diagnosis.md). @throws InputError as read_campaign
+[[nodiscard]] Diagnosis diagnose(Study& study, const Model& model, const DiagnosisOptions& options);
+
+}  // namespace kolsky

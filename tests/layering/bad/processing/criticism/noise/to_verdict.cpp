@@ -1,0 +1,1 @@
+#include "processing/criticism/verdict/diagnosis.hpp"
