@@ -8,11 +8,11 @@ namespace kolsky {
 
 namespace {
 
-/// Curvature psi'(x) over psi'(0) of a semi-infinite Timoshenko beam whose end carries a moment and
-/// no shear force. With w, psi ~ exp(-beta x):
+/// Curvature at x over psi'(0) of a semi-infinite Timoshenko beam whose end carries a moment and no
+/// shear force: of the rotation, psi', or of the deflection, w''. With w, psi ~ exp(-beta x):
 ///   beta^4 - rho s^2 (J + 1/(kappa G)) beta^2 + rho s^2 J (A/I + rho s^2/(kappa G)) = 0,
 ///   psi = w (rho s^2/(kappa G) - beta^2) / beta.
-Complex curvature_ratio(const BarScene& bar, Complex s, Complex J, double x) {
+Complex curvature_ratio(const BarScene& bar, Complex s, Complex J, double x, bool of_deflection) {
   const double nu = bar.poisson_ratio;
   const double kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
   const Complex shear = 2.0 * (1.0 + nu) * J / kappa;  // 1/(kappa G)
@@ -33,7 +33,9 @@ Complex curvature_ratio(const BarScene& bar, Complex s, Complex J, double x) {
   const Complex w2_over_w1 = -b2 / b1;
   const Complex near = -b1 * psi1;
   const Complex far = -b2 * psi2 * w2_over_w1;
-  return (near * std::exp(-b1 * x) + far * std::exp(-b2 * x)) / (near + far);
+  const Complex near_seen = of_deflection ? b1 * b1 : near;
+  const Complex far_seen = of_deflection ? b2 * b2 * w2_over_w1 : far;
+  return (near_seen * std::exp(-b1 * x) + far_seen * std::exp(-b2 * x)) / (near + far);
 }
 
 }  // namespace
@@ -56,7 +58,7 @@ void add_bending(const Scene& scene, std::size_t reference,
           bar.density_kg_m3 * s * s / (bar.gamma_per_m[k] * bar.gamma_per_m[k]) * at_end;
       const Complex J = bar.J_per_Pa[k];
       readings[j][k] += gauge.offset_m * 4.0 / bar.radius_m * stress * J *
-                        curvature_ratio(bar, s, J, gauge.position_m);
+                        curvature_ratio(bar, s, J, gauge.position_m, gauge.bends_as_deflection);
     }
   }
 }

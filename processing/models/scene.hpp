@@ -63,9 +63,10 @@ struct GaugeScene {
   std::string name{};
   std::size_t bar = 0;  ///< 0 input, 1 output
   double position_m = 0.0;
-  double length_m = 0.0;          ///< over which it takes the mean; 0: a point
-  std::vector<Complex> factor{};  ///< reading over that mean, on the path
-  double offset_m = 0.0;          ///< chi of bending (effects.md)
+  double length_m = 0.0;             ///< over which it takes the mean; 0: a point
+  std::vector<Complex> factor{};     ///< reading over that mean, on the path
+  double offset_m = 0.0;             ///< chi of bending (effects.md)
+  bool bends_as_deflection = false;  ///< its strain follows w'', not the rotation's slope
   std::vector<std::pair<std::size_t, double>> picks_up{};  ///< crosstalk: gauge and its share
 };
 

@@ -57,7 +57,11 @@ const std::map<std::string, std::function<void(BarWorld&, const HiddenEffect&)>>
       {"temperature", [](W& w, const H& e) { w.material.per_kelvin = e.strength; }},
       {"end-reflection", [](W& w, const H& e) { w.end_r = e.strength; }},
       {"geometric-dispersion", [](W& w, const H& e) { w.dispersive = e.strength != 0.0; }},
-      {"bending", [](W& w, const H& e) { w.bending_m = e.strength; }},
+      {"bending",
+       [](W& w, const H& e) {
+         w.bending_m = e.strength;
+         w.bends_as_deflection = e.detail("deflection", 0.0) != 0.0;
+       }},
       {"bar-length", [](W& w, const H& e) { w.length_m += e.strength; }},
       {"bridge-nonlinearity", [](W& w, const H& e) { w.bridge_b = e.strength; }},
       {"mains-hum",

@@ -108,11 +108,12 @@ const Responses& BarForward::wave_responses(const BarWorld& world, const KelvinC
 
 const Responses& BarForward::bending_responses(const BarWorld& world, const KelvinChain& chain) {
   Key key{key_numbers(world, chain)};
-  key.numbers.push_back(-1.0);
+  key.numbers.push_back(world.bends_as_deflection ? -2.0 : -1.0);
   return remembered(key, [&] {
-    return beam_response({chain, world.material.density_kg_m3, world.material.poisson_ratio,
-                          world.radius_m, stations_of(world.gauges), world.timing.window_s()},
-                         {world.timing.knot_s()});
+    return beam_response(
+        {chain, world.material.density_kg_m3, world.material.poisson_ratio, world.radius_m,
+         stations_of(world.gauges), world.timing.window_s(), world.bends_as_deflection},
+        {world.timing.knot_s()});
   });
 }
 

@@ -85,6 +85,7 @@ struct BarWorld {
   std::optional<double> end_r;  ///< end-reflection present, R = -1 + r
   bool dispersive = false;      ///< the exact bar in place of the elementary one
   double bending_m = 0.0;
+  bool bends_as_deflection = false;
   double bridge_b = 0.0;
   TrueHum hum;
   // Withheld from the library.

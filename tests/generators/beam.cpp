@@ -53,6 +53,7 @@ class Beam {
     shear_ = E / (2.0 * (1.0 + nu)) * area * 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
     moment_per_Pa_m_ = area;
     radius_m_ = problem.radius_m;
+    of_deflection_ = problem.of_deflection;
     for (std::size_t e = 0; e < elements; ++e) {
       for (std::size_t k = 0; k < kPoints; ++k) {
         const double length = 0.5 * element_m * rule_.weight[k];
@@ -82,14 +83,34 @@ class Beam {
     const auto element = std::min(static_cast<std::size_t>(x_m / element_m_), elements_ - 1);
     const double x = 2.0 * (x_m / element_m_ - static_cast<double>(element)) - 1.0;
     const std::vector<double> slopes = lagrange_slopes(rule_, x);
+    const Line turn = of_deflection_ ? deflection_slopes(element) : turns(element);
     double curvature = 0.0;
     for (std::size_t m = 0; m < kPoints; ++m) {
-      curvature += slopes[m] * 2.0 / element_m_ * turn_.value[element * kOrder + m];
+      curvature += slopes[m] * 2.0 / element_m_ * turn[m];
     }
     return radius_m_ * curvature;
   }
 
  private:
+  [[nodiscard]] Line turns(std::size_t element) const {
+    Line out{};
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      out[k] = turn_.value[element * kOrder + k];
+    }
+    return out;
+  }
+
+  [[nodiscard]] Line deflection_slopes(std::size_t element) const {
+    Line out{};
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      for (std::size_t m = 0; m < kPoints; ++m) {
+        out[k] +=
+            2.0 / element_m_ * rule_.derivative[k][m] * deflection_.value[element * kOrder + m];
+      }
+    }
+    return out;
+  }
+
   void element_forces(std::size_t element, double A, double B, double step_s) {
     const double scale = 2.0 / element_m_;
     const std::size_t first = element * kOrder;
@@ -143,6 +164,7 @@ class Beam {
   Field deflection_, turn_;
   std::size_t elements_;
   double bending_, shear_, moment_per_Pa_m_, radius_m_;
+  bool of_deflection_ = false;
   std::vector<std::vector<std::array<Viscous, 2>>> viscous_;
 };
 

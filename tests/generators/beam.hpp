@@ -13,10 +13,13 @@ struct BeamProblem {
   double radius_m = 0.010;
   std::vector<double> stations_m;
   double window_s = 2e-3;
+  /// What a gauge is taken to read: the curvature of the deflection instead of the section's turn.
+  bool of_deflection = false;
 };
 
-/// Bending strain of the surface, radius times the turn of the section per length, at each station:
-/// per pascal of axial stress at the end and metre of eccentricity. The beam goes on for ever.
+/// Bending strain of the surface, radius times the turn of the section per length (or times w''),
+/// at each station: per pascal of axial stress at the end and metre of eccentricity. The beam goes
+/// on for ever.
 [[nodiscard]] Responses beam_response(const BeamProblem& problem, const UnitSource& source,
                                       double output_step_s = 0.5e-6);
 

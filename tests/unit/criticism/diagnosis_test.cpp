@@ -130,7 +130,8 @@ INSTANTIATE_TEST_SUITE_P(Effects, Single,
                          ::testing::Values("gauge-position:g3=0.003", "gauge-factor:g2=0.02",
                                            "end-reflection=0.2", "series-dashpot=3e-8",
                                            "temperature=0.004", "crosstalk:g2=0.02",
-                                           "bridge-nonlinearity=8"));
+                                           "bridge-nonlinearity=8", "bending=2e-5",
+                                           "bending=2e-5,deflection=1"));
 
 // At little noise the material's own branch can turn dashpot and a further relaxation take its
 // place, with the same records to show for it; beside it a dashpot says little at first order.
