@@ -50,6 +50,12 @@ class Products {
     return best;
   }
 
+  /// The same with equal shares.
+  [[nodiscard]] double explained_alike(const Eigen::VectorXd& z) const {
+    const Eigen::MatrixXd of_shots = by_shot(Eigen::VectorXd::Ones(gauges_));
+    return share_of(of_shots, least_squares(of_shots, z), z);
+  }
+
   /// The same for strengths at one gauge only, each shot's its own.
   [[nodiscard]] double at_one_gauge(const Eigen::VectorXd& z) const {
     double best = 0.0;
@@ -86,15 +92,31 @@ class Products {
   Eigen::Index gauges_;
 };
 
-struct Moments {
-  double mean = 0.0;
-  double variance = 0.0;
+/// Of a share over draws.
+class Moments {
+ public:
+  void add(double share) {
+    sum_ += share;
+    squares_ += share * share;
+  }
+  [[nodiscard]] double mean() const { return sum_ / kDraws; }
+  [[nodiscard]] double variance() const { return squares_ / kDraws - mean() * mean(); }
+
+ private:
+  double sum_ = 0.0;
+  double squares_ = 0.0;
 };
 
-/// The share that products explain of noise: of strengths that are independent from place to place,
-/// with the powers of cosine and sine that were found over all places.
-Moments shares_of_noise(const Products& products, const Eigen::MatrixXd& root,
-                        const Eigen::VectorXd& white, std::size_t places) {
+/// Shares that products explain.
+struct NoiseShares {
+  Moments any;
+  Moments alike;
+};
+
+/// What products explain of noise: of strengths that are independent from place to place, with the
+/// powers of cosine and sine that were found over all places.
+NoiseShares shares_of_noise(const Products& products, const Eigen::MatrixXd& root,
+                            const Eigen::VectorXd& white, std::size_t places) {
   const auto count = static_cast<Eigen::Index>(places);
   const Eigen::VectorXd found = root.transpose() * solve_symmetric(root * root.transpose(), white);
   const Eigen::Map<const Eigen::MatrixXd> parts(found.data(), count, 2);
@@ -103,27 +125,37 @@ Moments shares_of_noise(const Products& products, const Eigen::MatrixXd& root,
   std::mt19937_64 random(kSearchSeed);
   std::normal_distribution<double> normal;
   Eigen::MatrixXd drawn(count, 2);
-  Moments shares;
-  double squares = 0.0;
+  NoiseShares shares;
   for (int n = 0; n < kDraws; ++n) {
     for (double& value : drawn.reshaped()) {
       value = normal(random);
     }
     const Eigen::MatrixXd noise = drawn * spread;
     const Eigen::VectorXd z = root * noise.reshaped();
-    const double share = products.explained(z) / z.squaredNorm();
-    shares.mean += share / kDraws;
-    squares += share * share / kDraws;
+    shares.any.add(products.explained(z) / z.squaredNorm());
+    shares.alike.add(products.explained_alike(z) / z.squaredNorm());
   }
-  shares.variance = squares - shares.mean * shares.mean;
   return shares;
 }
 
 /// ln of the chance that a beta-distributed share with these moments is as large.
-double log_beta_tail(double share, double mean, double variance) {
-  const double both = mean * (1.0 - mean) / variance - 1.0;
+double log_beta_tail(double share, const Moments& noise) {
+  const double mean = noise.mean();
+  const double both = mean * (1.0 - mean) / noise.variance() - 1.0;
   const double tail = boost::math::ibetac(mean * both, (1.0 - mean) * both, std::min(share, 1.0));
   return std::log(std::max(tail, std::numeric_limits<double>::min()));
+}
+
+/// What products of one form say, beside what a single gauge would explain.
+ProductTest judged(double explained, double at_one_gauge, double all, double seen,
+                   const Moments& noise) {
+  const double share = all > 0.0 ? explained / all : 0.0;
+  if (share <= noise.mean() || noise.variance() <= 0.0) {
+    return {};
+  }
+  const double freedom = seen * (1.0 - noise.mean());
+  const double rest = std::max(all - explained, 1e-12 * all) / freedom;
+  return {log_beta_tail(share, noise), (explained - at_one_gauge) / rest};
 }
 
 }  // namespace
@@ -143,20 +175,16 @@ ProductTest test_products(const Eigen::VectorXd& strengths, const Eigen::MatrixX
       lambda.tail(seen).cwiseSqrt().cwiseInverse().asDiagonal() *
       (solver.eigenvectors().rightCols(seen).transpose() * (information * strengths));
   const Products products(root, shots, gauges);
+  const NoiseShares noise = shares_of_noise(products, root, white, shots * gauges);
   const double all = white.squaredNorm();
-  const double explained = products.explained(white);
-
-  const double share = all > 0.0 ? explained / all : 0.0;
-  const auto [mean, variance] = shares_of_noise(products, root, white, shots * gauges);
-  if (share <= mean || variance <= 0.0) {
-    return {};
-  }
-  ProductTest test;
-  test.log_p = log_beta_tail(share, mean, variance);
-  const double freedom = static_cast<double>(seen) * (1.0 - mean);
-  const double rest = std::max(all - explained, 1e-12 * all) / freedom;
-  test.beyond_one_gauge = (explained - products.at_one_gauge(white)) / rest;
-  return test;
+  const double at_one_gauge = products.at_one_gauge(white);
+  const auto count = static_cast<double>(seen);
+  const ProductTest any = judged(products.explained(white), at_one_gauge, all, count, noise.any);
+  const ProductTest alike =
+      judged(products.explained_alike(white), at_one_gauge, all, count, noise.alike);
+  ProductTest better = alike.log_p < any.log_p ? alike : any;
+  better.log_p = std::min(0.0, better.log_p + std::log(2.0));
+  return better;
 }
 
 }  // namespace kolsky

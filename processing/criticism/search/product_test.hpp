@@ -16,6 +16,8 @@ struct ProductTest {
 
 /// Noise here is whatever differs from place to place, whatever its power in cosine and sine: the
 /// share that products explain is compared with the share that they explain of simulated noise.
+/// Products whose shares are all equal are tried by themselves: they have less freedom, so that a
+/// hum which is alike at all gauges stands out sooner. The better of both counts, as one of two.
 /// @param strengths    cosine parts, then sine parts; in each by shot and then by gauge; under a
 ///                     prior of unit deviation around zero
 /// @param information  inverse of their posterior covariance, that prior included
