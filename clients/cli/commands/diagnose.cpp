@@ -11,6 +11,7 @@
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/comparison_page.hpp"
 #include "clients/cli/reports/criticism_text.hpp"
+#include "clients/cli/reports/diagnosis_text.hpp"
 #include "clients/cli/reports/impact_criticism.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
@@ -50,6 +51,8 @@ JsonValue describe(const CandidateResult& candidate) {
                     {"smallest_detectable", candidate.detectable},
                     {"smallest_identifiable", candidate.identifiable},
                     {"nearest_rival", candidate.nearest_rival},
+                    {"refitted", candidate.refitted},
+                    {"per_shot", candidate.per_shot},
                     {"verdict", candidate.verdict}};
 }
 
@@ -81,54 +84,6 @@ JsonObject describe(const Diagnosis& diagnosis) {
                                                    : JsonValue(JsonObject{})},
                     {"unexplained_log_p", diagnosis.unexplained_log_p},
                     {"notes", diagnosis.notes}};
-}
-
-std::string notes(const Diagnosis& diagnosis) {
-  std::string text;
-  for (const std::string& note : diagnosis.notes) {
-    text += "  note: " + note + "\n";
-  }
-  return text;
-}
-
-std::string report(const Diagnosis& diagnosis) {
-  std::string text = "verdict: " + kolsky::name_of(diagnosis.verdict) + "\n";
-  for (const std::string& id : diagnosis.effects) {
-    text += "  missing: " + id;
-    const auto& ties = diagnosis.tied_with.at(id);
-    for (std::size_t i = 0; i < ties.size(); ++i) {
-      text += (i == 0 ? "   (cannot be told from " : ", ") + ties[i];
-    }
-    text += ties.empty() ? "\n" : ")\n";
-  }
-  if (!diagnosis.model) {
-    return text + notes(diagnosis);
-  }
-  text +=
-      fmt::format("  held-out misfit {:.4f} -> {:.4f}, noise alone {:.4f}\n",
-                  diagnosis.held_out.before, diagnosis.held_out.after, diagnosis.held_out.floor);
-  std::vector<CandidateResult> ranked = diagnosis.candidates;
-  // Chances of refits and of first-order tests are not of one scale; gains are, roughly.
-  const auto claimed = [](const CandidateResult& c) {
-    return c.verdict == "named" || c.verdict == "tied";
-  };
-  std::stable_sort(ranked.begin(), ranked.end(), [&](const auto& a, const auto& b) {
-    return claimed(a) != claimed(b) ? claimed(a) : a.gain > b.gain;
-  });
-  text += fmt::format("\n  {:<26} {:>24} {:>12} {:>11} {:>13}  {}\n", "effect", "strength",
-                      "chi2 gain", "detectable", "tells apart", "");
-  constexpr std::size_t kShown = 14;
-  for (std::size_t i = 0; i < std::min(kShown, ranked.size()); ++i) {
-    const CandidateResult& c = ranked[i];
-    const std::string strength =
-        std::isnan(c.strength) ? "" : fmt::format("{:.3g} ± {:.1g} {}", c.strength, c.sd, c.unit);
-    text += fmt::format("  {:<26} {:>24} {:>12.1f} {:>11.2g} {:>13.2g}  {}\n", c.effect, strength,
-                        c.gain, c.detectable, c.identifiable, c.verdict);
-  }
-  for (const NextExperiment& next : diagnosis.next_experiment) {
-    text += "\n  next: " + next.change + "\n";
-  }
-  return text + notes(diagnosis);
 }
 
 Diagnosis examine_impacts(const Settings& settings, const Model& model,
@@ -249,7 +204,7 @@ int run(const Settings& settings, Context& context) {
     replace_file(*settings.output, format_model(file));
   }
   if (!context.json) {
-    context.out << report(diagnosis);
+    context.out << diagnosis_text(diagnosis);
     return kDone;
   }
   JsonObject answer = describe(diagnosis);

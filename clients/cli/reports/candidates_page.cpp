@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/cli/reports/diagnosis_text.hpp"
+
 namespace kolsky::cli {
 
 namespace {
@@ -14,7 +16,8 @@ std::string number_text(double value) {
 }
 
 std::string to_a_tenth(double value) {
-  return std::isfinite(value) ? fmt::format("{:.1f}", value) : "";
+  // Rounded first, so that no "-0.0" comes out.
+  return std::isfinite(value) ? fmt::format("{:.1f}", std::round(10.0 * value) / 10.0 + 0.0) : "";
 }
 
 }  // namespace
@@ -22,15 +25,13 @@ std::string to_a_tenth(double value) {
 PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_out) {
   std::vector<CandidateResult> ranked = diagnosis.candidates;
   std::ranges::stable_sort(ranked, {}, &CandidateResult::log_p);
-  PageTable table{{"effect", "strength", "deviation", "unit", "ln p", "chi-square gain",
-                   "on held-out " + held_out, "smallest detectable", "smallest told apart",
-                   "nearest rival", "verdict"},
+  PageTable table{{"effect", "verdict", "strength", "ln p", "chi-square gain",
+                   "on held-out " + held_out, "smallest detectable", "told apart", "nearest rival"},
                   {}};
   for (const CandidateResult& c : ranked) {
-    table.rows.push_back({c.effect, number_text(c.strength), number_text(c.sd), c.unit,
+    table.rows.push_back({c.effect, c.verdict, strength_text(c.strength, c.sd, c.unit),
                           to_a_tenth(c.log_p), to_a_tenth(c.gain), to_a_tenth(c.held_out_gain),
-                          number_text(c.detectable), number_text(c.identifiable), c.nearest_rival,
-                          c.verdict});
+                          number_text(c.detectable), number_text(c.identifiable), c.nearest_rival});
   }
   return table;
 }

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <set>
+#include <utility>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
@@ -121,6 +124,50 @@ void set_common_amplitude(const Studied& studied, const std::string& id, Candida
   result.sd = scale * amplitude.sd;
 }
 
+/// A candidate's column less what the model's own numbers take up of it.
+Eigen::VectorXd clear_column(const Tried& tried, const Direction& direction) {
+  const ModelFit& fit = tried.base.fit;
+  Eigen::VectorXd column = direction.columns.col(0);
+  if (fit.jacobian.cols() > 0) {
+    column -= fit.jacobian * (fit.covariance * direction.model_share.col(0));
+  }
+  return column;
+}
+
+/// What a strength common to all shots gains on each of them, found in the others: first order, the
+/// model's own numbers where they are.
+double foretold_gain(const Tried& tried, std::size_t i) {
+  const Direction& direction = tried.directions[i];
+  const auto size = static_cast<Eigen::Index>(tried.residuals_per_shot);
+  const bool common = direction.freedom == 1.0 && direction.information.rows() == 1 &&
+                      !tried.candidates[i].frees_prior && !tried.candidates[i].use.per_shot;
+  const Eigen::VectorXd& residual = tried.base.fit.residual;
+  if (!common || size == 0 || residual.size() < 2 * size) {
+    return 0.0;
+  }
+  const Eigen::VectorXd column = clear_column(tried, direction);
+  const Eigen::Index shots = residual.size() / size;
+  Eigen::VectorXd pull(shots);
+  Eigen::VectorXd information(shots);
+  for (Eigen::Index n = 0; n < shots; ++n) {
+    const auto own = column.segment(n * size, size);
+    pull[n] = -own.dot(residual.segment(n * size, size));
+    information[n] = own.squaredNorm();
+  }
+  const EffectParameter& parameter = tried.candidates[i].use.effect->about().parameters.front();
+  const double side = parameter.null_value <= parameter.lower ? 1.0 : -1.0;
+  double gain = 0.0;
+  for (Eigen::Index n = 0; n < shots; ++n) {
+    const double others = information.sum() - information[n];
+    double strength = others > 0.0 ? (pull.sum() - pull[n]) / others : 0.0;
+    if (tried.candidates[i].one_sided && side * strength < 0.0) {
+      strength = 0.0;
+    }
+    gain += strength * (2.0 * pull[n] - strength * information[n]);
+  }
+  return gain;
+}
+
 /// Root mean square over shots and gauges of an amplitude in cosine and sine parts.
 void set_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
   const ModelFit& fit = studied.fit;
@@ -144,52 +191,71 @@ void set_amplitude(const Studied& studied, const std::string& id, CandidateResul
 
 }  // namespace
 
+namespace {
+
+/// Strength of an effect as one of its variants has it. One of several numbers counts by their root
+/// mean square, and is as uncertain as all of them tell together.
+CandidateResult first_order_result(const Tried& tried, std::size_t i) {
+  const Candidate& candidate = tried.candidates[i];
+  const Direction& direction = tried.directions[i];
+  const EffectAbout& about = candidate.use.effect->about();
+  const EffectParameter& parameter = about.parameters.front();
+  CandidateResult result;
+  result.effect = candidate.id();
+  result.parameter = about.quadrature ? "A" : parameter.name;
+  result.unit = parameter.unit;
+  result.per_shot = candidate.use.per_shot;
+  if (!(direction.freedom > 0.0) || direction.information.rows() == 0) {
+    result.detectable = result.identifiable = INFINITY;
+    result.strength = result.sd = NAN;
+    result.verdict = "untestable";
+    return result;
+  }
+  double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
+                     ? candidate.use.values[0].prior_sd
+                     : parameter.typical;
+  double step = direction.step[0];
+  if (const auto numbers = static_cast<double>(direction.step.size()); numbers > 1.0) {
+    step = direction.step.norm() / std::sqrt(numbers);
+    scale *= about.quadrature ? std::numbers::sqrt2 : 1.0;  // of an amplitude, cosine and sine
+  }
+  const double sd = 1.0 / std::sqrt(direction.information.trace());
+  result.gain = direction.gain;
+  result.held_out_gain = foretold_gain(tried, i);
+  result.strength = parameter.null_value + scale * root(step, parameter.power);
+  result.sd = scale * root(sd, parameter.power);
+  result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
+  set_identifiable(tried, i, parameter.power, result);
+  result.verdict = "not needed";
+  return result;
+}
+
+/// The variant that noise makes least likely, and of those as likely the one that gains most.
+std::size_t best_variant(const Tried& tried, const std::vector<std::size_t>& variants) {
+  return *std::ranges::min_element(variants, {}, [&](std::size_t i) {
+    return std::pair(first_order_log_p(tried, i), -tried.directions[i].gain);
+  });
+}
+
+}  // namespace
+
 std::vector<CandidateResult> first_order_table(const Tried& tried) {
-  std::vector<CandidateResult> table;
-  std::map<std::string, std::size_t> at;
+  std::vector<std::string> order;
   std::map<std::string, std::vector<std::size_t>> variants;
   for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
-    variants[tried.candidates[i].id()].push_back(i);
+    const std::string id = tried.candidates[i].id();
+    if (variants[id].empty()) {
+      order.push_back(id);
+    }
+    variants[id].push_back(i);
   }
-  for (std::size_t i = 0; i < tried.candidates.size(); ++i) {
-    const Candidate& candidate = tried.candidates[i];
-    const Direction& direction = tried.directions[i];
-    const auto known = at.find(candidate.id());
-    if (known != at.end() && table[known->second].gain >= direction.gain) {
-      continue;
-    }
-    CandidateResult result;
-    result.effect = candidate.id();
-    const EffectParameter& parameter = candidate.use.effect->about().parameters.front();
-    result.parameter = parameter.name;
-    result.unit = parameter.unit;
-    result.gain = direction.gain;
-    if (direction.freedom > 0.0 && direction.information.rows() > 0) {
-      const double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
-                               ? candidate.use.values[0].prior_sd
-                               : parameter.typical;
-      const double sd = 1.0 / std::sqrt(direction.information(0, 0));
-      result.strength = parameter.null_value + scale * root(direction.step[0], parameter.power);
-      result.sd = scale * root(sd, parameter.power);
-      result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
-      set_identifiable(tried, i, parameter.power, result);
-      result.verdict = "not needed";
-    } else {
-      result.detectable = result.identifiable = INFINITY;
-      result.strength = result.sd = NAN;
-      result.verdict = "untestable";
-    }
-    if (known != at.end()) {
-      table[known->second] = result;
-    } else {
-      at[candidate.id()] = table.size();
-      table.push_back(std::move(result));
-    }
-  }
-  for (CandidateResult& result : table) {
+  std::vector<CandidateResult> table;
+  for (const std::string& id : order) {
+    CandidateResult result = first_order_result(tried, best_variant(tried, variants[id]));
     if (result.verdict != "untestable") {
-      set_chances(tried, variants[result.effect], result);
+      set_chances(tried, variants[id], result);
     }
+    table.push_back(std::move(result));
   }
   return table;
 }
@@ -197,17 +263,21 @@ std::vector<CandidateResult> first_order_table(const Tried& tried) {
 void note_refits(const Search& search, const std::vector<Refit>& refits,
                  const std::vector<Certification>& held_out, const std::vector<std::size_t>& which,
                  std::size_t residuals_per_shot, std::vector<CandidateResult>& table) {
+  std::set<std::string> noted;
   for (const std::size_t i : which) {
     const Refit& refit = refits[i];
-    for (CandidateResult& result : table) {
-      if (result.effect == search.candidates()[refit.candidate].id()) {
-        result.gain = refit.gain;
-        result.log_p = search.with_search(refit.log_p);
-        result.own_log_p = search.without_search(refit);
-        result.held_out_gain = held_out[i].gain;
-        set_strength(refit.studied, result.effect, residuals_per_shot, result);
-      }
+    const Candidate& candidate = search.candidates()[refit.candidate];
+    const auto result = std::ranges::find(table, candidate.id(), &CandidateResult::effect);
+    if (result == table.end() || !noted.insert(candidate.id()).second) {
+      continue;
     }
+    result->gain = refit.over_noise;
+    result->log_p = search.with_search(refit.log_p);
+    result->own_log_p = search.without_search(refit);
+    result->held_out_gain = held_out[i].gain;
+    result->refitted = true;
+    result->per_shot = candidate.use.per_shot;
+    set_strength(refit.studied, result->effect, residuals_per_shot, *result);
   }
 }
 

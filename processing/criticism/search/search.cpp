@@ -110,7 +110,7 @@ std::vector<Refit> Search::refits() {
     if (own && admissible(*own)) {
       list.push_back(std::move(*own));
     } else if (own) {
-      note_unconfirmed(*own);
+      dismiss(*own);
     }
   }
   rate_in_order(list);
@@ -126,8 +126,9 @@ bool Search::admissible(const Refit& refit) const {
                                   study_.campaign(), Claim::fresh));
 }
 
-void Search::note_unconfirmed(const Refit& refit) {
+void Search::dismiss(const Refit& refit) {
   const EffectUse& use = candidates_[refit.candidate].use;
+  dismissed_[use.id()] = use.per_shot ? "unconfirmed" : "rejected";
   if (!use.per_shot || !is_addition(*use.effect) || !fits_the_signal(refit)) {
     return;
   }
@@ -192,7 +193,13 @@ void Search::refine(std::vector<Refit>& list) {
       const Model model = with(base_.model, candidates_[own.candidate], true);
       own = described(own.candidate, model, std::move(studied.composition), std::move(fit), worker);
     });
-    std::erase_if(list, [&](const Refit& own) { return !admissible(own); });
+    std::erase_if(list, [&](const Refit& own) {
+      if (admissible(own)) {
+        return false;
+      }
+      dismissed_[candidates_[own.candidate].id()] = "rejected";
+      return true;
+    });
     rate_in_order(list);
   }
 }
@@ -468,6 +475,7 @@ void Search::rate(std::vector<Refit>& list) const {
     double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
     over_noise *= share_beside_unconfirmed(
         refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.one_sided)));
+    refit.over_noise = over_noise;
     refit.gain = over_noise / refit.scatter;
     refit.log_p = chance_of(refit);
     // The shots' scatter tells how well a gain is known, and only roughly: divided by one rival's

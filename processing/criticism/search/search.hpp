@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,9 +22,10 @@ struct Refit {
   double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.
   std::optional<ProductTest> products = std::nullopt;
-  double gain = 0.0;      ///< of the objective, over the noise and the shots' scatter
-  double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
-  double doubt = 1.0;     ///< the scatter, where the evidence is that over the noise alone
+  double over_noise = 0.0;  ///< gain of the objective, over the noise
+  double gain = 0.0;        ///< the same over the shots' scatter, too
+  double evidence = 0.0;    ///< as a square of a normal deviate, the search not counted
+  double doubt = 1.0;       ///< the scatter, where the evidence is that over the noise alone
   double log_p = 0.0;
   /// With derivatives of the model without the candidate: cheap, and near enough for what is far
   /// behind.
@@ -58,6 +60,9 @@ class Search {
   /// The candidates worth it, refitted; the best first.
   [[nodiscard]] std::vector<Refit> refits();
 
+  /// What was refitted and is no explanation, with what became of it ("unconfirmed", "rejected").
+  [[nodiscard]] const std::map<std::string, std::string>& dismissed() const { return dismissed_; }
+
  private:
   [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
   [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const;
@@ -82,7 +87,7 @@ class Search {
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
-  void note_unconfirmed(const Refit& refit);
+  void dismiss(const Refit& refit);
   [[nodiscard]] double share_beside_unconfirmed(const Refit& refit, double evidence) const;
   [[nodiscard]] double known_of(const EffectUse& use) const;
   [[nodiscard]] double chance_of(const Refit& refit) const;
@@ -101,6 +106,7 @@ class Search {
     double evidence = 0.0;
   };
   std::optional<Unconfirmed> unconfirmed_;
+  std::map<std::string, std::string> dismissed_;
 };
 
 }  // namespace kolsky

@@ -1,5 +1,7 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -24,11 +26,16 @@ constexpr double kTie = 7.5;
 constexpr double kRivalChance = 10.0;
 constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
+std::string chance_text(double log_p) {
+  constexpr double kLeast = -27.6;  // 1e-12: below, normal noise is no longer what one knows it as
+  return log_p < kLeast ? "less than once in 10^12 campaigns"
+                        : fmt::format("once in {:.2g} campaigns", std::exp(-log_p));
+}
+
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
   const auto mean = [&](const Studied& studied) {
-    const std::vector<double> squares = held_out_squares(studied, study);
-    return (std::accumulate(squares.begin(), squares.end(), 0.0) + studied.fit.penalty) /
-           static_cast<double>(study.residuals().size());
+    return held_out_misfit(held_out_squares(studied, study), studied.fit.penalty,
+                           static_cast<double>(study.residuals().size()));
   };
   return {mean(before), mean(after),
           study.campaign().shots.size() > 1 ? after.misfit.noise_scale : 1.0};
@@ -131,8 +138,9 @@ class Diagnostician {
     Search search(study_, current, start_, options_.safeguards);
     const bool first = diagnosis_.effects.empty();
     if (diagnosis_.candidates.empty()) {
-      diagnosis_.candidates = first_order_table({search.candidates(), search.directions(), current,
-                                                 search.log_trials(), 1.0, search.known()});
+      diagnosis_.candidates =
+          first_order_table({search.candidates(), search.directions(), current, search.log_trials(),
+                             1.0, search.known(), study_.residuals().per_shot()});
     }
     std::optional<Choice> choice = choose(search, current, first);
     if (!choice) {
@@ -165,6 +173,13 @@ class Diagnostician {
       std::vector<std::size_t> all(refits.size());
       std::iota(all.begin(), all.end(), std::size_t{0});
       note_refits(search, refits, held_out, all, per_shot, diagnosis_.candidates);
+      for (const auto& [id, verdict] : search.dismissed()) {
+        if (std::ranges::none_of(refits, [&](const Refit& refit) {
+              return search.candidates()[refit.candidate].id() == id;
+            })) {
+          set_verdict(id, verdict);
+        }
+      }
     }
     std::optional<std::size_t> best;
     std::optional<std::size_t> leading;
@@ -210,9 +225,9 @@ class Diagnostician {
         ties.push_back(other);
       }
     }
-    if (!note) {
-      note_refits(search, refits, held_out, confirmed, per_shot, diagnosis_.candidates);
-    }
+    // An effect's variant that is confirmed stands for it, wherever it stands among them.
+    std::ranges::stable_partition(confirmed, [&](std::size_t i) { return i == *best; });
+    note_refits(search, refits, held_out, confirmed, per_shot, diagnosis_.candidates);
     return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
   }
 
@@ -385,21 +400,12 @@ class Diagnostician {
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
-    const bool rest =
-        options_.safeguards.unknown &&
-        (remains || at_all_gauges_but_one() || more_than_two() || any_beyond_belief(current));
+    const std::vector<std::string> reasons =
+        options_.safeguards.unknown ? why_unknown(current, remains) : std::vector<std::string>{};
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
-    if (rest) {
-      diagnosis_.verdict = DiagnosisVerdict::unknown;
-      for (const std::string& id : diagnosis_.effects) {
-        set_verdict(id, "rejected");
-      }
-      if (!diagnosis_.effects.empty()) {
-        diagnosis_.notes.push_back("nearest, but not enough: " + diagnosis_.effects.front());
-      }
-      diagnosis_.effects.clear();
-      diagnosis_.tied_with.clear();
+    if (!reasons.empty()) {
+      give_up(reasons, before);
     } else if (diagnosis_.effects.empty()) {
       diagnosis_.verdict = DiagnosisVerdict::adequate;
     } else {
@@ -425,6 +431,54 @@ class Diagnostician {
       diagnosis_.notes.emplace_back(
           "one shot: held out were parts of its record, not shots; repeat the shot to certify");
     }
+  }
+
+  /// Nothing is named, and the model stays as it was.
+  void give_up(const std::vector<std::string>& reasons, const Studied& before) {
+    diagnosis_.verdict = DiagnosisVerdict::unknown;
+    diagnosis_.notes.insert(diagnosis_.notes.end(), reasons.begin(), reasons.end());
+    if (!diagnosis_.effects.empty()) {
+      std::string nearest;
+      for (const std::string& id : diagnosis_.effects) {
+        set_verdict(id, "rejected");
+        nearest += (nearest.empty() ? "" : " with ") + id;
+      }
+      diagnosis_.notes.push_back(fmt::format(
+          "nearest came {}: held-out misfit {:.3g} -> {:.3g}, noise alone {:.3g}", nearest,
+          diagnosis_.held_out.before, diagnosis_.held_out.after, diagnosis_.held_out.floor));
+    }
+    diagnosis_.effects.clear();
+    diagnosis_.tied_with.clear();
+    diagnosis_.model = before.model;
+    diagnosis_.after = diagnosis_.before;
+    diagnosis_.held_out.after = diagnosis_.held_out.before;
+  }
+
+  /// Why what was found is not what is missing, in sentences; empty: it may be.
+  /// @param remains  misfit that nothing explains
+  [[nodiscard]] std::vector<std::string> why_unknown(const Studied& current, bool remains) const {
+    std::vector<std::string> reasons;
+    if (remains) {
+      reasons.push_back(fmt::format(
+          "misfit repeats that no effect of the library explains: noise leaves as much {}",
+          chance_text(diagnosis_.unexplained_log_p)));
+    }
+    if (at_all_gauges_but_one()) {
+      reasons.emplace_back(
+          "the records ask for one effect at every gauge but one: it stands for something of that "
+          "one which the library lacks");
+    }
+    if (more_than_two()) {
+      reasons.emplace_back(
+          "it takes three effects of the library: likelier than that three are missing is that one "
+          "is which the library lacks");
+    }
+    for (const std::string& id : diagnosis_.effects) {
+      if (beyond_belief(current, id, study_.campaign(), 1.0)) {
+        reasons.push_back(id + " would have to be stronger than anything is built");
+      }
+    }
+    return reasons;
   }
 
   /// Beside what was found later, what was found first may have grown out of all bounds.

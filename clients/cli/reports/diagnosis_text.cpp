@@ -1,0 +1,160 @@
+#include "clients/cli/reports/diagnosis_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+#include <vector>
+
+namespace kolsky::cli {
+
+namespace {
+
+bool claimed(const CandidateResult& result) {
+  return result.verdict == "named" || result.verdict == "tied";
+}
+
+/// What an experimenter wants to see beside what is claimed.
+bool came_into_question(const CandidateResult& result) {
+  return claimed(result) || result.verdict == "rejected" || result.verdict == "unconfirmed";
+}
+
+std::string notes_text(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const std::string& note : diagnosis.notes) {
+    text += "  note: " + note + "\n";
+  }
+  return text;
+}
+
+std::string missing_text(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const std::string& id : diagnosis.effects) {
+    text += "  missing: " + id;
+    const auto& ties = diagnosis.tied_with.at(id);
+    for (std::size_t i = 0; i < ties.size(); ++i) {
+      text += (i == 0 ? "   (cannot be told from " : ", ") + ties[i];
+    }
+    text += ties.empty() ? "\n" : ")\n";
+  }
+  return text;
+}
+
+std::string chance_text(double log_p) {
+  constexpr double kLeast = -27.6;
+  if (log_p < kLeast) {
+    return "< 1e-12";
+  }
+  return fmt::format("{:.2g}", std::exp(log_p));
+}
+
+/// Claimed first, then what came into question, then what noise makes least likely.
+std::vector<CandidateResult> ranked(const Diagnosis& diagnosis) {
+  std::vector<CandidateResult> list;
+  std::ranges::copy_if(diagnosis.candidates, std::back_inserter(list),
+                       [](const CandidateResult& c) { return c.verdict != "untestable"; });
+  std::ranges::stable_sort(list, {}, [](const CandidateResult& c) {
+    return std::tuple(!claimed(c), !came_into_question(c), c.log_p, c.own_log_p);
+  });
+  return list;
+}
+
+std::string row_text(const CandidateResult& c) {
+  return fmt::format("  {:<27} {:>28} {:>9} {:>10.1f} {:>10.1f} {:>11.2g} {:>10.2g}  {}\n",
+                     c.effect, strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p),
+                     c.gain, c.held_out_gain, c.detectable, c.identifiable, c.verdict);
+}
+
+/// Only of the verdicts that are there.
+std::string legend_text(const std::vector<CandidateResult>& shown) {
+  std::string text =
+      "\n  by chance: how often noise alone does as well, the search over all effects counted;\n"
+      "  gain: of chi-square, and of that on shots which the strength was not found in;\n"
+      "  detectable: the smallest change that stands at 6 deviations here; told apart: and at 5\n"
+      "  beside the effect that resembles it most.\n";
+  constexpr std::array<std::array<const char*, 2>, 3> kMeanings{
+      {{"rejected",
+        "it gains, but other shots do not foretell it, the shots disagree on it, or it stands in "
+        "for something else"},
+       {"unconfirmed",
+        "it gains with a strength of each shot's own, as slow noise would, and nothing else in the "
+        "records shows it"},
+       {"not needed", "noise gains as much, or others explain it"}}};
+  for (const auto& [verdict, meaning] : kMeanings) {
+    if (std::ranges::any_of(shown, [&](const auto& c) { return c.verdict == verdict; })) {
+      text += fmt::format("  {}: {}.\n", verdict, meaning);
+    }
+  }
+  return text;
+}
+
+std::string untestable_text(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const CandidateResult& c : diagnosis.candidates) {
+    if (c.verdict == "untestable") {
+      text += (text.empty() ? "" : ", ") + c.effect;
+    }
+  }
+  return text.empty() ? ""
+                      : "  untestable here, for what is fitted takes up all of it: " + text + ".\n";
+}
+
+std::string candidates_text(const Diagnosis& diagnosis) {
+  constexpr std::ptrdiff_t kShown = 10;
+  std::vector<CandidateResult> list = ranked(diagnosis);
+  const auto all = std::ssize(list);
+  const auto shown =
+      std::min(all, std::max(kShown, std::ranges::count_if(list, came_into_question)));
+  list.resize(static_cast<std::size_t>(shown));
+  std::string text =
+      fmt::format("\n  {:<27} {:>28} {:>9} {:>10} {:>10} {:>11} {:>10}\n", "effect", "strength",
+                  "by chance", "chi2 gain", "held out", "detectable", "told apart");
+  for (const CandidateResult& c : list) {
+    text += row_text(c);
+  }
+  if (all > shown) {
+    text += fmt::format("  and {} more that are not needed (--json has all)\n", all - shown);
+  }
+  return text + legend_text(list) + untestable_text(diagnosis);
+}
+
+}  // namespace
+
+std::string strength_text(double value, double sd, const std::string& unit) {
+  if (!std::isfinite(value) || !std::isfinite(sd)) {
+    return "";
+  }
+  const double largest = std::max(std::abs(value), sd);
+  const int power = largest > 0.0 ? 3 * static_cast<int>(std::floor(std::log10(largest) / 3.0)) : 0;
+  const double scale = std::pow(10.0, -power);
+  constexpr int kMostDecimals = 5;
+  const int decimals =
+      sd > 0.0
+          ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sd * scale))), 0, kMostDecimals)
+          : 3;
+  const std::string numbers =
+      fmt::format("{:.{}f} ± {:.{}f}", value * scale, decimals, sd * scale, decimals);
+  const std::string scaled = power == 0 ? numbers : fmt::format("({})e{}", numbers, power);
+  return unit == "-" ? scaled : scaled + " " + unit;
+}
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+  std::string text =
+      "verdict: " + kolsky::name_of(diagnosis.verdict) + "\n" + missing_text(diagnosis);
+  if (!diagnosis.model) {
+    return text + notes_text(diagnosis);
+  }
+  const HeldOut& held_out = diagnosis.held_out;
+  text += fmt::format("  held-out misfit {:.4f} -> {:.4f}, noise alone {:.4f}\n", held_out.before,
+                      held_out.after, held_out.floor);
+  text += notes_text(diagnosis) + candidates_text(diagnosis);
+  for (const NextExperiment& next : diagnosis.next_experiment) {
+    text += "\n  next: " + next.change + "\n";
+  }
+  return text;
+}
+
+}  // namespace kolsky::cli
