@@ -142,6 +142,10 @@ std::vector<double> foretold_squares(const Studied& studied, Study& study) {
              : held_out_parts(studied.fit, study.residuals().others().size());
 }
 
+double held_out_misfit(const std::vector<double>& squares, double penalty, double residuals) {
+  return (std::accumulate(squares.begin(), squares.end(), 0.0) + penalty) / residuals;
+}
+
 Certification certification(const std::vector<double>& before, const std::vector<double>& after,
                             double relief, std::vector<double> weight) {
   double all = std::accumulate(weight.begin(), weight.end(), 0.0);

@@ -24,6 +24,13 @@ namespace kolsky {
 /// The same, to first order of shots too.
 [[nodiscard]] std::vector<double> foretold_squares(const Studied& studied, Study& study);
 
+/// The measure of a model on what its fit did not see: chi-square per residual, what is filed of
+/// the bench among them. A model that bends filed numbers to fit is no better for it.
+/// @param squares   held out, of all folds
+/// @param residuals  how many there are on all of them
+[[nodiscard]] double held_out_misfit(const std::vector<double>& squares, double penalty,
+                                     double residuals);
+
 /// What an effect brought on shots that the fits did not see.
 struct Certification {
   double gain = 0.0;       ///< of chi2

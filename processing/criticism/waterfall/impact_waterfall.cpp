@@ -52,7 +52,8 @@ Waterfall waterfall(ImpactStudy& study, const std::vector<LineageStep>& lineage)
   fall.fold = by_speed ? "speeds" : "shots";
   fall.folds = by_speed ? speeds : fall.shots;
   const auto all = static_cast<double>(fall.shots * residuals.per_shot());
-  std::vector<double> before;
+  fall.pull_counts = false;
+  LeftOnFolds before;
   double penalty = 0.0;
   for (const LineageStep& own : lineage) {
     const Studied studied = study.settled(study.refit_near(own.model, last));
@@ -62,14 +63,15 @@ Waterfall waterfall(ImpactStudy& study, const std::vector<LineageStep>& lineage)
     step.misfit = studied.misfit;
     step.numbers = layers_of(studied.model);
     step.speeds = speeds_of(study, studied);
-    const std::vector<double> squares = squares_of(study, studied, by_speed);
-    take_drop(step, squares, before.empty() ? nullptr : &before, all);
-    step.relief = before.empty() ? 0.0 : penalty - studied.fit.penalty;
+    LeftOnFolds left{squares_of(study, studied, by_speed), 0.0};
+    const bool first = before.squares.empty();
+    take_drop(step, left, first ? nullptr : &before, all);
+    step.relief = first ? 0.0 : penalty - studied.fit.penalty;
     if (const EffectUse* use = step.removed ? nullptr : last.model.find(step.effect)) {
       step.strengths = numbers_of(*use, "");
     }
     penalty = studied.fit.penalty;
-    before = squares;
+    before = std::move(left);
     fall.steps.push_back(std::move(step));
   }
   const Misfit& rest = fall.steps.back().misfit;

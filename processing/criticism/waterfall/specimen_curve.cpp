@@ -128,7 +128,8 @@ SpecimenCurve specimen_curve(const Studied& studied, const Campaign& campaign,
   for (std::size_t i = 0; i < kShown; ++i) {
     curve.strain.push_back(test.strain()[shown(i)]);
     curve.stress_Pa.push_back(best[shown(i)]);
-    curve.sd_Pa.push_back(std::sqrt(std::max(0.0, variance[static_cast<Eigen::Index>(i)])));
+    curve.sd_Pa.push_back(widening(studied.misfit) *
+                          std::sqrt(std::max(0.0, variance[static_cast<Eigen::Index>(i)])));
   }
   return curve;
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/record_parts.hpp"
+#include "processing/criticism/search/candidate_table.hpp"
 #include "processing/criticism/search/candidates.hpp"
 
 namespace kolsky {
@@ -45,23 +45,31 @@ bool only_filed(const EffectUse& use) {
                      [](const ModelValue& value) { return value.prior_sd > 0.0; });
 }
 
-Studied best_of_two(Study& study, const Model& model, const Studied& last) {
-  // From what the last model knows, and from nothing: a large misfit can lead either astray.
-  Composition composition(model, study.campaign());
+Studied best_of_two(Study& study, const Studied& own, const Studied& last) {
+  // From what the last model knows, and from the model's own fit: a large misfit can lead either
+  // astray.
+  const Composition& composition = own.composition;
   WhiteResiduals& residuals = study.residuals();
-  residuals.freeze(composition, carry(last.composition, last.fit.theta, composition));
-  ModelFit near = fit_model(composition, residuals, study.executor(),
-                            carry(last.composition, last.fit.theta, composition));
-  Model fresh = model;
-  start_moduli(fresh, study.campaign(), residuals);
-  const Composition again(fresh, study.campaign());
-  ModelFit far =
-      fit_model(composition, residuals, study.executor(), carry(again, again.start(), composition));
+  const std::vector<double> known = carry(last.composition, last.fit.theta, composition);
+  residuals.freeze(composition, known);
+  ModelFit near = fit_model(composition, residuals, study.executor(), known);
+  ModelFit far = fit_model(composition, residuals, study.executor(), own.fit.theta);
   ModelFit fit = far.objective() < near.objective() ? std::move(far) : std::move(near);
-  return study.refit({model, std::move(composition), std::move(fit), {}});
+  return study.refit({own.model, composition, std::move(fit), {}});
 }
 
-std::vector<MovedNumber> material_of(const Model& model) {
+/// Every model fitted by itself, as `kolsky fit` does it; the last one's noise is what stays.
+std::vector<Studied> own_fits(Study& study, const std::vector<LineageStep>& lineage) {
+  std::vector<Studied> fits;
+  for (const LineageStep& step : lineage) {
+    study.residuals().believe_quiet();
+    fits.push_back(study.fit(step.model));
+  }
+  return fits;
+}
+
+std::vector<MovedNumber> material_of(const Studied& studied) {
+  const Model& model = studied.model;
   std::vector<MovedNumber> list;
   if (const EffectUse* specimen = model.find("three-element-specimen")) {
     list = numbers_of(*specimen, "");
@@ -69,6 +77,22 @@ std::vector<MovedNumber> material_of(const Model& model) {
   if (const EffectUse* bar = model.find("three-element-bar")) {
     const auto own = numbers_of(*bar, model.kind == BenchKind::bar ? "" : "bar.");
     list.insert(list.end(), own.begin(), own.end());
+  }
+  for (MovedNumber& number : list) {
+    number.sd *= widening(studied.misfit);
+  }
+  return list;
+}
+
+/// An effect's numbers; of a cosine and a sine, whose means over shots and gauges say nothing,
+/// their amplitude.
+std::vector<MovedNumber> strengths_of(const Studied& studied, const EffectUse& use) {
+  std::vector<MovedNumber> list = numbers_of(use, "");
+  if (use.effect->about().quadrature) {
+    CandidateResult common;
+    set_strength(studied, use.id(), common);
+    list[0] = {common.parameter, common.unit, common.strength, common.sd};
+    list.erase(list.begin() + 1);
   }
   return list;
 }
@@ -102,13 +126,25 @@ std::vector<MovedNumber> numbers_of(const EffectUse& use, const std::string& pre
   return list;
 }
 
-void take_drop(WaterfallStep& step, const std::vector<double>& squares,
-               const std::vector<double>* before, double residuals) {
-  step.held_out = std::accumulate(squares.begin(), squares.end(), 0.0) / residuals;
-  for (std::size_t n = 0; before != nullptr && n < squares.size(); ++n) {
-    step.gain += (*before)[n] - squares[n];
-    step.better += (*before)[n] > squares[n] ? 1 : 0;
+void take_drop(WaterfallStep& step, const LeftOnFolds& left, const LeftOnFolds* before,
+               double residuals) {
+  step.held_out = held_out_misfit(left.squares, left.penalty, residuals);
+  if (before == nullptr) {
+    return;
   }
+  step.relief = before->penalty - left.penalty;
+  const Certification certified = certification(before->squares, left.squares, step.relief);
+  step.gain = certified.gain;
+  step.better = certified.better;
+}
+
+double widening(const Misfit& misfit) {
+  return std::sqrt(std::max(1.0, misfit.chi2_reduced));
+}
+
+bool far_from_fitting(const WaterfallStep& step, const Waterfall& fall) {
+  constexpr double kFar = 10.0;
+  return step.held_out > kFar * fall.floor;
 }
 
 double Waterfall::closed() const {
@@ -147,7 +183,9 @@ std::vector<LineageStep> lineage(const Model& first, const Model& last,
 }
 
 Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
-  const Studied last = study.fit(lineage.back().model);
+  const std::vector<Studied> own = own_fits(study, lineage);
+  const Studied& last = own.back();
+  const auto all = static_cast<double>(study.residuals().size());
   Waterfall fall;
   fall.shots = fall.folds = study.campaign().shots.size();
   if (fall.shots < 2) {
@@ -155,34 +193,28 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
     fall.folds = kRecordParts;
   }
   fall.strain_rate_per_s = usual_rate(last, study.campaign());
-  std::vector<double> before;
-  double penalty = 0.0;
-  for (const LineageStep& own : lineage) {
-    const Studied studied = best_of_two(study, own.model, last);
-    const std::vector<double> squares = held_out_squares(studied, study);
+  LeftOnFolds before;
+  for (std::size_t i = 0; i < lineage.size(); ++i) {
+    const Studied studied = best_of_two(study, own[i], last);
+    LeftOnFolds left{held_out_squares(studied, study), studied.fit.penalty};
     WaterfallStep step;
-    step.effect = own.effect;
-    step.removed = own.removed;
+    step.effect = lineage[i].effect;
+    step.removed = lineage[i].removed;
     step.misfit = studied.misfit;
-    step.numbers = material_of(studied.model);
-    take_drop(step, squares, before.empty() ? nullptr : &before,
-              static_cast<double>(study.residuals().size()));
-    step.curve = specimen_curve(studied, study.campaign(), fall.strain_rate_per_s);
-    step.relief = before.empty() ? 0.0 : penalty - studied.fit.penalty;
+    step.numbers = material_of(own[i]);
+    take_drop(step, left, i == 0 ? nullptr : &before, all);
+    step.curve = specimen_curve(own[i], study.campaign(), fall.strain_rate_per_s);
     fall.steps.push_back(std::move(step));
-    penalty = studied.fit.penalty;
-    before = squares;
-    if (&own == &lineage.back()) {
-      const double all = static_cast<double>(study.residuals().size());
-      fall.floor = fall.shots > 1 ? studied.misfit.noise_scale : 1.0;
-      fall.signal = study.residuals().signal_energy() / all;
-      fall.repeats = studied.misfit.repeatable_share * fall.signal;
-      for (WaterfallStep& made : fall.steps) {
-        const EffectUse* use = made.removed ? nullptr : studied.model.find(made.effect);
-        if (use != nullptr) {
-          made.strengths = numbers_of(*use, "");
-        }
-      }
+    before = std::move(left);
+  }
+  const Misfit& rest = fall.steps.back().misfit;
+  fall.floor = fall.shots > 1 ? rest.noise_scale : 1.0;
+  fall.signal = study.residuals().signal_energy() / all;
+  fall.repeats = rest.repeatable_share * fall.signal;
+  for (WaterfallStep& made : fall.steps) {
+    const EffectUse* use = made.removed ? nullptr : last.model.find(made.effect);
+    if (use != nullptr) {
+      made.strengths = strengths_of(last, *use);
     }
   }
   return fall;

@@ -49,11 +49,12 @@ struct SpeedMisfit {
 struct WaterfallStep {
   std::string effect;
   bool removed = false;
-  double held_out = 0.0;   ///< chi2 per residual on folds the fit did not see
+  double held_out = 0.0;   ///< chi2 per residual on folds the fit did not see, as `HeldOut` has it
   double gain = 0.0;       ///< chi2 that the step took off them
   std::size_t better = 0;  ///< in so many of them
   double relief = 0.0;     ///< chi2 of the filed numbers\' priors that the step took off
   Misfit misfit;           ///< of all shots, all of them fitted
+  /// As the model's own fit has them, deviations widened by what it leaves.
   std::vector<MovedNumber> numbers;
   std::vector<MovedNumber> strengths;  ///< of the effect put in, as the last model has them
   SpecimenCurve curve;                 ///< empty where there is no specimen
@@ -70,24 +71,40 @@ struct Waterfall {
   std::size_t shots = 0;
   std::string fold = "shots";  ///< held out one at a time: shots, speeds, or "parts" of one record
   std::size_t folds = 0;
+  bool pull_counts = true;  ///< what filed numbers pull is part of every level
 
   /// Of what stood over the floor at first, the share that is gone; 1 where nothing stood there.
   [[nodiscard]] double closed() const;
 };
 
-/// Fits every model of a lineage to one campaign, all under the noise that the last one shows.
+/// Whether a model is so far from the records that what its fit says of its numbers is worth
+/// little: most of what it leaves is not noise.
+[[nodiscard]] bool far_from_fitting(const WaterfallStep& step, const Waterfall& fall);
+
+/// Fits every model of a lineage to one campaign: by itself, for its numbers, and under the noise
+/// that the last one shows, for its level beside the others'.
 [[nodiscard]] Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage);
 
 /// An effect's numbers as a model has them, their names behind `prefix`.
 [[nodiscard]] std::vector<MovedNumber> numbers_of(const EffectUse& use, const std::string& prefix);
 
-/// Takes into a step what it left on every fold. @param before  of the step before; null: none
+/// What a model leaves on every fold, and the pull of the filed numbers that it takes for that.
+struct LeftOnFolds {
+  std::vector<double> squares;
+  double penalty = 0.0;
+};
+
+/// Takes into a step what it left. @param before  of the step before; null: none
 /// @param residuals  how many there are on all folds
-void take_drop(WaterfallStep& step, const std::vector<double>& squares,
-               const std::vector<double>* before, double residuals);
+void take_drop(WaterfallStep& step, const LeftOnFolds& left, const LeftOnFolds* before,
+               double residuals);
+
+/// By what a deviation grows where a fit leaves more than noise (Birge's ratio).
+[[nodiscard]] double widening(const Misfit& misfit);
 
 /// Stress of the specimen of a model at a constant strain rate, with its deviation from the fit's
-/// covariance. With stiffening; friction and a gap are not of its material and are left out.
+/// covariance, widened by what the fit leaves. With stiffening; friction and a gap are not of its
+/// material and are left out.
 [[nodiscard]] SpecimenCurve specimen_curve(const Studied& studied, const Campaign& campaign,
                                            double strain_rate_per_s);
 

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
+#include "processing/criticism/fitting/held_out.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -121,6 +124,73 @@ TEST(Waterfall, CreditsAnEffectThatIsNotThereWithNothing) {
   EXPECT_LT(fall.steps[1].gain, 10.0);
   EXPECT_NEAR(fall.steps[0].held_out, fall.floor, 0.06);
   EXPECT_TRUE(fall.steps[0].curve.strain.empty());
+}
+
+double pull_of(const Model& model) {
+  double pull = 0.0;
+  for (const EffectUse& use : model.effects) {
+    for (const ModelValue& value : use.values) {
+      if (value.prior_sd > 0.0) {
+        pull += std::pow((value.value - value.prior_mean) / value.prior_sd, 2);
+      }
+    }
+  }
+  return pull;
+}
+
+double sum_of(const std::vector<double>& squares) {
+  return std::accumulate(squares.begin(), squares.end(), 0.0);
+}
+
+// A wrong gauge factor that a filed one takes up leaves no misfit, only a pull.
+TEST(Waterfall, CountsAsTheDiagnosisDoesWhatFiledNumbersPull) {
+  Made made = make(78, {"gauge-factor:g2=0.025"});
+  for (Gauge& gauge : made.campaign.bench.gauges) {
+    gauge.strain_per_V = Measured{5e-4, 0.002 * 5e-4};
+  }
+  Model with = paper_with({"gauge-factor:g2"});
+  Study study(made.campaign, 0.0, Workers{});
+  const Waterfall fall = waterfall(study, lineage(paper_with({}), with, {}));
+  ASSERT_EQ(fall.steps.size(), 2U);
+  Study again(made.campaign, 0.0, Workers{});
+  const Studied after = again.fit(with);
+  const Studied before = again.refit(again.fit(paper_with({}), LearnNoise::no));
+  const double residuals = static_cast<double>(again.residuals().size());
+  EXPECT_NEAR(fall.steps[0].held_out * residuals,
+              sum_of(held_out_squares(before, again)) + pull_of(before.model),
+              0.02 * pull_of(before.model));
+  EXPECT_NEAR(fall.steps[1].held_out * residuals,
+              sum_of(held_out_squares(after, again)) + pull_of(after.model), 2.0);
+  // (0.025 / 0.002)^2, less what the other gauges' factors take on themselves.
+  EXPECT_GT(fall.steps[1].relief, 50.0);
+  EXPECT_GE(fall.steps[1].gain, fall.steps[1].relief - 5.0);
+  EXPECT_EQ(fall.steps[1].better, 6U);
+  Study third(made.campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(third, paper_with({}), {});
+  ASSERT_EQ(diagnosis.effects, std::vector<std::string>{"gauge-factor:g2"});
+  EXPECT_NEAR(fall.steps[0].held_out, diagnosis.held_out.before, 2e-3);
+  EXPECT_NEAR(fall.steps[1].held_out, diagnosis.held_out.after, 2e-3);
+}
+
+// Numbers are those of the model's own fit, and uncertain by what it leaves.
+TEST(Waterfall, GivesTheNumbersThatAFitGivesWidenedByWhatItLeaves) {
+  const Made made = make(6, {"specimen-nonlinearity=2"}, true);
+  const Model first = paper_with({}, BenchKind::shpb);
+  Study study(made.campaign, 0.0, Workers{});
+  const Waterfall fall =
+      waterfall(study, lineage(first, paper_with({"specimen-nonlinearity"}, BenchKind::shpb), {}));
+  Study fresh(made.campaign, 0.0, Workers{});
+  const Studied fitted = fresh.fit(first);
+  const auto& law = fitted.model.find("three-element-specimen")->values;
+  const double left =
+      std::sqrt(fitted.fit.chi2 / fitted.fit.degrees_of_freedom(fitted.composition));
+  ASSERT_GT(left, 1.0);
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(fall.steps[0].numbers[p].value, law[p].value, 0.1 * law[p].sd);
+    EXPECT_NEAR(fall.steps[0].numbers[p].sd / (left * law[p].sd), 1.0, 0.02);
+  }
+  EXPECT_TRUE(far_from_fitting(fall.steps[0], fall));
+  EXPECT_FALSE(far_from_fitting(fall.steps[1], fall));
 }
 
 /// The specimen's law stepped through time: a spring whose modulus grows with the strain, in series
