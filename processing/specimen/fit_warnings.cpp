@@ -32,7 +32,10 @@ std::vector<std::string> warnings_of(const std::vector<FittedNumber>& parameters
   constexpr double kHardly = 0.3;
   std::vector<std::string> warnings;
   for (const FittedNumber& p : parameters) {
-    if (!(p.sd <= kHardly * p.value)) {
+    if (!(p.sd > 0.0) || !std::isfinite(p.sd)) {
+      // What nothing changes any more has no curvature to take a deviation from.
+      warnings.push_back(p.name + " is not determined by these shots: it has no deviation");
+    } else if (!(p.sd <= kHardly * p.value)) {
       warnings.push_back(p.name + " is hardly determined by these shots: its deviation is " +
                          std::to_string(std::lround(100.0 * p.sd / p.value)) + " %");
     }
@@ -62,7 +65,6 @@ std::string no_more_than_three_elements(const SpecimenFit& fit) {
 std::vector<std::string> contradiction(const SpecimenFit& fit,
                                        const std::vector<FittedNumber>& spectral) {
   constexpr double kFarMore = 4.0;
-  constexpr double kPoor = 1.5;
   const std::vector<FittedNumber> none;
   const std::vector<FittedNumber>& direct = fit.solid == SolidKind::three_element ? fit.parameters
                                             : fit.three_element ? fit.three_element->parameters
@@ -77,8 +79,10 @@ std::vector<std::string> contradiction(const SpecimenFit& fit,
       warning = {formatted("%s is %.4g, %.0f deviations from the direct fit's %.4g: ",
                            spectral[i].name.c_str(), spectral[i].value, off, direct[i].value) +
                  "strain over stress is biased by the pulse's foot, the window and the specimen's "
-                 "mass, of which its deviations know nothing; quote the direct fit" +
-                 (fit.chi2_reduced > kPoor ? ", whose model leaves more than noise, too" : "")};
+                 "mass, of which its deviations know nothing; " +
+                 (fit.chi2_reduced > kPoorChi2
+                      ? "the direct fit's model leaves more than noise: quote neither"
+                      : "quote the direct fit")};
     }
   }
   return warning;

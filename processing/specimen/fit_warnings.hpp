@@ -7,8 +7,11 @@
 
 namespace kolsky {
 
+/// Above so much chi2 per degree of freedom a model leaves more than noise.
+inline constexpr double kPoorChi2 = 1.5;
+
 /// What keeps numbers of a solid from being taken at their word: those that the shots hardly
-/// determine.
+/// determine, or not at all.
 [[nodiscard]] std::vector<std::string> warnings_of(const std::vector<FittedNumber>& parameters);
 
 /// A loss that is clearly negative, where it first is: no passive material does that.
@@ -19,7 +22,7 @@ namespace kolsky {
 [[nodiscard]] std::string no_more_than_three_elements(const SpecimenFit& fit);
 
 /// Where a three-element solid through strain over stress contradicts that of the direct fit by far
-/// more than the deviations of both: which to quote. Empty where it does not.
+/// more than the deviations of both: which to quote, if any. Empty where it does not.
 [[nodiscard]] std::vector<std::string> contradiction(const SpecimenFit& fit,
                                                      const std::vector<FittedNumber>& spectral);
 

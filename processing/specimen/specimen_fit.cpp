@@ -54,8 +54,8 @@ class TheoryChoice {
 
   Fitted choose() {
     if (three_element_ == nullptr) {
-      start_ =
-          SpecimenSearch(likelihood_, solid_, {WaveTheory::elementary, kinds_.front()}).start();
+      starts_ =
+          SpecimenSearch(likelihood_, solid_, {WaveTheory::elementary, kinds_.front()}).starts();
     }
     const WaveTheory first = options_.bars.value_or(WaveTheory::elementary);
     for (const SpecimenWaves kind : kinds_) {
@@ -91,6 +91,7 @@ class TheoryChoice {
     for (const Fitted& fit : fits_) {
       list.push_back({fit.theory, fit.minimum.chi2, solid_});
     }
+    list.insert(list.end(), refused_.begin(), refused_.end());
     return list;
   }
 
@@ -106,18 +107,47 @@ class TheoryChoice {
 
   [[nodiscard]] SpecimenMinimum search(const ShpbTheory& theory) {
     return three_element_ == nullptr
-               ? SpecimenSearch(likelihood_, solid_, theory).minimise(start_)
+               ? search_from_starts(theory)
                : search_family(likelihood_, solid_, theory, three_element_->minimum_under(theory));
+  }
+
+  /// From where the best theory so far ended. Before there is one, from the grid's places until
+  /// two of them lead to the same; where none do, the least chi2.
+  [[nodiscard]] SpecimenMinimum search_from_starts(const ShpbTheory& theory) {
+    constexpr double kSame = 0.1;
+    SpecimenSearch search(likelihood_, solid_, theory);
+    std::optional<SpecimenMinimum> least;
+    std::optional<InputError> refusal;
+    for (const std::vector<double>& start : starts_) {
+      try {
+        SpecimenMinimum found = search.minimise(start);
+        const bool same = least && std::abs(found.chi2 - least->chi2) < kSame;
+        if (!least || found.chi2 < least->chi2) {
+          least = std::move(found);
+        }
+        if (same || !fits_.empty()) {
+          break;
+        }
+      } catch (const InputError& error) {
+        refusal = error;
+      }
+    }
+    if (!least) {
+      throw *refusal;
+    }
+    return *least;
   }
 
   void attempt(const ShpbTheory& theory) {
     try {
       fits_.push_back({theory, search(theory)});
-      if (fits_.size() == 1 || best().theory == theory) {
-        start_ = fits_.back().minimum.parameters;
+      if (three_element_ == nullptr && (fits_.size() == 1 || best().theory == theory)) {
+        starts_.insert(starts_.begin(), fits_.back().minimum.parameters);
       }
     } catch (const InputError& error) {
       // One set of assumptions may fail to converge while another describes the data.
+      refused_.push_back(
+          {theory, std::numeric_limits<double>::quiet_NaN(), solid_, error.problem()});
       refusal_ = error;
     }
   }
@@ -140,8 +170,9 @@ class TheoryChoice {
   SolidKind solid_;
   TheoryChoice* three_element_;
   std::vector<SpecimenWaves> kinds_;
-  std::vector<double> start_;
+  std::vector<std::vector<double>> starts_;  ///< the one to begin from first
   std::vector<Fitted> fits_;
+  std::vector<TriedTheory> refused_;
   std::optional<InputError> refusal_;
 };
 
@@ -278,12 +309,11 @@ void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimu
 }
 
 void warn(SpecimenFit& fit) {
-  constexpr double kPoor = 1.5;
   fit.warnings = warnings_of(fit.parameters);
   if (fit.three_element && fit.three_element->chi2_gain < kWorthwhile) {
     fit.warnings.push_back(no_more_than_three_elements(fit));
   }
-  if (fit.chi2_reduced > kPoor) {
+  if (fit.chi2_reduced > kPoorChi2) {
     fit.warnings.push_back(
         formatted("the model leaves more than noise (chi2 per degree of freedom %.3g): the "
                   "deviations are widened accordingly",

@@ -23,8 +23,9 @@ struct SpecimenFitOptions {
 /// A set of assumptions that was tried, and how far it leaves more than noise.
 struct TriedTheory {
   ShpbTheory theory;
-  double chi2 = 0.0;
+  double chi2 = 0.0;                           ///< NaN where it could not be fitted
   SolidKind solid = SolidKind::three_element;  ///< with which it was tried
+  std::string refused{};                       ///< why it could not be fitted; else empty
 };
 
 /// What three elements make of the records that another family was fitted to.

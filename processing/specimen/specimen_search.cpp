@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "processing/algebra/algebra.hpp"
@@ -20,6 +21,7 @@ constexpr double kMoveStep = 0.05;       // standard deviations
 constexpr double kLongestStep = 1.5;     // of a logarithm
 constexpr double kDone = 1e-3;           // of chi2: far below what one deviation changes
 constexpr double kUnknownLog = 5.0;      // deviation of a logarithm that nothing is known of
+constexpr std::size_t kMostStarts = 5;
 
 /// A solid of the family near the three-element one with these numbers.
 std::vector<double> near_three_element(SolidKind kind, double E1, double E2, double tau_s) {
@@ -90,11 +92,17 @@ Eigen::MatrixXd SpecimenSearch::jacobian(const Eigen::VectorXd& x, const Eigen::
   return result;
 }
 
-std::vector<double> SpecimenSearch::start() {
+double SpecimenSearch::plain_misfit(const Eigen::VectorXd& x) {
+  const Point p = point(x);
+  likelihood_.residuals(theory_, *make_solid(solid_, p.parameters), p.moves, raw_);
+  return raw_.squaredNorm();
+}
+
+std::vector<std::vector<double>> SpecimenSearch::starts() {
   const auto moves = static_cast<Eigen::Index>(likelihood_.unknowns().size());
-  double best = std::numeric_limits<double>::infinity();
-  std::vector<double> found;
+  std::vector<std::pair<double, std::vector<double>>> found;
   for (double E1 = 3e6; E1 < 1e12; E1 *= std::sqrt(10.0)) {
+    std::pair<double, std::vector<double>> best{std::numeric_limits<double>::infinity(), {}};
     for (const double share : {0.3, 1.0, 5.0}) {
       for (const double tau_s : {5e-6, 20e-6, 80e-6}) {
         const auto solid = near_three_element(solid_, E1, share * E1, tau_s);
@@ -102,18 +110,22 @@ std::vector<double> SpecimenSearch::start() {
         for (Eigen::Index i = 0; i < solids_; ++i) {
           x[i] = std::log(solid[static_cast<std::size_t>(i)]);
         }
-        // Unweighted: all that is asked is where to begin.
-        const Point p = point(x);
-        likelihood_.residuals(theory_, *make_solid(solid_, p.parameters), p.moves, raw_);
-        const double sum = raw_.squaredNorm();
-        if (sum < best) {
-          best = sum;
-          found.assign(x.data(), x.data() + solids_);
+        const double sum = plain_misfit(x);
+        if (sum < best.first) {
+          best = {sum, {x.data(), x.data() + solids_}};
         }
       }
     }
+    if (!best.second.empty()) {
+      found.push_back(std::move(best));
+    }
   }
-  return found;
+  std::sort(found.begin(), found.end());
+  std::vector<std::vector<double>> list;
+  for (std::size_t i = 0; i < std::min(kMostStarts, found.size()); ++i) {
+    list.push_back(std::move(found[i].second));
+  }
+  return list;
 }
 
 SpecimenSearch::Place SpecimenSearch::place_at(const Eigen::VectorXd& x, Eigen::MatrixXd weights) {
@@ -202,7 +214,23 @@ SpecimenMinimum SpecimenSearch::minimise(const std::vector<double>& start) {
   const Place place = search(place_at(x, root(x)), nullptr);
   SpecimenMinimum minimum = minimum_at(place);
   minimum.covariance = symmetric_inverse(place.J.transpose() * place.J);
+  require_determined(minimum);
   return minimum;
+}
+
+/// A search that runs away along a number ends where that number changes nothing any more: its
+/// deviation is then beyond all measure, or none at all where its information has vanished.
+void SpecimenSearch::require_determined(const SpecimenMinimum& minimum) const {
+  for (Eigen::Index i = 0; i < solids_; ++i) {
+    const double variance = minimum.covariance(i, i);
+    if (!(variance > 0.0 && variance < kUnknownLog * kUnknownLog)) {
+      throw InputError("fit",
+                       std::string("says nothing of ") +
+                           parameters_of(solid_)[static_cast<std::size_t>(i)].name +
+                           " where it ends",
+                       "try another family of solids, a wider band or more shots");
+    }
+  }
 }
 
 Eigen::MatrixXd SpecimenSearch::weights_at(const SpecimenMinimum& place) {

@@ -28,10 +28,13 @@ class SpecimenSearch {
  public:
   SpecimenSearch(SpecimenLikelihood& likelihood, SolidKind solid, ShpbTheory theory);
 
-  /// From the best place of a coarse grid over moduli and retardation times.
-  [[nodiscard]] std::vector<double> start();
+  /// The best places of a coarse grid over moduli and retardation times, each of another modulus,
+  /// the best first. More than one, for the weights are not known yet: by plain misfit alone the
+  /// best may well lie where a search by weights finds nothing.
+  [[nodiscard]] std::vector<std::vector<double>> starts();
 
-  /// @throws InputError where it does not converge
+  /// @throws InputError where it does not converge, or ends where the records say nothing of a
+  ///   number of the solid
   [[nodiscard]] SpecimenMinimum minimise(const std::vector<double>& start);
 
   /// The whitening at a place: the lower Cholesky factor of one shot's covariance.
@@ -64,6 +67,8 @@ class SpecimenSearch {
   [[nodiscard]] Eigen::VectorXd step_from(const Place& place, double damping,
                                           const LogBounds* bounds) const;
   [[nodiscard]] SpecimenMinimum minimum_at(const Place& place) const;
+  void require_determined(const SpecimenMinimum& minimum) const;
+  [[nodiscard]] double plain_misfit(const Eigen::VectorXd& x);
   [[nodiscard]] Eigen::VectorXd joined(const std::vector<double>& parameters,
                                        const std::vector<double>& moves) const;
   [[nodiscard]] Point point(const Eigen::VectorXd& x) const;

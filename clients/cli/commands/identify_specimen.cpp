@@ -82,8 +82,7 @@ std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarMo
   std::vector<Shot> shots = captured_shots(settings.captures);
   for (const Shot& shot : shots) {
     if (bars) {
-      require_temperature(*bars, shot);
-      require_density(*bars, shot.bench);
+      require_holds(*bars, shot);
     }
   }
   return shots;
@@ -242,6 +241,7 @@ JsonValue describe(const Outcome& outcome) {
     JsonObject entry = describe(theory.theory);
     entry.push_back({"chi2", theory.chi2});
     entry.push_back({"solid", name_of(theory.solid)});
+    entry.push_back({"refused", theory.refused.empty() ? JsonValue(nullptr) : theory.refused});
     tried.push_back(std::move(entry));
   }
   const bool assumed = !elastic_bars(outcome.shots.front().bench) && !outcome.bars &&
@@ -292,9 +292,11 @@ std::string report(const Outcome& outcome) {
                       fit.chi2_reduced, fit.degrees_of_freedom, name_of_theory(fit.theory.bars),
                       name_of(fit.theory.specimen));
   for (const TriedTheory& tried : fit.tried) {
-    text += fmt::format("      tried: bars {:<10} specimen {:<9} chi2 {:.1f}{}\n",
-                        name_of_theory(tried.theory.bars), name_of(tried.theory.specimen),
-                        tried.chi2, tried.solid == fit.solid ? "" : ", three elements");
+    text +=
+        fmt::format("      tried: bars {:<10} specimen {:<9} {}{}\n",
+                    name_of_theory(tried.theory.bars), name_of(tried.theory.specimen),
+                    tried.refused.empty() ? fmt::format("chi2 {:.1f}", tried.chi2) : tried.refused,
+                    tried.solid == fit.solid ? "" : ", three elements");
   }
   if (fit.three_element) {
     text +=
