@@ -82,11 +82,11 @@ std::vector<Shot> BallPlanter::drawn_anew(std::uint64_t seed, std::size_t worker
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const double all_faster = records.common_speed_sd * normal(random);
+  const std::vector<double> theta = drawn_as_filed(studied_, seed);
   std::vector<Shot> shots = shots_;
   for (std::size_t n = 0; n < shots.size(); ++n) {
     const double faster = all_faster + records.own_speed_sd * normal(random);
-    auto own = residuals.sensed(studied_.composition, studied_.fit.theta, n, arrival_s_[n], faster,
-                                worker);
+    auto own = residuals.sensed(studied_.composition, theta, n, arrival_s_[n], faster, worker);
     const auto noise = fresh_noise(campaign, n, seed);
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
       for (std::size_t i = 0; i < own.strain[j].size(); ++i) {

@@ -26,8 +26,8 @@ class BallPlanter {
   /// @throws InputError where the ball with the effect is refused by the solver
   [[nodiscard]] std::vector<Shot> planted(const EffectUse& use, std::size_t worker) const;
 
-  /// Impacts as the fitted model has them on that other mesh, noise and speeds drawn anew: the
-  /// noise as it was before the pulses, speeds within what is filed of them.
+  /// Impacts as the fitted model has them on that other mesh, noise, speeds and filed numbers drawn
+  /// anew: the noise as it was before the pulses, speeds within what is filed of them.
   [[nodiscard]] std::vector<Shot> drawn_anew(std::uint64_t seed, std::size_t worker) const;
 
  private:

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/waves/transform.hpp"
@@ -165,6 +166,38 @@ std::vector<double> numbers_with(const Studied& studied, const Composition& comp
   return theta;
 }
 
+std::vector<double> drawn_as_filed(const Studied& studied, std::uint64_t seed) {
+  const Composition& composition = studied.composition;
+  std::vector<double> theta = studied.fit.theta;
+  std::vector<Eigen::Index> filed;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    // What is only bounded, as a hum's amplitudes are, is no number that anybody filed.
+    if (number.prior_sd > 0.0 && !composition.uses()[number.use].effect->about().each_gauge) {
+      filed.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  if (filed.empty()) {
+    return theta;
+  }
+  const Eigen::MatrixXd precision = composition.prior_precision()(filed, filed);
+  const SymmetricEigen known(precision);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd drawn(known.eigenvalues().size());
+  for (Eigen::Index i = 0; i < drawn.size(); ++i) {
+    drawn[i] = normal(random) / std::sqrt(known.eigenvalues()[i]);
+  }
+  const Eigen::VectorXd off = known.eigenvectors() * drawn;
+  for (std::size_t i = 0; i < filed.size(); ++i) {
+    const auto at = static_cast<std::size_t>(filed[i]);
+    const FreeNumber& number = composition.numbers()[at];
+    theta[at] =
+        number.inside(number.theta_of(number.prior_mean) + off[static_cast<Eigen::Index>(i)]);
+  }
+  return theta;
+}
+
 void add_strain(const Campaign& campaign, std::size_t gauge, const std::vector<double>& strain,
                 const std::vector<double>& more, ChannelRecord& channel) {
   const Gauge& own = campaign.bench.gauges[gauge];
@@ -242,9 +275,10 @@ std::vector<std::vector<double>> fresh_noise(const Campaign& campaign, std::size
 }
 
 std::vector<Shot> Planter::drawn_anew(std::uint64_t seed) const {
+  const std::vector<double> theta = drawn_as_filed(studied_, seed);
   std::vector<Shot> shots = shots_;
   for (std::size_t n = 0; n < shots.size(); ++n) {
-    auto strain = through(studied_.composition, studied_.fit.theta, n);
+    auto strain = through(studied_.composition, theta, n);
     const auto noise = fresh_noise(campaign_, n, seed);
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
       for (std::size_t i = 0; i < strain[j].size(); ++i) {

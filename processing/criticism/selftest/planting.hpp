@@ -27,9 +27,9 @@ class Planter {
   /// every gauge has the opposite one at every other.
   [[nodiscard]] std::vector<Shot> planted(const EffectUse& use) const;
 
-  /// Shots as the fitted model foretells them, with noise drawn anew: it has the spectrum, and the
-  /// covariance between gauges, of the samples before the pulses. Nothing is in them that the model
-  /// does not hold.
+  /// Shots as the fitted model foretells them, filed numbers drawn within their deviations, with
+  /// noise drawn anew: it has the spectrum, and the covariance between gauges, of the samples
+  /// before the pulses. Nothing is in them that the model does not hold.
   [[nodiscard]] std::vector<Shot> drawn_anew(std::uint64_t seed) const;
 
  private:
@@ -58,6 +58,11 @@ class Planter {
 [[nodiscard]] std::vector<double> numbers_with(const Studied& studied,
                                                const Composition& composition, const EffectUse& use,
                                                std::size_t gauges);
+
+/// A fit's numbers with the filed ones drawn anew from what is filed of them. Where a fit has put
+/// them they may stand in for what the model lacks, and shots of that would not be shots of
+/// nothing.
+[[nodiscard]] std::vector<double> drawn_as_filed(const Studied& studied, std::uint64_t seed);
 
 /// Noise of one shot, by gauge: with the spectrum, and the covariance between gauges, of all
 /// samples before the pulses. Strain.
