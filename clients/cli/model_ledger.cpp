@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
-#include "processing/criticism/search/search_trials.hpp"
+#include "clients/cli/reports/model_text.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 
@@ -28,25 +31,45 @@ bool certified(const StepTest& test) {
 
 }  // namespace
 
-StepFit fit_of(const Misfit& misfit, std::size_t captures) {
-  return {static_cast<std::int64_t>(captures), misfit.chi2_reduced, misfit.degrees_of_freedom,
-          misfit.repeatable_share, misfit.noise_floor_share};
+ModelFile model_named(const std::string& name) {
+  const auto at = name.rfind('@');
+  if (at == std::string::npos || std::filesystem::exists(name)) {
+    return read_model(name);
+  }
+  const std::string path = name.substr(0, at);
+  const std::string step = name.substr(at + 1);
+  const ModelFile file = read_model(path);
+  if (step.empty() || step.size() > 6 ||
+      step.find_first_not_of("0123456789") != std::string::npos ||
+      std::stoul(step) > file.history.size()) {
+    throw InputError(name, fmt::format("names no step: {} has {}", path, file.history.size()),
+                     fmt::format("give a number from 0 to {}; `kolsky model history {}` lists them",
+                                 file.history.size(), path));
+  }
+  return file.at(std::stoul(step));
 }
 
-void keep(const Diagnosis& diagnosis, std::size_t captures, ModelStep& step) {
-  step.verdict = kolsky::name_of(diagnosis.verdict);
-  step.added = diagnosis.effects;
-  step.fit = fit_of(diagnosis.after, captures);
-  step.held_out = {diagnosis.held_out.before, diagnosis.held_out.after, diagnosis.held_out.floor};
-  step.seeds = {static_cast<double>(kSearchSeed)};
-  for (const CandidateResult& candidate : diagnosis.candidates) {
-    StepTest test{candidate.effect, candidate.strength,      candidate.sd,      candidate.unit,
-                  candidate.log_p,  candidate.held_out_gain, candidate.verdict, {}};
-    if (const auto ties = diagnosis.tied_with.find(candidate.effect);
-        ties != diagnosis.tied_with.end()) {
-      test.tied_with = ties->second;
+void require_model_of(const Bench& bench, const Model& model, const std::string& name) {
+  if (model.kind != bench.kind) {
+    throw InputError(name,
+                     "is a model of a bench of kind " + name_of(model.kind) +
+                         ", and the captures are of one of kind " + name_of(bench.kind),
+                     "make one with `kolsky model new --kind " + name_of(bench.kind) + "`");
+  }
+  std::string gauges;
+  for (const Gauge& gauge : bench.gauges) {
+    gauges += (gauges.empty() ? "" : ", ") + gauge.name;
+  }
+  for (const EffectUse& use : model.effects) {
+    if (!use.gauge.empty() &&
+        std::none_of(bench.gauges.begin(), bench.gauges.end(),
+                     [&](const Gauge& own) { return own.name == use.gauge; })) {
+      throw InputError(
+          name + ": effect " + use.id(),
+          "names a gauge that the captures' bench does not have: its gauges are " + gauges,
+          "take the effect out with `kolsky model remove`, or compare with captures of "
+          "the bench that the model is of");
     }
-    step.tests.push_back(std::move(test));
   }
 }
 
@@ -95,8 +118,8 @@ std::string ledger_text(const ModelStep& step) {
     if (!certified(test)) {
       continue;
     }
-    text += fmt::format("      {} {}: {:.4g} ± {:.1g} {}, ln p {:.1f}\n", test.verdict, test.effect,
-                        test.strength, test.sd, test.unit, test.log_p);
+    text += fmt::format("      {} {}: {}, ln p {:.1f}\n", test.verdict, test.effect,
+                        number_text(test.strength, test.sd, test.unit), test.log_p);
     for (const std::string& other : test.tied_with) {
       text += "        cannot be told from " + other + "\n";
     }

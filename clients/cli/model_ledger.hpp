@@ -3,17 +3,18 @@
 #include <string>
 
 #include "clients/cli/reports/json_value.hpp"
-#include "drivers/files/models/model_step.hpp"
-#include "processing/criticism/verdict/diagnosis.hpp"
+#include "drivers/files/models/model_file.hpp"
 
 namespace kolsky::cli {
 
-/// How a fit came out, as a model's ledger keeps it.
-[[nodiscard]] StepFit fit_of(const Misfit& misfit, std::size_t captures);
+/// The model of a file, or of "M.toml@3" as it was after three steps; @0 is how it began.
+/// @throws InputError
+[[nodiscard]] ModelFile model_named(const std::string& name);
 
-/// Writes a diagnosis into a step: verdict, what was added, every test of an effect that was worth
-/// one, misfit, held-out misfit, seeds.
-void keep(const Diagnosis& diagnosis, std::size_t captures, ModelStep& step);
+/// @param name  of the model's file, for people
+/// @throws InputError where captures of this bench are not what the model is of: its kind, and the
+/// gauges that its effects name
+void require_model_of(const Bench& bench, const Model& model, const std::string& name);
 
 /// A step as `kolsky model history --json` gives it.
 [[nodiscard]] JsonValue describe(const ModelStep& step);

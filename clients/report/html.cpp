@@ -102,9 +102,10 @@ std::string bars_html(const std::vector<ShareBar>& bars) {
     const double length =
         bar.share > 0.0 ? std::clamp(1.0 + std::log10(bar.share) / decades, 0.0, 1.0) : 0.0;
     out += fmt::format(
-        "<div class=\"bar\"><span>{}</span><i style=\"width:{:.1f}%\"></i><span>{:.2g} %</span>"
+        "<div class=\"bar\"><span>{}</span><i style=\"width:{:.1f}%\"></i><span>{} %</span>"
         "</div>\n",
-        escaped(bar.name), 100.0 * length, 100.0 * bar.share);
+        escaped(bar.name), 100.0 * length,
+        bar.share < 0.995 ? fmt::format("{:.2g}", 100.0 * bar.share) : "100");
   }
   return out;
 }

@@ -19,8 +19,12 @@ void require_gauges(const ActiveModel& model, const Bench& bench) {
                        std::any_of(bench.gauges.begin(), bench.gauges.end(),
                                    [&](const Gauge& gauge) { return gauge.name == use.gauge; });
     if (!there) {
+      std::string names;
+      for (const Gauge& gauge : bench.gauges) {
+        names += (names.empty() ? "" : ", ") + gauge.name;
+      }
       throw InputError(model.path.string() + ": effect " + use.id(),
-                       "names a gauge that the bench does not have",
+                       "names a gauge that the bench does not have: its gauges are " + names,
                        "fit a model to captures of this bench");
     }
   }
@@ -41,7 +45,8 @@ std::shared_ptr<const ActiveModel> read_active_model(const DaemonConfig& config,
   model->file = parse_model(text, model->path.string());
   if (model->file.model.kind != bench.kind) {
     throw InputError(model->path.string() + ": kind",
-                     "is of another kind of bench than " + config.bench.string(),
+                     "is " + name_of(model->file.model.kind) + ", and " + config.bench.string() +
+                         " is of kind " + name_of(bench.kind),
                      "make one with `kolsky model new --bench`");
   }
   const auto& history = model->file.history;

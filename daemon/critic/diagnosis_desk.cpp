@@ -12,6 +12,7 @@
 #include "daemon/shots/shot_id.hpp"
 #include "daemon/thread_priority.hpp"
 #include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/models/diagnosis_step.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
 #include "processing/criticism/impact/impact_diagnosis.hpp"
@@ -32,6 +33,22 @@ void run_last() {
   static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowestPriority));
 }
 
+/// Before anything begins: a run that fails would stand in the place of the last one.
+void require_stored(Archivist& archivist, const std::vector<std::string>& ids) {
+  if (ids.empty()) {
+    return;
+  }
+  std::set<std::string> stored;
+  for (const CatalogueEntry& entry : archivist.newest(0)) {
+    stored.insert(entry.id);
+  }
+  for (const std::string& id : ids) {
+    if (!stored.contains(id)) {
+      throw InputError("shot " + id, "is not in the store", "`kolsky shots` lists what is");
+    }
+  }
+}
+
 std::vector<std::string> chosen(Archivist& archivist, const v1::Diagnose& request) {
   std::vector<std::string> ids(request.ids().begin(), request.ids().end());
   if (ids.size() > DiagnosisDesk::kMostShots || request.shots() > DiagnosisDesk::kMostShots) {
@@ -41,6 +58,7 @@ std::vector<std::string> chosen(Archivist& archivist, const v1::Diagnose& reques
   if (std::set<std::string>(ids.begin(), ids.end()).size() != ids.size()) {
     throw InputError("diagnose: ids", "one is named twice", "name each shot once");
   }
+  require_stored(archivist, ids);
   if (ids.empty()) {
     const std::size_t most = request.shots() == 0 ? DiagnosisDesk::kUsualShots : request.shots();
     for (const CatalogueEntry& entry : archivist.newest(most)) {
@@ -165,7 +183,9 @@ void DiagnosisDesk::work(const std::shared_ptr<const ActiveModel>& model,
     examine(*model, ids);
     end(v1::DiagnosisSummary::DONE, "done");
   } catch (const Cancelled&) {
-    end(v1::DiagnosisSummary::CANCELLED, "cancelled");
+    v1::Diagnosis now;
+    (void)last(now);
+    end(v1::DiagnosisSummary::CANCELLED, "while " + now.summary().step());
   } catch (const std::exception& error) {
     end(v1::DiagnosisSummary::FAILED, error.what());
   }
@@ -219,14 +239,7 @@ void DiagnosisDesk::file(const ActiveModel& model, const Diagnosis& diagnosis,
   message.mutable_summary()->set_step("done");
   if (diagnosis.model && !diagnosis.effects.empty()) {
     ModelFile found = model.file;
-    std::string action = "diagnose live, added";
-    for (const std::string& id : diagnosis.effects) {
-      action += " " + id;
-    }
-    begin_step(found, action, format_utc_compact(clock_ns(CLOCK_REALTIME)));
-    found.history.back().note = "shots of " + store_.root.string();
-    found.history.back().data_sha256 = digest_of_files(captures);
-    found.model = *diagnosis.model;
+    add_diagnosis(found, diagnosis, captures, "live, shots of " + store_.root.string());
     NewFile with(folder / (message.summary().id() + ".toml"));
     with.write(format_model(found));
     with.publish(kStoredMode);

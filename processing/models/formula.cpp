@@ -13,6 +13,11 @@ namespace kolsky {
 
 namespace {
 
+/// "a pure number", "what is in s".
+std::string in_words(const Dimension& dimension) {
+  return dimension.none() ? "a pure number" : "what is in " + dimension.text();
+}
+
 constexpr std::size_t kLanes = 64;
 constexpr int kDeepest = 48;
 constexpr int kLargestWhole = 32;
@@ -120,7 +125,7 @@ class FormulaReader {
     const Dimension& right = operation(b).dimension;
     if (step == Step::add || step == Step::subtract) {
       if (!left.same(right)) {
-        refuse("adds " + left.text() + " to " + right.text(),
+        refuse("adds " + in_words(left) + " to " + in_words(right),
                "make the units of both sides the same");
       }
       own.dimension = left;

@@ -184,4 +184,16 @@ Model paper_model(BenchKind kind, bool elastic) {
   return model;
 }
 
+std::string name_of(BenchKind kind) {
+  switch (kind) {
+    case BenchKind::bar:
+      return "bar";
+    case BenchKind::shpb:
+      return "shpb";
+    case BenchKind::impact:
+      return "impact";
+  }
+  return {};
+}
+
 }  // namespace kolsky

@@ -62,6 +62,9 @@ struct Model {
 void take_layer(const Material& material, EffectUse& layer,
                 std::span<const double> covariance = {});
 
+/// "bar", "shpb" or "impact".
+[[nodiscard]] std::string name_of(BenchKind kind);
+
 /// The paper's model (INTERFACE: where every diagnosis starts), moduli free and, for a split bar,
 /// those of the bars held. An impact: the paper's core and cover.
 /// @param elastic  the bench gives the bars' modulus

@@ -28,7 +28,7 @@ ALLOWED = {
 LAYERS = {
     "processing": "base algebra trigger bridge waves separation impact models reduction identification "
     "criticism specimen uncertainty planning calibration prediction".split(),
-    "processing/criticism": "records noise fitting search verdict impact comparing selftest waterfall".split(),
+    "processing/criticism": "records noise fitting search verdict impact comparing selftest experiment waterfall".split(),
     "drivers/files": "settings models captures store exports tables".split(),
     "clients/cli": "reports live commands".split(),
 }
@@ -38,6 +38,10 @@ LAYERS = {
 EXCEPTIONS = {
     "clients/cli/commands/tour": ["drivers/simulated/hidden_campaign.hpp"],
     "drivers/files/exports": ["processing/reduction/reduction.hpp"],
+    "drivers/files/models/diagnosis_step": [
+        "processing/criticism/search/search_trials.hpp",
+        "processing/criticism/verdict/diagnosis.hpp",
+    ],
     "drivers/files/models/model_file": ["processing/models/model.hpp"],
     "drivers/files/models/model_expressions": [
         "processing/models/admission.hpp",

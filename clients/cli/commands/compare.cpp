@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/comparison_page.hpp"
 #include "clients/cli/reports/comparison_text.hpp"
@@ -12,7 +13,6 @@
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/captures/new_file.hpp"
-#include "drivers/files/models/model_file.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -30,6 +30,15 @@ bool was_fitted(const ModelFile& file) {
                      [](const ModelStep& step) { return !step.data_sha256.empty(); });
 }
 
+/// Effects of which every shot or gauge has a strength of its own; empty where there are none.
+std::string own_strengths(const Model& model) {
+  std::string list;
+  for (const EffectUse& use : model.effects) {
+    list += has_own_strengths(use) ? (list.empty() ? "" : ", ") + use.id() : "";
+  }
+  return list;
+}
+
 /// What was done to the model before it was compared, for people.
 std::string how(const Settings& settings, const ModelFile& file) {
   if (settings.fit) {
@@ -39,11 +48,17 @@ std::string how(const Settings& settings, const ModelFile& file) {
     return "the model was never fitted: fitted to these captures first; the model file stays as "
            "it is";
   }
+  std::string text = "as it is in the file";
   if (file.history.back().data_sha256.empty()) {
-    return "as it is in the file, which was changed after its last fit: `kolsky fit`, or --fit "
-           "here";
+    text += ", which was changed after its last fit: `kolsky fit`, or --fit here";
   }
-  return "as it is in the file";
+  if (const std::string own = own_strengths(file.model); !own.empty()) {
+    text +=
+        "; fitted to these captures, as a model keeps but their mean: each shot's or gauge's "
+        "own strengths of " +
+        own;
+  }
+  return text;
 }
 
 int run_impacts(const Settings& settings, const ModelFile& file, const Campaign& campaign,
@@ -78,15 +93,20 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
               << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
               << strained_text(studied.model) << "\n"
               << speeds_table(comparison) << "\n"
-              << places_table(comparison, campaign) << "\n"
+              << places_table(comparison, campaign)
+              << (is_strained(studied.model)
+                      ? "  filed numbers are strained to that end beyond three deviations\n"
+                      : "")
+              << "\n"
               << worst_plot(comparison, study.residuals().times_s(), context.terminal);
   return kDone;
 }
 
 int run(const Settings& settings, Context& context) {
-  const ModelFile file = read_model(settings.model);
+  const ModelFile file = model_named(settings.model);
   require_page_output(settings.report);
   const Campaign campaign = read_campaign(read_shots(settings.captures));
+  require_model_of(campaign.bench, file.model, settings.model);
   if (file.model.kind == BenchKind::impact) {
     return run_impacts(settings, file, campaign, context);
   }
@@ -96,6 +116,7 @@ int run(const Settings& settings, Context& context) {
       fit_first ? study.beside_quiet(study.fit(file.model)) : study.as_it_is(file.model);
   Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);
   const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
+  const ShotGroups groups = by_strength(comparison, studied.model, campaign);
   const std::string note = how(settings, file);
   if (settings.report) {
     replace_file(*settings.report,
@@ -107,6 +128,7 @@ int run(const Settings& settings, Context& context) {
                                       {"misfit", describe(studied.misfit)},
                                       {"where", describe_tiles(comparison, campaign)},
                                       {"regions", describe_regions(comparison, campaign)},
+                                      {"by_strength", describe_strengths(groups, campaign)},
                                       {"places", describe_places(comparison, comparer, study)},
                                       {"fitted_first", fit_first},
                                       {"converged", studied.fit.converged},
@@ -117,10 +139,14 @@ int run(const Settings& settings, Context& context) {
                 << "\n";
     return kDone;
   }
+  const std::string strengths = strengths_table(groups, campaign);
   context.out << settings.model << ": " << note << "\n"
               << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
               << strained_text(studied.model) << "\n"
-              << places_table(comparison, campaign) << "\n"
+              << (fails_anywhere(comparison) ? places_table(comparison, campaign)
+                                             : "  " + nothing_fails_words(studied.model) + "\n")
+              << "\n"
+              << (strengths.empty() ? "" : strengths + "\n")
               << worst_plot(comparison, comparer, study, studied.fit.residual, context.terminal);
   return kDone;
 }
@@ -142,7 +168,7 @@ Command compare_command() {
       "  kolsky compare shots --model m.toml --report where.html\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
-      needed("--model", "M.toml", "the model to compare", &s.model),
+      needed("--model", "M.toml", "the model to compare, or M.toml@N", &s.model),
       flag("--fit", "fit the model to these captures first; the file stays as it is", &s.fit),
       option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
              &s.report),

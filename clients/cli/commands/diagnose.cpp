@@ -17,6 +17,7 @@
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/models/diagnosis_step.hpp"
 #include "drivers/files/models/model_file.hpp"
 #include "drivers/files/settings/nearest_name.hpp"
 #include "processing/base/error.hpp"
@@ -109,6 +110,20 @@ std::vector<std::string> safeguard_names() {
   return names;
 }
 
+/// What was meant, or, where nothing is near, all there are.
+std::string known_safeguards(const std::string& name) {
+  const std::vector<std::string> names = safeguard_names();
+  const std::string nearest = nearest_name(name, names);
+  if (2 * edit_distance(name, nearest) <= nearest.size()) {
+    return "the nearest is " + nearest + "; see kolsky diagnose --help";
+  }
+  std::string list;
+  for (const std::string& own : names) {
+    list += (list.empty() ? "" : ", ") + own;
+  }
+  return "give one of " + list;
+}
+
 /// All but those named.
 Safeguards safeguards_without(const std::vector<std::string>& names) {
   Safeguards safeguards;
@@ -118,8 +133,7 @@ Safeguards safeguards_without(const std::vector<std::string>& names) {
                                     [&](const NamedSafeguard& one) { return one.name == name; });
     if (found == all.end()) {
       throw InputError("kolsky diagnose: --without", "there is no safeguard \"" + name + "\"",
-                       "the nearest is " + nearest_name(name, safeguard_names()) +
-                           "; see kolsky diagnose --help");
+                       known_safeguards(name));
     }
     safeguards.*found->member = false;
   }
@@ -139,6 +153,9 @@ std::string without_help() {
 Diagnosis examine(const Settings& settings, const Model& model, const Safeguards& safeguards,
                   bool progress) {
   const std::vector<Shot> shots = read_shots(settings.captures);
+  if (!shots.empty()) {
+    require_model_of(shots.front().bench, model, settings.model);
+  }
   if (auto verdict = verdict_without_fit(shots)) {
     if (settings.report) {
       verdict->notes.push_back("nothing was fitted, so there is no report");
@@ -187,20 +204,7 @@ int run(const Settings& settings, Context& context) {
     diagnosis.notes.push_back("without the safeguard " + name + ": nothing of this is certified");
   }
   if (settings.output && diagnosis.model) {
-    std::string added;
-    for (const std::string& id : diagnosis.effects) {
-      added += " " + id;
-    }
-    begin_step(file,
-               "diagnose:" + (added.empty() ? " " + kolsky::name_of(diagnosis.verdict) : added),
-               utc_now());
-    file.history.back().data_sha256 = digest_of(settings.captures);
-    file.history.back().note = noted(settings, without);
-    keep(diagnosis, count_of(settings.captures), file.history.back());
-    if (diagnosis.verdict != DiagnosisVerdict::unknown) {
-      // What was tried and rejected has no place in the model.
-      file.model = *diagnosis.model;
-    }
+    add_diagnosis(file, diagnosis, files_of(settings.captures), noted(settings, without));
     replace_file(*settings.output, format_model(file));
   }
   if (!context.json) {

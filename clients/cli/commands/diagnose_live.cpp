@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <ostream>
@@ -7,6 +10,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/daemon_shot.hpp"
 #include "clients/cli/reports/daemon_text.hpp"
+#include "clients/cli/reports/diagnosis_text.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
@@ -56,17 +60,73 @@ v1::Diagnosis wait(ControlClient& client, v1::Diagnosis diagnosis, bool tell) {
   return diagnosis;
 }
 
+DiagnosisVerdict verdict_named(const std::string& name) {
+  constexpr std::array kAll{DiagnosisVerdict::named,      DiagnosisVerdict::tied,
+                            DiagnosisVerdict::unknown,    DiagnosisVerdict::adequate,
+                            DiagnosisVerdict::untestable, DiagnosisVerdict::bad_data};
+  const auto found = std::find_if(kAll.begin(), kAll.end(), [&](DiagnosisVerdict verdict) {
+    return kolsky::name_of(verdict) == name;
+  });
+  if (found == kAll.end()) {
+    throw InputError("kolskyd", "says \"" + name + "\", a verdict that this version does not know",
+                     "use a client of the daemon's version");
+  }
+  return *found;
+}
+
+CandidateResult candidate_of(const v1::DiagnosisCandidate& message) {
+  CandidateResult candidate;
+  candidate.effect = message.effect();
+  candidate.parameter = message.parameter();
+  candidate.unit = message.unit();
+  candidate.strength = message.strength();
+  candidate.sd = message.sd();
+  candidate.own_log_p = std::log(message.p_value());
+  candidate.log_p = message.log_p();
+  candidate.gain = message.gain();
+  candidate.held_out_gain = message.held_out_gain();
+  candidate.detectable = message.smallest_detectable();
+  candidate.identifiable = message.smallest_identifiable();
+  candidate.nearest_rival = message.nearest_rival();
+  candidate.verdict = message.verdict();
+  return candidate;
+}
+
+/// What the daemon found, as `kolsky diagnose` has it.
+Diagnosis found(const v1::Diagnosis& message) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = verdict_named(message.summary().verdict());
+  for (const std::string& id : message.summary().effects()) {
+    diagnosis.effects.push_back(id);
+    std::vector<std::string>& ties = diagnosis.tied_with[id];
+    if (const auto own = message.tied_with().find(id); own != message.tied_with().end()) {
+      ties.assign(own->second.items().begin(), own->second.items().end());
+    }
+  }
+  const v1::HeldOut& held_out = message.misfit().held_out();
+  diagnosis.held_out = {held_out.before(), held_out.after(), held_out.floor()};
+  for (const v1::DiagnosisCandidate& candidate : message.candidates()) {
+    diagnosis.candidates.push_back(candidate_of(candidate));
+  }
+  for (const v1::NextExperiment& next : message.next_experiment()) {
+    diagnosis.next_experiment.push_back(
+        {next.change(), {next.separates().begin(), next.separates().end()}});
+  }
+  diagnosis.notes.assign(message.notes().begin(), message.notes().end());
+  if (!diagnosis.candidates.empty()) {
+    diagnosis.model.emplace();  // one was fitted; it stays with the daemon
+  }
+  return diagnosis;
+}
+
 void print(const v1::Diagnosis& diagnosis, Context& context) {
   if (context.json) {
     context.out << to_text(describe(diagnosis)) << "\n";
     return;
   }
   context.out << diagnosis_line(diagnosis.summary()) << "\n";
-  for (const std::string& note : diagnosis.notes()) {
-    context.out << "  note: " << note << "\n";
-  }
-  for (const v1::NextExperiment& next : diagnosis.next_experiment()) {
-    context.out << "  next: " << next.change() << "\n";
+  if (diagnosis.summary().state() == v1::DiagnosisSummary::DONE) {
+    context.out << diagnosis_text(found(diagnosis));
   }
   if (!diagnosis.stored_as().empty()) {
     context.out << "  stored as " << diagnosis.stored_as() << "\n";

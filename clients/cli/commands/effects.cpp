@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <ostream>
 
@@ -39,16 +40,42 @@ JsonValue describe(const EffectAbout& about) {
                     {"parameters", std::move(parameters)}};
 }
 
+std::string list_of(const std::vector<double>& values) {
+  std::string list;
+  for (const double value : values) {
+    list += (list.empty() ? "" : ", ") + fmt::format("{:g}", value);
+  }
+  return list;
+}
+
+/// "D [1/Pa], none at 0, from 0 to 1e-09"; what means nothing while the strength is null has no
+/// value at which nothing is there.
+std::string parameter_text(const EffectParameter& p) {
+  const std::string name = p.unit == "-" ? p.name : fmt::format("{} [{}]", p.name, p.unit);
+  if (p.chosen) {
+    return fmt::format("    {}, one of {}\n", name, list_of(p.starts));
+  }
+  return fmt::format("    {}{}, from {:g} to {:g}\n", name,
+                     p.auxiliary() ? "" : fmt::format(", none at {:g}", p.null_value), p.lower,
+                     p.upper);
+}
+
+/// By stage, in the order in which they act.
 std::string table() {
-  std::string text;
+  std::map<Stage, std::string> stages;
   for (const Effect* effect : effect_library()) {
     const EffectAbout& about = effect->about();
-    text += fmt::format("{:<28} {:<12} {}\n", about.id + (about.per_gauge ? ":GAUGE" : ""),
-                        kolsky::name_of(about.stage), about.definition);
+    std::string& text = stages[about.stage];
+    text += fmt::format("  {:<28} {}\n", about.id + (about.per_gauge ? ":GAUGE" : ""),
+                        about.definition);
     for (const EffectParameter& p : about.parameters) {
-      text += fmt::format("    {} [{}], none at {:g}, from {:g} to {:g}\n", p.name, p.unit,
-                          p.null_value, p.lower, p.upper);
+      text += parameter_text(p);
     }
+    text += about.reference.empty() ? "" : "    " + about.reference + "\n";
+  }
+  std::string text;
+  for (const auto& [stage, own] : stages) {
+    text += (text.empty() ? "" : "\n") + kolsky::name_of(stage) + "\n" + own;
   }
   return text;
 }

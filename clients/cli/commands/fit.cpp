@@ -6,13 +6,14 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
+#include "clients/cli/reports/comparison_text.hpp"
 #include "clients/cli/reports/criticism_text.hpp"
 #include "clients/cli/reports/impact_criticism.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/captures/new_file.hpp"
-#include "drivers/files/models/model_file.hpp"
+#include "drivers/files/models/diagnosis_step.hpp"
 #include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky::cli {
@@ -42,9 +43,10 @@ int run(const Settings& settings, Context& context) {
   require_model_output(settings.output);
   const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
+  require_model_of(campaign.bench, file.model, settings.model);
   const Studied studied = fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);
-  begin_step(file, fmt::format("fit {} captures", campaign.shots.size()), utc_now());
-  file.history.back().data_sha256 = digest_of(settings.captures);
+  begin_step(file, fmt::format("fit {} captures", campaign.shots.size()));
+  file.history.back().data_sha256 = digest_of_files(files_of(settings.captures));
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());
   file.history.back().note = settings.note.value_or("");
   file.model = studied.model;
@@ -61,7 +63,8 @@ int run(const Settings& settings, Context& context) {
     return kDone;
   }
   context.out << settings.output << "\n"
-              << model_table(file.model) << misfit_text(studied.misfit)
+              << model_table(file.model) << misfit_text(studied.misfit) << in_words(studied.misfit)
+              << "\n"
               << strained_text(file.model);
   return kDone;
 }

@@ -150,6 +150,7 @@ struct EditSettings {
   std::optional<std::string> output;
   bool per_shot = false;
   std::optional<std::string> note;
+  std::optional<std::uint64_t> to;  ///< of a reversion: a step
 };
 
 int add(const EditSettings& settings, Context& context) {
@@ -169,14 +170,27 @@ int add(const EditSettings& settings, Context& context) {
     throw InputError("effect " + use.id(), "is one for all shots", "leave --per-shot out");
   }
   use.per_shot = settings.per_shot;
-  begin_step(file, "add " + use.id(), utc_now());
+  begin_step(file, "add " + use.id());
   file.history.back().added = {use.id()};
   file.history.back().note = settings.note.value_or("");
-  file.model.effects.push_back(std::move(use));
+  file.model.effects.push_back(use);
   const std::string output = settings.output.value_or(settings.model);
   replace_file(output, format_model(file));
-  print(file, output, context);
+  if (context.json) {
+    print(file, output, context);
+    return kDone;
+  }
+  context.out << output << ": added, to be fitted; " << file.model.effects.size() << " effects\n"
+              << effect_text(use);
   return kDone;
+}
+
+/// A number of the bench, not what is only bounded by a prior, as a hum's amplitudes are.
+bool is_filed(const EffectUse& use) {
+  const EffectAbout& about = use.effect->about();
+  return !about.base && !about.each_gauge &&
+         std::any_of(use.values.begin(), use.values.end(),
+                     [](const ModelValue& value) { return value.prior_sd > 0.0 && value.free; });
 }
 
 int remove(const EditSettings& settings, Context& context) {
@@ -186,7 +200,14 @@ int remove(const EditSettings& settings, Context& context) {
     throw InputError(settings.model + ": effect " + settings.effect, "is not in the model",
                      "`kolsky model show` lists what is");
   }
-  begin_step(file, "remove " + settings.effect, utc_now());
+  if (is_filed(*use)) {
+    throw InputError(settings.model + ": effect " + settings.effect,
+                     "is a number that the bench files within a deviation: every fit to its "
+                     "captures takes it in again",
+                     "to hold it where it is, write `free = false` for it in the model file; to "
+                     "free it of what is filed, take `prior_sd` and `prior_mean` out there");
+  }
+  begin_step(file, "remove " + settings.effect);
   file.history.back().note = settings.note.value_or("");
   std::erase_if(file.model.effects,
                 [&](const EffectUse& own) { return own.id() == settings.effect; });
@@ -197,7 +218,7 @@ int remove(const EditSettings& settings, Context& context) {
 }
 
 int show(const EditSettings& settings, Context& context) {
-  print(read_model(settings.model), settings.model, context);
+  print(model_named(settings.model), settings.model, context);
   return kDone;
 }
 
@@ -211,9 +232,10 @@ std::string changes(const Model& before, const Model& after) {
     }
     for (std::size_t p = 0; p < use.values.size(); ++p) {
       if (use.values[p].value != old->values[p].value) {
-        text += fmt::format("        {}.{}: {:.6g} -> {:.6g}\n", use.id(),
-                            use.effect->about().parameters[p].name, old->values[p].value,
-                            use.values[p].value);
+        const EffectParameter& parameter = use.effect->about().parameters[p];
+        text += fmt::format("        {}.{}: {} -> {}\n", use.id(), parameter.name,
+                            number_text(old->values[p].value, old->values[p].sd, parameter.unit),
+                            number_text(use.values[p].value, use.values[p].sd, parameter.unit));
       }
     }
   }
@@ -231,7 +253,7 @@ int history(const EditSettings& settings, Context& context) {
     JsonList steps;
     for (const ModelStep& step : file.history) {
       JsonObject own = std::get<JsonObject>(describe(step).content());
-      own.push_back({"effects_before", describe_effects(parse_model(step.before, "before").model)});
+      own.push_back({"effects_before", describe_effects(file.at(steps.size()).model)});
       steps.push_back(std::move(own));
     }
     context.out << to_text(JsonObject{{"history", std::move(steps)},
@@ -242,10 +264,8 @@ int history(const EditSettings& settings, Context& context) {
   }
   for (std::size_t i = 0; i < file.history.size(); ++i) {
     const ModelStep& step = file.history[i];
-    const Model before = parse_model(step.before, "before").model;
-    const Model after = i + 1 < file.history.size()
-                            ? parse_model(file.history[i + 1].before, "before").model
-                            : file.model;
+    const Model before = file.at(i).model;
+    const Model after = file.at(i + 1).model;
     context.out << fmt::format("{:>3}  {}  {}\n", i + 1, step.when, step.action)
                 << (step.note.empty() ? "" : "      " + step.note + "\n") << ledger_text(step)
                 << changes(before, after);
@@ -256,13 +276,25 @@ int history(const EditSettings& settings, Context& context) {
   return kDone;
 }
 
+/// To how many steps a model goes back: before the last that was not itself a going back.
+std::size_t target_of(const EditSettings& settings, const ModelFile& file) {
+  if (settings.to) {
+    return *settings.to;
+  }
+  const std::size_t now = file.first_alike(file.history.size());
+  if (now == 0) {
+    throw InputError(settings.model, "is as it began: there is no step to go back to",
+                     "nothing needs to be done; --to goes to any step of the history");
+  }
+  return now - 1;
+}
+
 int revert(const EditSettings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
-  if (file.history.empty()) {
-    throw InputError(settings.model, "has no step to go back to", "nothing needs to be done");
-  }
-  const ModelFile before = parse_model(file.history.back().before, settings.model + ": history");
-  begin_step(file, "revert " + file.history.back().action, utc_now());
+  const std::size_t target = target_of(settings, file);
+  const ModelFile before = file.at(target);
+  begin_step(file, fmt::format("revert to step {}", target));
+  file.history.back().note = settings.note.value_or("");
   file.model = before.model;
   const std::string output = settings.output.value_or(settings.model);
   replace_file(output, format_model(file));
@@ -279,7 +311,8 @@ Command edit_command(const std::string& name, const std::string& purpose,
   command.name = "model " + name;
   command.purpose = purpose;
   command.examples = examples;
-  command.arguments = {needed("MODEL", "", "the model file", &s.model)};
+  command.arguments = {needed(
+      "MODEL", "", name == "show" ? "the model file, or M.toml@N" : "the model file", &s.model)};
   if (needs_effect) {
     command.arguments.push_back(
         needed("EFFECT", "", "its id, as `kolsky effects` lists it", &s.effect));
@@ -292,6 +325,10 @@ Command edit_command(const std::string& name, const std::string& purpose,
   if (name == "add") {
     command.arguments.push_back(
         flag("--per-shot", "with a strength of its own for every shot", &s.per_shot));
+  }
+  if (name == "revert") {
+    command.arguments.push_back(
+        option("--to", "N", "as it was after N steps, 0: as it began; else one step back", &s.to));
   }
   command.run = [settings, run](Context& context) { return run(*settings, context); };
   return command;
@@ -362,8 +399,11 @@ Command model_history_command() {
 
 Command model_revert_command() {
   return edit_command("revert",
-                      "undoes a model's last step\nThe step and its undoing stay in the history.",
-                      "  kolsky model revert m.toml\n", revert, false, true);
+                      "undoes a model's last step, or all down to one\n"
+                      "Steps and their undoing stay in the history; undone twice, two are undone.",
+                      "  kolsky model revert m.toml\n"
+                      "  kolsky model revert m.toml --to 0\n",
+                      revert, false, true);
 }
 
 }  // namespace kolsky::cli

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
@@ -71,6 +72,7 @@ double time_of(const ExpressionEffect& effect, BenchKind kind) {
 /// Cosines beside a fit of the model without its expressions.
 void tell_apart(const Settings& settings, const Model& model, std::vector<Checked>& list) {
   const Campaign campaign = read_campaign(read_shots(settings.captures));
+  require_model_of(campaign.bench, model, settings.model);
   Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   Model without = model;
   std::erase_if(without.effects, [&](const EffectUse& use) {

@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/model_text.hpp"
-#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
@@ -25,10 +25,11 @@ struct Change {
   ModelValue before;
   ModelValue after;
 
-  /// The difference over its deviation, as if the two were independent; 0 where none is known.
+  /// The difference over its deviation, as if the two were independent; 0 where one of them is a
+  /// start or a choice, which has none.
   [[nodiscard]] double deviations() const {
-    const double sd = std::hypot(before.sd, after.sd);
-    return sd > 0.0 ? (after.value - before.value) / sd : 0.0;
+    const bool known = before.sd > 0.0 && after.sd > 0.0;
+    return known ? (after.value - before.value) / std::hypot(before.sd, after.sd) : 0.0;
   }
 };
 
@@ -103,10 +104,11 @@ std::string text_of(const Difference& difference) {
     text += "+ " + id + "\n";
   }
   for (const Change& change : difference.changes) {
-    text += fmt::format("  {}.{}: {:.6g} ± {:.2g} -> {:.6g} ± {:.2g} {}", change.effect,
-                        change.parameter, change.before.value, change.before.sd, change.after.value,
-                        change.after.sd, change.unit);
-    if (change.deviations() != 0.0) {
+    constexpr double kShown = 0.05;
+    text += fmt::format("  {}.{}: {} -> {}", change.effect, change.parameter,
+                        number_text(change.before.value, change.before.sd, change.unit),
+                        number_text(change.after.value, change.after.sd, change.unit));
+    if (std::abs(change.deviations()) >= kShown) {
       text += fmt::format("  ({:+.1f} deviations)", change.deviations());
     }
     const std::string was = how_held(change.before);
@@ -116,33 +118,13 @@ std::string text_of(const Difference& difference) {
   return text.empty() ? "the two models are the same\n" : text;
 }
 
-/// "m.toml", or "m.toml@3": as it was after three steps; @0 is how it began.
-Model model_at(const std::string& name) {
-  const auto at = name.rfind('@');
-  if (at == std::string::npos) {
-    return read_model(name).model;
-  }
-  const std::string path = name.substr(0, at);
-  const std::string step = name.substr(at + 1);
-  const ModelFile file = read_model(path);
-  if (step.empty() || step.size() > 6 ||
-      step.find_first_not_of("0123456789") != std::string::npos ||
-      std::stoul(step) > file.history.size()) {
-    throw InputError(name, fmt::format("names no step: {} has {}", path, file.history.size()),
-                     fmt::format("give a number from 0 to {}; `kolsky model history {}` lists them",
-                                 file.history.size(), path));
-  }
-  const std::size_t index = std::stoul(step);
-  return index == file.history.size()
-             ? file.model
-             : parse_model(file.history[index].before, path + ": history").model;
-}
-
 int run(const Settings& settings, Context& context) {
-  const Model before = model_at(settings.before);
-  const Model after = model_at(settings.after);
+  const Model before = model_named(settings.before).model;
+  const Model after = model_named(settings.after).model;
   if (before.kind != after.kind) {
-    throw InputError(settings.after, "is of another kind of bench than " + settings.before,
+    throw InputError(settings.after,
+                     fmt::format("is a model of a bench of kind {}, and {} of one of kind {}",
+                                 name_of(after.kind), settings.before, name_of(before.kind)),
                      "compare models of one kind");
   }
   const Difference difference = difference_of(before, after);

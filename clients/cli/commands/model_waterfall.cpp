@@ -3,13 +3,13 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/impact_criticism.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/reports/waterfall_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/captures/new_file.hpp"
-#include "drivers/files/models/model_file.hpp"
 #include "processing/criticism/waterfall/impact_waterfall.hpp"
 
 namespace kolsky::cli {
@@ -35,9 +35,10 @@ std::vector<std::string> order_of(const ModelFile& file) {
 std::vector<std::string> notes_of(const Settings& settings, const ModelFile& file,
                                   const Waterfall& fall) {
   std::vector<std::string> notes;
-  const std::string digest = digest_of(settings.captures);
-  const bool seen = std::any_of(file.history.begin(), file.history.end(),
-                                [&](const ModelStep& step) { return step.data_sha256 == digest; });
+  const auto captures = files_of(settings.captures);
+  const bool seen =
+      std::any_of(file.history.begin(), file.history.end(),
+                  [&](const ModelStep& step) { return is_digest_of(step.data_sha256, captures); });
   notes.emplace_back(seen
                          ? "the captures that the model's ledger names; every model of the lineage "
                            "is fitted to them again, under one measure of the noise"
@@ -55,10 +56,11 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
   return notes;
 }
 
-Waterfall fall_of(const Settings& settings, const ModelFile& file, const Model& first) {
+Waterfall fall_of(const Settings& settings, const ModelFile& file) {
   const Campaign campaign = read_campaign(read_shots(settings.captures));
+  require_model_of(campaign.bench, file.model, settings.model);
   const double band_limit_Hz = band_limit_of(settings.band_limit_Hz);
-  const std::vector<LineageStep> steps = lineage(first, file.model, order_of(file));
+  const std::vector<LineageStep> steps = lineage(file.at(0).model, file.model, order_of(file));
   if (file.model.kind == BenchKind::impact) {
     require_kind(file.model, campaign);
     const bool whole = std::any_of(steps.begin(), steps.end(), [](const LineageStep& step) {
@@ -72,14 +74,10 @@ Waterfall fall_of(const Settings& settings, const ModelFile& file, const Model& 
 }
 
 int run(const Settings& settings, Context& context) {
-  const ModelFile file = read_model(settings.model);
+  const ModelFile file = model_named(settings.model);
   require_page_output(settings.report);
   require_picture_output(settings.svg);
-  const Model first =
-      file.history.empty()
-          ? file.model
-          : parse_model(file.history.front().before, settings.model + ": history").model;
-  const Waterfall fall = fall_of(settings, file, first);
+  const Waterfall fall = fall_of(settings, file);
   const std::vector<std::string> notes = notes_of(settings, file, fall);
   const std::string title = "How the misfit of " + settings.model + " fell";
   if (settings.report) {
@@ -121,7 +119,7 @@ Command model_waterfall_command() {
       "  kolsky model waterfall m2.toml shots/*.h5\n"
       "  kolsky model waterfall m2.toml shots --report fall.html --svg fall.svg\n";
   command.arguments = {
-      needed("MODEL", "", "the model file, with its lineage", &s.model),
+      needed("MODEL", "", "the model file, with its lineage, or M.toml@N", &s.model),
       needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
       option("--report", "R.html", "a page with the picture to write: one file, opens anywhere",
              &s.report),

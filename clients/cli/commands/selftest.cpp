@@ -1,6 +1,7 @@
 #include "processing/criticism/selftest/selftest.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -10,11 +11,11 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
@@ -73,18 +74,27 @@ class ProgressLine {
     const double seconds = std::chrono::duration<double>(Clock::now() - begun_).count();
     if (done == 1) {
       first_ = seconds;
-      std::cerr << fmt::format("kolsky: {} diagnoses to make\n", all - 1);
-    } else if (done == all || seconds - said_ > kEvery_s) {
+      say(fmt::format("kolsky: {} diagnoses to make", all - 1), all == 1);
+    } else if (done == all || seconds - said_ > every_s()) {
       said_ = seconds;
       const double each = (seconds - first_) / static_cast<double>(done - 1);
-      std::cerr << fmt::format("kolsky: {} of {}, about {:.0f} s left\n", done, all,
-                               each * static_cast<double>(all - done));
+      say(fmt::format("kolsky: {} of {}, about {:.0f} s left", done, all,
+                      each * static_cast<double>(all - done)),
+          done == all);
     }
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr double kEvery_s = 5.0;
+
+  [[nodiscard]] double every_s() const { return rewrites_ ? 0.5 : 5.0; }
+  /// On a terminal in the place of what was said before, in a file on a line of its own.
+  void say(const std::string& text, bool last) const {
+    std::cerr << (rewrites_ ? "\r" + padded_right(text, kColumns) : text)
+              << (rewrites_ && !last ? "" : "\n") << std::flush;
+  }
+  static constexpr std::size_t kColumns = 60;
+  const bool rewrites_ = terminal_of(STDERR_FILENO).interactive;
 
   std::mutex lock_;
   bool wanted_;
@@ -205,13 +215,21 @@ int run(const Settings& settings, Context& context) {
   SelftestOptions options;
   options.effects = settings.effects;
   options.sizes = sizes_of(settings);
-  options.nulls = std::min(settings.nulls.value_or(options.nulls), kMostNulls);
+  options.nulls = settings.nulls.value_or(options.nulls);
+  if (options.nulls > kMostNulls) {
+    throw InputError("kolsky selftest: --nulls", fmt::format("are more than {}", kMostNulls),
+                     "give fewer: each is a diagnosis");
+  }
   options.seed = settings.seed.value_or(options.seed);
   options.band_limit_Hz = band_limit_of(settings.band_limit_Hz);
   ProgressLine line(!context.json);
   options.progress = [&](std::size_t done, std::size_t all) { line(done, all); };
-  const Selftest result = selftest(read_shots(settings.captures), read_model(settings.model).model,
-                                   options, all_cores());
+  const Model model = model_named(settings.model).model;
+  const std::vector<Shot> shots = read_shots(settings.captures);
+  if (!shots.empty()) {
+    require_model_of(shots.front().bench, model, settings.model);
+  }
+  const Selftest result = selftest(shots, model, options, all_cores());
   if (context.json) {
     context.out << to_text(describe(result, options.seed)) << "\n";
     return kDone;
@@ -233,8 +251,8 @@ Command selftest_command() {
       "In raw codes, the captures' own noise stays. Also how often it cries wolf, on noise drawn "
       "anew.\nA ball's diagnosis takes half a minute of a core: name --effects, or let it run.";
   command.examples =
-      "  kolsky selftest shots --model m1.toml\n"
-      "  kolsky selftest shots --model m1.toml --effects gauge-position:g3 --sizes 5e-4 1e-3 "
+      "  kolsky selftest shots --model m2.toml\n"
+      "  kolsky selftest shots --model m2.toml --effects gauge-position:g3 --sizes 5e-4 1e-3 "
       "2e-3\n"
       "  kolsky selftest balls --model m.toml --effects core-nonlinearity --nulls 2\n";
   command.arguments = {

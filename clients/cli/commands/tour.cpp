@@ -224,9 +224,8 @@ class Tour {
 
   void shoot() {
     const std::vector<std::string> tables = write_tables();
-    say("");
     if (!silent()) {
-      context_.out << records_plot(tables.front()) << "\n";
+      context_.out << "\n" << records_plot(tables.front()) << "\n";
     }
   }
 

@@ -8,6 +8,7 @@
 
 #include "clients/cli/reports/candidates_page.hpp"
 #include "clients/cli/reports/comparison_text.hpp"
+#include "clients/cli/reports/model_text.hpp"
 #include "clients/figure/layout.hpp"
 
 namespace kolsky::cli {
@@ -116,17 +117,15 @@ PageTable places(const Comparison& comparison, const Campaign& campaign) {
 }
 
 PageTable effects_table(const Model& model) {
-  PageTable table{{"effect", "stage", "what it is", "parameter", "value", "deviation", "unit"}, {}};
+  PageTable table{{"effect", "stage", "what it is", "parameter", "value", ""}, {}};
   for (const EffectUse& use : model.effects) {
     const EffectAbout& about = use.effect->about();
     for (std::size_t p = 0; p < about.parameters.size(); ++p) {
       const ModelValue& value = use.values[p];
-      table.rows.push_back(
-          {p == 0 ? use.id() : "", p == 0 ? kolsky::name_of(about.stage) : "",
-           p == 0 ? about.definition : "", about.parameters[p].name,
-           fmt::format("{:.6g}", value.value),
-           value.sd > 0.0 ? fmt::format("± {:.2g}", value.sd) : (value.free ? "" : "held"),
-           about.parameters[p].unit});
+      table.rows.push_back({p == 0 ? use.id() : "", p == 0 ? kolsky::name_of(about.stage) : "",
+                            p == 0 ? about.definition : "", about.parameters[p].name,
+                            number_text(value.value, value.sd, about.parameters[p].unit),
+                            value.free || value.sd > 0.0 ? "" : "held"});
     }
   }
   return table;
@@ -197,16 +196,42 @@ PageSection where_section(const std::string& title, const Comparison& comparison
       {"Rms of the residuals in units of the measured noise: 1 is noise alone. A gauge's deviation "
        "is that from the wave common to all gauges."}};
   section.maps = atlas(comparison, campaign);
-  PageTable table = places(comparison, campaign);
-  if (table.rows.empty()) {
+  if (!fails_anywhere(comparison)) {
     section.text.emplace_back("No place stands out: every one is as noise alone leaves it.");
-  } else {
-    section.text.push_back(fmt::format(
-        "Below, places with more than noise (false discovery at most 0.5 %), the largest {}.",
-        table.rows.size()));
-    section.tables.push_back(std::move(table));
   }
   return section;
+}
+
+/// None where no place fails.
+void add_places(Page& page, const Comparison& comparison, const Campaign& campaign) {
+  PageTable table = places(comparison, campaign);
+  if (table.rows.empty()) {
+    return;
+  }
+  PageSection section{
+      "The places that fail",
+      {fmt::format("More than noise (false discovery at most 0.5 %), the largest {}.",
+                   table.rows.size())}};
+  section.tables.push_back(std::move(table));
+  page.sections.push_back(std::move(section));
+}
+
+/// None where the shots are all about equally strong.
+void add_strengths(Page& page, const ShotGroups& by, const Campaign& campaign) {
+  if (by.groups.empty()) {
+    return;
+  }
+  PageTable table{{by.by, "shots", "share of the misfit", "rms in sigma"}, {}};
+  for (const ShotGroup& group : by.groups) {
+    std::string shots;
+    for (const std::size_t shot : group.shots) {
+      shots += (shots.empty() ? "" : ", ") + campaign.shots[shot].id;
+    }
+    table.rows.push_back({with_unit(group.low, by.unit) + " to " + with_unit(group.high, by.unit),
+                          shots, fmt::format("{:.3g} %", 100.0 * group.share),
+                          fmt::format("{:.3g}", group.sigma())});
+  }
+  page.sections.push_back({"By " + by.by, {}, {}, {}, {std::move(table)}});
 }
 
 PageSection records_section(Study& study, const Studied& studied, Comparer& comparer,
@@ -228,11 +253,14 @@ PageSection records_section(Study& study, const Studied& studied, Comparer& comp
   return section;
 }
 
-std::string headline(const Comparison& comparison, const Campaign& campaign) {
+std::string headline(const Comparison& comparison, const Model& model, const Campaign& campaign) {
   const auto worst = std::find_if(comparison.regions.begin(), comparison.regions.end(),
                                   [](const Region& region) { return region.significant; });
   if (worst == comparison.regions.end()) {
-    return "The model agrees with the records everywhere to within the noise.";
+    return is_strained(model)
+               ? "No place stands out of the noise, but filed numbers are strained to "
+                 "that end beyond three deviations."
+               : "The model agrees with the records everywhere to within the noise.";
   }
   return fmt::format(
       "The model fails most at gauge {}, {}, {}: {:.0f} % of the misfit, {:.3g} times the noise{}.",
@@ -285,15 +313,16 @@ Page comparison_page(const std::string& title, const std::string& note, Study& s
   const JudgedBand& band = study.residuals().band();
   Page page;
   page.title = title;
-  page.headline = headline(comparison, campaign);
-  page.good = std::none_of(comparison.tiles.begin(), comparison.tiles.end(),
-                           [](const Tile& tile) { return tile.significant; });
+  page.headline = headline(comparison, studied.model, campaign);
+  page.good = !fails_anywhere(comparison) && !is_strained(studied.model);
   page.notes = {note, fmt::format("{} shots, {} gauges, judged up to {}", campaign.shots.size(),
                                   campaign.gauges(), with_unit(band.limit_Hz, "Hz"))};
   page.sections.push_back(misfit_section("How large the misfit is", studied.misfit));
   page.sections.push_back(where_section("Where it is", comparison, campaign));
-  page.sections.push_back({"The model", {}, {}, {}, {effects_table(studied.model)}});
   page.sections.push_back(records_section(study, studied, comparer, comparison));
+  add_strengths(page, by_strength(comparison, studied.model, campaign), campaign);
+  add_places(page, comparison, campaign);
+  page.sections.push_back({"The model", {}, {}, {}, {effects_table(studied.model)}});
   return page;
 }
 
@@ -311,8 +340,9 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
   }
   page.sections.push_back(held_out_section(diagnosis, campaign.shots.size()));
   const Studied first = study.fit(before);
-  page.sections.push_back(
-      where_section("Where the model failed before", compare(study, first), campaign));
+  const Comparison failed = compare(study, first);
+  page.sections.push_back(where_section("Where the model failed before", failed, campaign));
+  add_places(page, failed, campaign);
   page.sections.push_back(
       {"What might be missing", {}, {}, {}, {candidates_table(diagnosis, "shots")}});
   const Studied last = diagnosis.model ? study.fit(*diagnosis.model) : first;
@@ -320,6 +350,7 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
   const Comparison after = comparer.compare(last.fit.residual, last.misfit);
   if (diagnosis.model) {
     page.sections.push_back(where_section("What is left after", after, campaign));
+    add_places(page, after, campaign);
   }
   page.sections.push_back(
       {"The model with what was found", {}, {}, {}, {effects_table(last.model)}});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/cli/reports/model_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"
 
@@ -65,7 +66,8 @@ std::string in_words(const Misfit& misfit) {
   if (ratio > 1.0) {
     return sizes + fmt::format(": {:.3g} times the noise.", ratio);
   }
-  return sizes + (ratio > 0.05 ? ": less than the noise." : ": next to nothing.");
+  return sizes + (ratio > 0.05 ? fmt::format(": all places together {:.2g} times the noise.", ratio)
+                               : ": next to nothing.");
 }
 
 JsonValue describe_tiles(const Comparison& comparison, const Campaign& campaign) {
@@ -136,6 +138,56 @@ JsonValue describe_places(const Comparison& comparison, const Comparer& comparer
       {"shots", std::move(shots)}, {"bands_Hz", std::move(bands)}, {"windows", std::move(windows)}};
 }
 
+JsonValue describe_strengths(const ShotGroups& groups, const Campaign& campaign) {
+  if (groups.groups.empty()) {
+    return nullptr;
+  }
+  JsonList list;
+  for (const ShotGroup& group : groups.groups) {
+    JsonList shots;
+    for (const std::size_t shot : group.shots) {
+      shots.push_back(campaign.shots[shot].id);
+    }
+    list.push_back(JsonObject{{"from", group.low},
+                              {"to", group.high},
+                              {"shots", std::move(shots)},
+                              {"share", group.share},
+                              {"sigma", group.sigma()},
+                              {"log_p", group.log_p()}});
+  }
+  return JsonObject{{"by", groups.by}, {"unit", groups.unit}, {"groups", std::move(list)}};
+}
+
+std::string strengths_table(const ShotGroups& groups, const Campaign& campaign) {
+  if (groups.groups.empty()) {
+    return "";
+  }
+  std::string text =
+      fmt::format("  {:<32} {:>12} {:>8} {:>8}\n", "by " + groups.by, "shots", "share", "sigma");
+  for (const ShotGroup& group : groups.groups) {
+    const DisplayUnit unit = display_unit(groups.unit, groups.groups.back().high);
+    const std::string range = group.shots.size() == 1
+                                  ? fmt::format("{:.4g} {}", group.low * unit.factor, unit.name)
+                                  : fmt::format("{:.4g} to {:.4g} {}", group.low * unit.factor,
+                                                group.high * unit.factor, unit.name);
+    text += fmt::format("  {:<32} {:>5} of {:<3} {:>6.1f} % {:>8.2f}\n", range, group.shots.size(),
+                        campaign.shots.size(), 100.0 * group.share, group.sigma());
+  }
+  return text;
+}
+
+bool fails_anywhere(const Comparison& comparison) {
+  return std::any_of(comparison.tiles.begin(), comparison.tiles.end(),
+                     [](const Tile& tile) { return tile.significant; });
+}
+
+std::string nothing_fails_words(const Model& model) {
+  return is_strained(model)
+             ? "no place stands out of the noise, but filed numbers are strained to that end "
+               "beyond three deviations: the model is not adequate while they are"
+             : "the model fails nowhere: every place is as noise alone leaves it";
+}
+
 std::string places_table(const Comparison& comparison, const Campaign& campaign) {
   std::string text;
   std::size_t shown = 0;
@@ -165,7 +217,7 @@ std::string places_table(const Comparison& comparison, const Campaign& campaign)
                     percent, shots, campaign.shots.size(), region.repeats ? "yes" : "no");
   }
   if (shown == 0) {
-    return "  the model fails nowhere: every place is as noise alone leaves it\n";
+    return "";
   }
   return fmt::format("  {:<8} {:<18} {:<18} {:>8} {:>8} {:>10} {:>12}  {}\n", "gauge", "window",
                      "band", "share", "sigma", "of peak", "shots", "repeats") +
@@ -176,16 +228,26 @@ std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& 
                        const Eigen::VectorXd& white, const Terminal& terminal) {
   const WhiteResiduals& residuals = study.residuals();
   const Campaign& campaign = study.campaign();
-  const auto worst = std::find_if(comparison.tiles.begin(), comparison.tiles.end(),
-                                  [](const Tile& tile) { return tile.significant; });
-  const std::size_t shot = worst != comparison.tiles.end() ? worst->shot : 0;
-  const std::size_t gauge = worst != comparison.tiles.end() ? worst->gauge : campaign.reference;
+  const bool fails = fails_anywhere(comparison);
+  const auto& tiles = comparison.tiles;
+  const auto worst =
+      fails ? std::find_if(tiles.begin(), tiles.end(),
+                           [](const Tile& tile) { return tile.significant; })
+            : std::min_element(tiles.begin(), tiles.end(),
+                               [](const Tile& a, const Tile& b) { return a.log_p < b.log_p; });
+  const std::size_t shot = worst != tiles.end() ? worst->shot : 0;
+  const std::size_t gauge = worst != tiles.end() ? worst->gauge : campaign.reference;
   const std::span<const double> own(white.data() + shot * residuals.per_shot(),
                                     residuals.per_shot());
   const ComparedRecord record = comparer.record(own, shot, gauge);
   const double noise = 2.0 * std::sqrt(residuals.noise().quiet_power(gauge));
-  Panel panel{fmt::format("{} in {}: deviation", campaign.bench.gauges[gauge].name,
-                          campaign.shots[shot].id),
+  double largest = 0.0;
+  for (const double value : record.deviation) {
+    largest = std::max(largest, std::abs(value));
+  }
+  Panel panel{fmt::format("{} in {}: deviation, at most {}; noise ±{}",
+                          campaign.bench.gauges[gauge].name, campaign.shots[shot].id,
+                          with_unit(largest, "strain"), with_unit(noise, "strain")),
               {"time", "s"},
               {"strain", "strain"},
               {{"deviation", {}, record.deviation}, {"2 sigma of noise", {}, {}}}};
@@ -207,7 +269,9 @@ std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& 
     above.series[1].y[n] -= record.deviation[n];
   }
   const PlotSize size{std::min(terminal.columns, kPlotColumns), kPlotRows};
-  return plot_text(above, size, terminal.colour) + plot_text(panel, size, terminal.colour);
+  return (fails ? "  where it fails most:\n"
+                : "  nothing fails; where it comes nearest to failing:\n") +
+         plot_text(above, size, terminal.colour) + plot_text(panel, size, terminal.colour);
 }
 
 }  // namespace kolsky::cli

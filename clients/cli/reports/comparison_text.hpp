@@ -5,6 +5,7 @@
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/terminal/terminal.hpp"
 #include "processing/criticism/comparing/comparison.hpp"
+#include "processing/criticism/comparing/shot_groups.hpp"
 
 namespace kolsky::cli {
 
@@ -23,10 +24,23 @@ namespace kolsky::cli {
 [[nodiscard]] JsonValue describe_places(const Comparison& comparison, const Comparer& comparer,
                                         Study& study);
 
-/// The places that fail, as a table.
+/// Member `by_strength`: the misfit by the shots' peak strain or strain rate; null where these do
+/// not differ.
+[[nodiscard]] JsonValue describe_strengths(const ShotGroups& groups, const Campaign& campaign);
+/// The same as a table; empty where there is nothing to tell.
+[[nodiscard]] std::string strengths_table(const ShotGroups& groups, const Campaign& campaign);
+
+/// Whether any place fails.
+[[nodiscard]] bool fails_anywhere(const Comparison& comparison);
+
+/// The places that fail, as a table; none where there are none.
 [[nodiscard]] std::string places_table(const Comparison& comparison, const Campaign& campaign);
 
-/// Prediction over measurement at the gauge and shot that fail most (the first ones where none
+/// What to conclude where no place fails: filed numbers that are strained may have taken up what is
+/// wrong.
+[[nodiscard]] std::string nothing_fails_words(const Model& model);
+
+/// Prediction over measurement at the gauge and shot that fail most (that deviate most where none
 /// does), and below it the deviation with the noise's two deviations to either side.
 [[nodiscard]] std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& study,
                                      const Eigen::VectorXd& white, const Terminal& terminal);

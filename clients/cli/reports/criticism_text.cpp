@@ -14,11 +14,8 @@ JsonValue describe(const Misfit& misfit) {
 }
 
 std::string misfit_text(const Misfit& misfit) {
-  return fmt::format(
-      "misfit: chi2 {:.4f} per degree of freedom ({:.0f}); of the signal's energy {:.2e} repeats "
-      "unexplained, {:.2e} is noise\n",
-      misfit.chi2_reduced, misfit.degrees_of_freedom, misfit.repeatable_share,
-      misfit.noise_floor_share - misfit.scatter_share);
+  return fmt::format("misfit: chi2 {:.4f} per degree of freedom ({:.0f})\n", misfit.chi2_reduced,
+                     misfit.degrees_of_freedom);
 }
 
 }  // namespace kolsky::cli

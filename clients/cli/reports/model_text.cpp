@@ -1,31 +1,20 @@
 #include "clients/cli/reports/model_text.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <map>
 
 #include "clients/cli/captures.hpp"
+#include "clients/cli/reports/diagnosis_text.hpp"
+#include "clients/figure/layout.hpp"
 #include "drivers/files/captures/capture.hpp"
-#include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 
 namespace {
-
-std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
-  std::vector<std::filesystem::path> files;
-  for (const std::string& name : captures) {
-    for (const auto& file : captures_in(name)) {
-      files.push_back(file);
-    }
-  }
-  return files;
-}
 
 std::string name_of_parameter(const Model& model, const EffectUse& use,
                               const EffectParameter& parameter) {
@@ -80,12 +69,14 @@ std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
   return shots;
 }
 
-std::size_t count_of(const std::vector<std::string>& captures) {
-  return files_of(captures).size();
-}
-
-std::string digest_of(const std::vector<std::string>& captures) {
-  return digest_of_files(files_of(captures));
+std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : captures) {
+    for (const auto& file : captures_in(name)) {
+      files.push_back(file);
+    }
+  }
+  return files;
 }
 
 double band_limit_of(std::optional<double> asked_Hz) {
@@ -93,10 +84,6 @@ double band_limit_of(std::optional<double> asked_Hz) {
     throw InputError("--band-limit", "must be above 0 Hz", "give a positive number in Hz");
   }
   return asked_Hz.value_or(0.0);
-}
-
-std::string utc_now() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
 JsonValue describe_effects(const Model& model) {
@@ -140,23 +127,44 @@ JsonValue describe_parameters(const Model& model) {
   return object;
 }
 
+std::string number_text(double value, double sd, const std::string& unit) {
+  if (unit == "Pa s") {
+    return number_text(value, sd, "Pa") + " s";
+  }
+  // What takes no prefix is written with a power of ten, or a small one would lose its digits.
+  const bool plain = display_unit(unit, 1e-9).factor == 1.0;
+  if (sd > 0.0) {
+    return plain ? strength_text(value, sd, unit) : with_deviation(value, sd, unit);
+  }
+  return with_unit(value, unit == "-" ? "" : unit);
+}
+
+std::string effect_text(const EffectUse& use) {
+  const EffectAbout& about = use.effect->about();
+  std::string text =
+      fmt::format("  {:<28} {:<12} {}\n", use.id(), kolsky::name_of(about.stage), about.definition);
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    const ModelValue& value = use.values[p];
+    const std::string& unit = about.parameters[p].unit;
+    const std::string held = value.prior_sd > 0.0
+                                 ? "  filed within " + number_text(value.prior_sd, 0.0, unit)
+                                 : (value.free ? "" : "  held");
+    text += fmt::format("      {} = {}{}\n", about.parameters[p].name,
+                        number_text(value.value, value.sd, unit), held);
+  }
+  return text;
+}
+
 std::string model_table(const Model& model) {
   std::string text;
   for (const EffectUse& use : model.effects) {
-    const EffectAbout& about = use.effect->about();
-    text += fmt::format("  {:<28} {:<12} {}\n", use.id(), kolsky::name_of(about.stage),
-                        about.definition);
-    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
-      const ModelValue& value = use.values[p];
-      const std::string deviation = value.sd > 0.0 ? fmt::format(" ± {:.2g}", value.sd) : "";
-      const std::string held = value.prior_sd > 0.0
-                                   ? fmt::format("  filed within {:.2g}", value.prior_sd)
-                                   : (value.free ? "" : "  held");
-      text += fmt::format("      {} = {:.6g}{} {}{}\n", about.parameters[p].name, value.value,
-                          deviation, about.parameters[p].unit, held);
-    }
+    text += effect_text(use);
   }
   return text;
+}
+
+bool is_strained(const Model& model) {
+  return !strained_numbers(model).empty();
 }
 
 JsonValue describe_strained(const Model& model) {
@@ -183,18 +191,6 @@ BenchKind bench_kind(const std::string& name) {
     return BenchKind::bar;
   }
   return name == "shpb" ? BenchKind::shpb : BenchKind::impact;
-}
-
-std::string name_of(BenchKind kind) {
-  switch (kind) {
-    case BenchKind::bar:
-      return "bar";
-    case BenchKind::shpb:
-      return "shpb";
-    case BenchKind::impact:
-      return "impact";
-  }
-  return {};
 }
 
 }  // namespace kolsky::cli

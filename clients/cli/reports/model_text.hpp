@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,18 +14,12 @@ namespace kolsky::cli {
 /// Captures named on the command line (files or folders), read. @throws InputError
 [[nodiscard]] std::vector<Shot> read_shots(const std::vector<std::string>& captures);
 
-/// How many captures the command line names.
-[[nodiscard]] std::size_t count_of(const std::vector<std::string>& captures);
-
-/// SHA-256 over the captures' own digests, in the order given.
-[[nodiscard]] std::string digest_of(const std::vector<std::string>& captures);
+/// The files of captures that the command line names.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures);
 
 /// What --band-limit asks for; 0, what the noise allows, where it was not given.
 /// @throws InputError where it is not above 0
 [[nodiscard]] double band_limit_of(std::optional<double> asked_Hz);
-
-/// "2026-11-21T14:00:00Z"
-[[nodiscard]] std::string utc_now();
 
 /// A model's effects as `--json` gives them: id, stage, parameters with value, sd, unit, free.
 [[nodiscard]] JsonValue describe_effects(const Model& model);
@@ -33,17 +28,25 @@ namespace kolsky::cli {
 /// "bar.E1_Pa"), effects' as "geometric-dispersion.s".
 [[nodiscard]] JsonValue describe_parameters(const Model& model);
 
-/// A table of a model's effects for people.
+/// A number for people, in a unit near its size, to its deviation's second digit; without one
+/// (sd 0) to four digits.
+[[nodiscard]] std::string number_text(double value, double sd, const std::string& unit);
+
+/// One effect for people: id, stage, definition, its numbers.
+[[nodiscard]] std::string effect_text(const EffectUse& use);
+/// All of a model's effects.
 [[nodiscard]] std::string model_table(const Model& model);
 
 /// Filed numbers that a fit holds more than three of their deviations off: {"name", "deviations"}
 /// each. Either they are not as filed, or they stand in for what the model lacks.
 [[nodiscard]] JsonValue describe_strained(const Model& model);
 
+/// Whether there are any.
+[[nodiscard]] bool is_strained(const Model& model);
+
 /// The same in a line for people; empty where there are none.
 [[nodiscard]] std::string strained_text(const Model& model);
 
 [[nodiscard]] BenchKind bench_kind(const std::string& name);
-[[nodiscard]] std::string name_of(BenchKind kind);
 
 }  // namespace kolsky::cli

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clients/cli/reports/criticism_text.hpp"
+#include "clients/cli/reports/model_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"
 
@@ -114,37 +115,60 @@ std::string bars_text(const Waterfall& fall, const Terminal& terminal) {
   return text;
 }
 
+std::string strengths_text(const WaterfallStep& step) {
+  std::string text;
+  for (const MovedNumber& number : step.strengths) {
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", number.name,
+                        number_text(number.value, number.sd, number.unit));
+  }
+  return text;
+}
+
+/// What the filed numbers' pull has to do with a step; empty where it is nothing to speak of.
+std::string pull_text(const Waterfall& fall, const WaterfallStep& step) {
+  if (std::abs(step.relief) <= kRelieved) {
+    return "";
+  }
+  return fmt::format("; {}filed numbers pull {:.1f} {}", fall.pull_counts ? "counted in it, " : "",
+                     std::abs(step.relief), step.relief > 0.0 ? "less" : "more");
+}
+
 std::string drops_text(const Waterfall& fall) {
   std::string text;
   for (const WaterfallStep& step : fall.steps) {
     if (step.effect.empty()) {
       continue;
     }
-    std::string strengths;
-    for (const MovedNumber& number : step.strengths) {
-      strengths += fmt::format("{}{} = {:.4g} ± {:.1g} {}", strengths.empty() ? "" : ", ",
-                               number.name, number.value, number.sd, number.unit);
-    }
-    text += fmt::format("  {}: {} {:.1f} of chi2 on held-out {}, better in {} of {}", name_of(step),
-                        step.gain >= 0.0 ? "takes off" : "adds", std::abs(step.gain), fall.fold,
-                        step.better, fall.folds);
-    text += std::abs(step.relief) > kRelieved
-                ? fmt::format("; filed numbers pull {:.1f} {}\n", std::abs(step.relief),
-                              step.relief > 0.0 ? "less" : "more")
-                : "\n";
+    const std::string strengths = strengths_text(step);
+    text += fmt::format("  {}: {} {:.1f} of chi2 on held-out {}, better in {} of {}{}\n",
+                        name_of(step), step.gain >= 0.0 ? "takes off" : "adds", std::abs(step.gain),
+                        fall.fold, step.better, fall.folds, pull_text(fall, step));
     text += strengths.empty() ? "" : "      " + strengths + "\n";
   }
   return text;
 }
 
-/// "5.696 ± 0.012 GPa".
+/// Numbers that some model of the lineage fits: what all hold tells nothing.
+std::vector<std::size_t> fitted_numbers(const Waterfall& fall) {
+  std::vector<std::size_t> list;
+  for (std::size_t p = 0; p < fall.steps.front().numbers.size(); ++p) {
+    if (std::any_of(fall.steps.begin(), fall.steps.end(), [&](const WaterfallStep& step) {
+          return p < step.numbers.size() && step.numbers[p].sd > 0.0;
+        })) {
+      list.push_back(p);
+    }
+  }
+  return list;
+}
+
 std::string value_text(const MovedNumber& number) {
-  const bool viscosity = number.unit == "Pa s";
-  const DisplayUnit unit = display_unit(viscosity ? "Pa" : number.unit, std::abs(number.value));
-  const std::string deviation =
-      number.sd > 0.0 ? fmt::format(" ± {:.2g}", number.sd * unit.factor) : "";
-  return fmt::format("{:.4g}{} {}{}{}", number.value * unit.factor, deviation, unit.name,
-                     viscosity ? " s" : "", number.sd > 0.0 ? "" : ", held");
+  return number_text(number.value, number.sd, number.unit) + (number.sd > 0.0 ? "" : ", held");
+}
+
+std::string percent_text(double percent) {
+  constexpr double kWhole = 100.0;
+  return std::abs(percent) < kWhole ? fmt::format("{:+.2g} %", percent)
+                                    : fmt::format("{:+.0f} %", percent);
 }
 
 /// How far a number went since the first model.
@@ -155,15 +179,15 @@ std::string moved_text(const Waterfall& fall, std::size_t step, std::size_t numb
       own[number].value == first[number].value) {
     return "";
   }
-  return fmt::format("{:+.2g} %", 100.0 * (own[number].value / first[number].value - 1.0));
+  return percent_text(100.0 * (own[number].value / first[number].value - 1.0));
 }
 
 std::vector<std::vector<std::string>> number_rows(const Waterfall& fall) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < fall.steps.size(); ++i) {
     std::vector<std::string> row{name_of(fall.steps[i])};
-    for (std::size_t p = 0; p < fall.steps[i].numbers.size(); ++p) {
-      row.push_back(value_text(fall.steps[i].numbers[p]));
+    for (const std::size_t p : fitted_numbers(fall)) {
+      row.push_back(p < fall.steps[i].numbers.size() ? value_text(fall.steps[i].numbers[p]) : "");
       row.push_back(moved_text(fall, i, p));
     }
     rows.push_back(std::move(row));
@@ -173,8 +197,8 @@ std::vector<std::vector<std::string>> number_rows(const Waterfall& fall) {
 
 std::vector<std::string> number_header(const Waterfall& fall) {
   std::vector<std::string> header{"model"};
-  for (const MovedNumber& number : fall.steps.front().numbers) {
-    std::string name = number.name;
+  for (const std::size_t p : fitted_numbers(fall)) {
+    std::string name = fall.steps.front().numbers[p].name;
     for (const char* unit : {"_Pa_s", "_Pa"}) {
       if (name.ends_with(unit)) {
         name.resize(name.size() - std::string(unit).size());
@@ -281,21 +305,43 @@ std::string curve_words(const Waterfall& fall) {
       with_deviation(b.stress_Pa[at], b.sd_Pa[at], "Pa"));
 }
 
+/// Models whose numbers say little, whatever their deviations; empty where there are none.
+std::string far_words(const Waterfall& fall) {
+  std::string names;
+  double most = 0.0;
+  for (const WaterfallStep& step : fall.steps) {
+    if (far_from_fitting(step, fall)) {
+      names += (names.empty() ? "" : ", ") + name_of(step);
+      most = std::max(most, step.held_out / fall.floor);
+    }
+  }
+  return names.empty() ? ""
+                       : fmt::format(
+                             "Far from fitting, up to {:.4g} times the noise: {}. What such a fit "
+                             "says of its numbers is worth little, whatever their deviations.",
+                             most, names);
+}
+
 std::string left_words(const Waterfall& fall) {
-  const WaterfallStep& last = fall.steps.back();
+  const Misfit& last = fall.steps.back().misfit;
+  const std::string noise =
+      fall.allowance.empty() ? "the noise" : "the noise and " + fall.allowance;
   std::string text =
-      fmt::format("Of what stood over the noise, {:.4g} % is gone.", 100.0 * fall.closed());
+      fmt::format("Of what stood over {}, {:.4g} % is gone.", noise, 100.0 * fall.closed());
   if (fall.closed() >= 1.0) {
-    text = "All that stood over the noise is gone.";
+    text = "All that stood over " + noise + " is gone.";
   }
   if (fall.steps.front().held_out <= fall.floor) {
-    text = "The first model already stands at the noise: there was nothing to take off.";
+    text = "The first model already stands at " + noise + ": there was nothing to take off.";
   }
-  return text + fmt::format(
-                    " What still repeats from shot to shot is {:.2g} % of what noise leaves, and "
-                    "{:.2g} % of the signal's energy; noise is {:.2g} %.",
-                    100.0 * fall.repeats / fall.floor, 100.0 * last.misfit.repeatable_share,
-                    100.0 * last.misfit.noise_floor_share);
+  text += " What still repeats from shot to shot is ";
+  text += fall.allowance.empty()
+              ? fmt::format("{:.2g} % of what noise leaves", 100.0 * fall.repeats / fall.floor)
+              : fmt::format("{:.3g} times the noise, {} {}",
+                            last.repeatable_share / last.noise_floor_share,
+                            fall.within_allowance ? "within" : "more than", fall.allowance);
+  return text + fmt::format(", and {:.2g} % of the signal's energy; noise is {:.2g} %.",
+                            100.0 * last.repeatable_share, 100.0 * last.noise_floor_share);
 }
 
 }  // namespace
@@ -306,6 +352,7 @@ JsonValue describe(const Waterfall& fall) {
     JsonObject own{{"effect", step.effect},
                    {"removed", step.removed},
                    {"held_out", step.held_out},
+                   {"far_from_fitting", far_from_fitting(step, fall)},
                    {"gain", step.gain},
                    {"prior_relief", step.relief},
                    {"better_" + fall.fold, static_cast<std::int64_t>(step.better)},
@@ -346,8 +393,12 @@ std::string waterfall_text(const Waterfall& fall, const Terminal& terminal) {
     text +=
         std::string("\n  ") + kSpeedWords + "\n" + table_text(speed_header(fall), speed_rows(fall));
   }
-  if (!fall.steps.front().numbers.empty()) {
+  if (!fitted_numbers(fall).empty()) {
     text += "\n" + table_text(number_header(fall), number_rows(fall));
+    for (const std::string& line :
+         wrapped(far_words(fall), static_cast<std::size_t>(std::max(40, terminal.columns - 2)))) {
+      text += "  " + line + "\n";
+    }
   }
   if (!fall.steps.front().curve.strain.empty()) {
     text += "\n" +
@@ -384,16 +435,11 @@ Page waterfall_page(const Waterfall& fall, const std::string& title,
       {"step", "held-out misfit", "chi-square taken off", "better in " + fall.fold, "strength"},
       {}};
   for (const WaterfallStep& step : fall.steps) {
-    std::string strengths;
-    for (const MovedNumber& number : step.strengths) {
-      strengths += fmt::format("{}{} = {:.4g} ± {:.1g} {}", strengths.empty() ? "" : ", ",
-                               number.name, number.value, number.sd, number.unit);
-    }
     const bool first = step.effect.empty();
     drops.rows.push_back({name_of(step), fmt::format("{:.4g}", step.held_out),
                           first ? "" : fmt::format("{:.1f}", step.gain),
                           first ? "" : fmt::format("{} of {}", step.better, fall.folds),
-                          strengths});
+                          strengths_text(step)});
   }
   picture.tables.push_back(std::move(drops));
   page.sections.push_back(std::move(picture));
@@ -402,8 +448,11 @@ Page waterfall_page(const Waterfall& fall, const std::string& title,
     speeds.tables.push_back({speed_header(fall), speed_rows(fall)});
     page.sections.push_back(std::move(speeds));
   }
-  if (!fall.steps.front().numbers.empty()) {
+  if (!fitted_numbers(fall).empty()) {
     PageSection numbers{"How the numbers moved", {}};
+    if (const std::string far = far_words(fall); !far.empty()) {
+      numbers.text.push_back(far);
+    }
     numbers.tables.push_back({number_header(fall), number_rows(fall)});
     page.sections.push_back(std::move(numbers));
   }

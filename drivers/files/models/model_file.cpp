@@ -1,16 +1,20 @@
 #include "drivers/files/models/model_file.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
+#include <span>
 
 #include "drivers/files/models/model_expressions.hpp"
 #include "drivers/files/models/toml_values.hpp"
 #include "drivers/files/settings/file_bytes.hpp"
 #include "drivers/files/settings/toml_table.hpp"
 #include "drivers/files/sha256.hpp"
+#include "processing/base/error.hpp"
 
 namespace kolsky {
 
@@ -115,7 +119,10 @@ EffectUse read_use(const TomlTable& table, const Model& model) {
   return use;
 }
 
+void require_a_model(const TomlTable& table);
+
 ModelFile read(const TomlTable& table) {
+  require_a_model(table);
   table.expect({"kolsky_model", "kind", "bar_source", "expressions", "effects", "history"});
   if (table.integer("kolsky_model") != kFormat) {
     throw table.error("kolsky_model", "is a format that this version does not know",
@@ -184,6 +191,34 @@ std::string format_use(const EffectUse& use) {
   return text;
 }
 
+std::string digest_of_text(const std::string& text) {
+  return sha256_hex(std::as_bytes(std::span(text)));
+}
+
+std::vector<std::string> digests_of(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> digests;
+  for (const auto& file : files) {
+    digests.push_back(digest_of_text(read_file_bytes(file, kMostCaptureBytes)));
+  }
+  return digests;
+}
+
+std::string digest_of_all(const std::vector<std::string>& digests) {
+  Sha256 all;
+  for (const std::string& own : digests) {
+    all.add(std::as_bytes(std::span(own)));
+  }
+  return all.hex();
+}
+
+/// What belongs to a bench is often given for a model.
+void require_a_model(const TomlTable& table) {
+  if (!table.has("kolsky_model") && table.has("gauges")) {
+    throw table.error("kolsky_model", "is not there: this is a bench file",
+                      "make a model of the bench with `kolsky model new --bench`");
+  }
+}
+
 }  // namespace
 
 ModelFile read_model(const std::filesystem::path& path) {
@@ -216,13 +251,50 @@ std::string format_model(const ModelFile& file, bool with_history) {
 }
 
 std::string digest_of_files(const std::vector<std::filesystem::path>& files) {
-  Sha256 all;
-  for (const auto& file : files) {
-    const std::string bytes = read_file_bytes(file, kMostCaptureBytes);
-    const std::string own = sha256_hex(std::as_bytes(std::span(bytes)));
-    all.add(std::as_bytes(std::span(own)));
+  std::vector<std::string> digests = digests_of(files);
+  std::sort(digests.begin(), digests.end());
+  return digest_of_all(digests);
+}
+
+bool is_digest_of(const std::string& digest, const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> digests = digests_of(files);
+  if (digest == digest_of_all(digests)) {
+    return true;
   }
-  return all.hex();
+  std::sort(digests.begin(), digests.end());
+  return digest == digest_of_all(digests);
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+ModelFile ModelFile::at(std::size_t steps) const {
+  if (steps > history.size()) {
+    throw InputError(fmt::format("step {}", steps),
+                     fmt::format("is not there: the model has {}", history.size()),
+                     fmt::format("give a number from 0 to {}; `kolsky model history` lists them",
+                                 history.size()));
+  }
+  if (steps == history.size()) {
+    return *this;
+  }
+  ModelFile file = parse_model(history[steps].before, fmt::format("history, step {}", steps + 1));
+  file.history.assign(history.begin(), history.begin() + static_cast<std::ptrdiff_t>(steps));
+  return file;
+}
+
+std::size_t ModelFile::first_alike(std::size_t steps) const {
+  const auto digest = [&](std::size_t after) {
+    return after < history.size() ? history[after].parent
+                                  : digest_of_text(format_model(*this, false));
+  };
+  const std::string own = digest(steps);
+  std::size_t first = 0;
+  while (first < steps && digest(first) != own) {
+    ++first;
+  }
+  return first;
 }
 
 void begin_step(ModelFile& file, const std::string& action, const std::string& when) {
@@ -231,7 +303,7 @@ void begin_step(ModelFile& file, const std::string& action, const std::string& w
   step.when = when;
   step.software = KOLSKY_VERSION;
   step.before = format_model(file, false);
-  step.parent = sha256_hex(std::as_bytes(std::span(step.before)));
+  step.parent = digest_of_text(step.before);
   file.history.push_back(std::move(step));
 }
 

@@ -18,6 +18,12 @@ struct ModelFile {
   [[nodiscard]] std::string parent() const {
     return history.empty() ? std::string{} : history.back().parent;
   }
+  /// As it was after so many steps, with their history; 0: as it began. @throws InputError where
+  /// there were fewer
+  [[nodiscard]] ModelFile at(std::size_t steps) const;
+  /// After how many steps it was first what it is after so many: going back is a step, too, and
+  /// leads to what was there before.
+  [[nodiscard]] std::size_t first_alike(std::size_t steps) const;
 };
 
 /// @throws InputError: file, line, key and mend
@@ -27,11 +33,19 @@ struct ModelFile {
 /// TOML that reads back as the same bits; without the history where it is not asked for.
 [[nodiscard]] std::string format_model(const ModelFile& file, bool with_history = true);
 
-/// One digest of several captures, of their own digests in turn: by it a history knows what a fit
-/// saw. @throws InputError for a file that cannot be read
+/// One digest of several captures, of their own digests in rising order: by it a history knows what
+/// a fit saw, in whatever order. @throws InputError for a file that cannot be read
 [[nodiscard]] std::string digest_of_files(const std::vector<std::filesystem::path>& files);
 
+/// Whether a history's digest is that of these captures; versions up to 0.1.0 made it of their
+/// digests in the order in which they were given.
+[[nodiscard]] bool is_digest_of(const std::string& digest,
+                                const std::vector<std::filesystem::path>& files);
+
+/// "2026-11-21T14:00:00Z", as a history has it.
+[[nodiscard]] std::string utc_now();
+
 /// Appends a step: the file as it is now becomes the parent of what follows.
-void begin_step(ModelFile& file, const std::string& action, const std::string& when);
+void begin_step(ModelFile& file, const std::string& action, const std::string& when = utc_now());
 
 }  // namespace kolsky

@@ -98,8 +98,11 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
 Composition::Composition(const Model& model, const Campaign& campaign)
     : shots_(campaign.shots.size()), gauges_(campaign.gauges()) {
   if (model.kind != campaign.bench.kind) {
-    throw InputError("model", "is of another kind of bench than the captures",
-                     "make one with `kolsky model new --kind`");
+    throw InputError(
+        "the model",
+        "is of a bench of kind " + name_of(model.kind) + ", and the captures of one of kind " +
+            name_of(campaign.bench.kind),
+        "make one with `kolsky model new --kind " + name_of(campaign.bench.kind) + "`");
   }
   require_whole(model, campaign.bench);
   for (const EffectUse& use : model.effects) {
@@ -112,6 +115,10 @@ Composition::Composition(const Model& model, const Campaign& campaign)
   }
 }
 
+bool has_own_strengths(const EffectUse& use) {
+  return use.per_shot || (use.effect->about().each_gauge && !use.alike);
+}
+
 void Composition::add(const EffectUse& use, const Campaign& campaign) {
   const EffectAbout& about = use.effect->about();
   std::size_t gauge = 0;
@@ -120,8 +127,13 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
     const auto found = std::find_if(gauges.begin(), gauges.end(),
                                     [&](const Gauge& g) { return g.name == use.gauge; });
     if (found == gauges.end()) {
-      throw InputError("effect " + use.id(), "names a gauge that the bench does not have",
-                       "name one of the bench file's gauges");
+      std::string names;
+      for (const Gauge& own : gauges) {
+        names += (names.empty() ? "" : ", ") + own.name;
+      }
+      throw InputError("the model's effect " + use.id(),
+                       "names a gauge that the captures' bench does not have",
+                       "take it out, or name one of " + names);
     }
     gauge = static_cast<std::size_t>(found - gauges.begin());
   }

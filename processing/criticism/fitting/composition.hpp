@@ -82,6 +82,9 @@ class Composition {
   bool changes_records_ = false;
 };
 
+/// Whether an effect has strengths of each shot's or each gauge's own: a model keeps their mean.
+[[nodiscard]] bool has_own_strengths(const EffectUse& use);
+
 /// The bench's filed deviations as effects with priors: gauge factors, positions, density, the
 /// bars' and the specimen's dimensions.
 [[nodiscard]] std::vector<EffectUse> known_unknowns_of(const Bench& bench);

@@ -5,6 +5,33 @@
 
 namespace kolsky {
 
+namespace {
+
+/// The model with every number held, those filed of the bench too, but the strengths that its file
+/// does not hold.
+Model all_but_own_held(Model model, const Bench& bench) {
+  for (EffectUse& filed : known_unknowns_of(bench)) {
+    if (model.find(filed.id()) == nullptr) {
+      model.effects.push_back(std::move(filed));
+    }
+  }
+  for (EffectUse& use : model.effects) {
+    const auto& parameters = use.effect->about().parameters;
+    bool any = false;
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      const bool own = has_own_strengths(use) && !parameters[p].auxiliary();
+      use.values[p].free = use.values[p].free && own;
+      any = any || use.values[p].free;
+    }
+    if (!any) {
+      use.prior_correlation.clear();
+    }
+  }
+  return model;
+}
+
+}  // namespace
+
 Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
     : campaign_(campaign),
       executor_(std::move(executor)),
@@ -53,10 +80,15 @@ Studied Study::refit(const Studied& studied) {
 }
 
 Studied Study::as_it_is(const Model& model) {
-  Composition composition(model, campaign_);
+  Composition composition(all_but_own_held(model, campaign_.bench), campaign_);
   ModelFit fit;
   fit.theta = composition.start();
   fit.converged = true;
+  if (!fit.theta.empty()) {
+    residuals_.believe_quiet();
+    residuals_.freeze(composition, fit.theta);
+    fit = fit_model(composition, residuals_, executor_);
+  }
   return beside_quiet({model, std::move(composition), std::move(fit), {}});
 }
 

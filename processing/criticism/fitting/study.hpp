@@ -33,7 +33,8 @@ class Study {
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
-  /// The model as it is, nothing moved, its misfit as `beside_quiet` has it.
+  /// The model as it is, its misfit as `beside_quiet` has it. Nothing moves but strengths of each
+  /// shot's or each gauge's own: a model keeps their mean, these shots have their own.
   [[nodiscard]] Studied as_it_is(const Model& model);
   /// What was fitted, its misfit beside the noise that the quiet parts show, slow noise corrected
   /// as far as they are too short for it. A fit counts as noise what does not repeat from shot to

@@ -103,8 +103,11 @@ std::unique_ptr<SelftestGround> ground_of(const std::vector<Shot>& shots, const 
                                           double band_limit_Hz, const BallMeshes& meshes,
                                           const Workers& workers) {
   if (!shots.empty() && shots.front().bench.kind != model.kind) {
-    throw InputError("model", "is of another kind of bench than the captures",
-                     "make one with `kolsky model new --kind`");
+    throw InputError(
+        "the model",
+        "is of a bench of kind " + name_of(model.kind) + ", and the captures of one of kind " +
+            name_of(shots.front().bench.kind),
+        "make one with `kolsky model new --kind " + name_of(shots.front().bench.kind) + "`");
   }
   if (model.kind == BenchKind::impact) {
     return std::make_unique<BallGround>(shots, model, band_limit_Hz, meshes, workers);

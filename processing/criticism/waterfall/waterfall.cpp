@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/criticism/comparing/shot_groups.hpp"
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/record_parts.hpp"
 #include "processing/criticism/search/candidate_table.hpp"
@@ -97,21 +98,12 @@ std::vector<MovedNumber> strengths_of(const Studied& studied, const EffectUse& u
   return list;
 }
 
-/// Half of what the incident wave would do to a specimen without any resistance.
 double usual_rate(const Studied& last, const Campaign& campaign) {
-  if (!campaign.bench.specimen) {
-    return 0.0;
-  }
-  const Bar& bar = campaign.bench.input;
-  double modulus = bar.youngs_modulus_Pa.value_or(Measured{}).value;
-  if (const EffectUse* use = last.model.find("three-element-bar")) {
-    modulus = use->values.front().value;
-  }
   double peak = 0.0;
   for (const CampaignShot& shot : campaign.shots) {
     peak += shot.facts.peak_strain / static_cast<double>(campaign.shots.size());
   }
-  return peak * std::sqrt(modulus / bar.density_kg_m3) / campaign.bench.specimen->length_m;
+  return usual_strain_rate_per_s(peak, last.model, campaign.bench);
 }
 
 }  // namespace

@@ -167,6 +167,14 @@ TEST_F(LiveModel, DiagnosesTheLastShotsOnRequestAndFilesTheOutcome) {
   EXPECT_EQ(kept["summary"]["id"], live["id"]);
   EXPECT_EQ(kept["summary"]["state"], "DONE");
   EXPECT_EQ(json_of(ask({"diagnose-live", "--last", "--json"}))["id"], live["id"]);
+  // As `kolsky diagnose` prints it.
+  const std::string printed = ask({"diagnose-live", "--last"}).out;
+  EXPECT_NE(printed.find("verdict: " + live["verdict"].get<std::string>()), std::string::npos);
+  EXPECT_NE(printed.find("held-out misfit"), std::string::npos) << printed;
+  // What is not there begins nothing, and the last one stays the last.
+  EXPECT_TRUE(refused(ask({"diagnose-live", "20000101T000000000Z-0000-0001"}),
+                      {"20000101T000000000Z-0000-0001", "is not in the store"}));
+  EXPECT_EQ(json_of(ask({"diagnose-live", "--last", "--json"}))["id"], live["id"]);
 }
 
 TEST_F(LiveModel, DiagnosisIsOneAtATimeAndEndsWhenCancelled) {
@@ -176,6 +184,7 @@ TEST_F(LiveModel, DiagnosisIsOneAtATimeAndEndsWhenCancelled) {
   EXPECT_TRUE(refused(ask({"diagnose-live"}), {"under way", begun["id"].get<std::string>()}));
   const json ended = json_of(ask({"diagnose-live", "--cancel", "--json"}));
   EXPECT_EQ(ended["state"], "cancelled");
+  EXPECT_TRUE(ended["step"].get<std::string>().starts_with("while ")) << ended;
   EXPECT_FALSE(std::filesystem::exists(setup_.store() / "diagnoses" /
                                        (begun["id"].get<std::string>() + ".json")));
   EXPECT_TRUE(refused(ask({"diagnose-live", "--cancel"}), {"no diagnosis is under way"}));

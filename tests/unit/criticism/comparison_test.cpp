@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "processing/criticism/comparing/shot_groups.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -270,6 +271,82 @@ INSTANTIATE_TEST_SUITE_P(Faults, OneGauge,
                          ::testing::Values(Fault{"gauge-factor:g2=0.02", 1},
                                            Fault{"gauge-factor:g3=-0.02", 2},
                                            Fault{"channel-delay:g3=2e-6", 2}));
+
+// A model keeps the mean of strengths that every shot has of its own; a hum's, of any phase, is
+// near none.
+TEST(Comparison, FindsStrengthsOfEachShotsOwnAnewAndNothingElse) {
+  const Made made = make(17, {"mains-hum=2e-5"});
+  const Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  Model model = paper_model(BenchKind::bar, false);
+  model.effects.push_back(use_named("mains-hum"));
+  model.effects.back().per_shot = true;
+  const Studied fitted = study.beside_quiet(study.fit(model));
+  const Studied compared = study.as_it_is(fitted.model);
+  EXPECT_NEAR(compared.misfit.chi2_reduced, fitted.misfit.chi2_reduced, 0.01);
+  EXPECT_NEAR(compared.misfit.chi2_reduced, 1.0, 0.05);
+  // By shot, gauge and quadrature.
+  EXPECT_EQ(compared.fit.theta.size(), 6U * 4U * 2U);
+  const auto& bar = fitted.model.find("three-element-bar")->values;
+  const auto& held = compared.model.find("three-element-bar")->values;
+  for (std::size_t p = 0; p < bar.size(); ++p) {
+    EXPECT_EQ(held[p].value, bar[p].value);
+  }
+  Model silent = fitted.model;
+  for (std::size_t p = 0; p < 2; ++p) {
+    silent.find("mains-hum")->values[p].free = false;
+  }
+  EXPECT_GT(study.as_it_is(silent).misfit.chi2_reduced, 1.1);
+}
+
+TEST(ShotGroups, ShareTheMisfitOutByTheShotsStrength) {
+  testing::CampaignWishes wishes = wishes_of(18);
+  const Made made = make(wishes, {"amplitude-dependence=3"});
+  const Compared compared(made.shots);
+  const ShotGroups by =
+      by_strength(compared.comparison, compared.studied->model, compared.campaign);
+  ASSERT_GE(by.groups.size(), 2U);
+  EXPECT_EQ(by.by, "peak strain");
+  double share = 0.0;
+  std::size_t shots = 0;
+  for (const ShotGroup& group : by.groups) {
+    double energy = 0.0;
+    double noise = 0.0;
+    for (const Tile& tile : compared.comparison.tiles) {
+      if (std::ranges::find(group.shots, tile.shot) != group.shots.end()) {
+        energy += tile.energy;
+        noise += tile.noise.mean;
+      }
+    }
+    EXPECT_NEAR(group.sigma(), std::sqrt(energy / noise), 1e-9);
+    for (const std::size_t shot : group.shots) {
+      const double peak = compared.campaign.shots[shot].facts.peak_strain;
+      EXPECT_GE(peak, group.low);
+      EXPECT_LE(peak, group.high);
+      EXPECT_LE(peak, 1.25 * group.low);
+    }
+    shots += group.shots.size();
+    share += group.share;
+  }
+  EXPECT_EQ(shots, 6U);
+  EXPECT_NEAR(share, 1.0, 1e-9);
+}
+
+TEST(ShotGroups, HaveASplitBarsStrainRate) {
+  const Made made = make(24, {}, 3, true);
+  const Compared compared(made.shots, BenchKind::shpb);
+  const ShotGroups by =
+      by_strength(compared.comparison, compared.studied->model, compared.campaign);
+  ASSERT_GE(by.groups.size(), 2U);
+  EXPECT_EQ(by.by, "strain rate");
+  const Bench& bench = compared.campaign.bench;
+  const double speed =
+      std::sqrt(compared.studied->model.find("three-element-bar")->values[0].value /
+                bench.input.density_kg_m3);
+  const double peak = compared.campaign.shots[by.groups.front().shots.front()].facts.peak_strain;
+  EXPECT_NEAR(by.groups.front().low, peak * speed / bench.specimen->length_m,
+              1e-9 * by.groups.front().low);
+}
 
 TEST(Comparison, FindsAFaultOfOneShotThere) {
   Made made = make(13, {});

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "drivers/files/models/model_file.hpp"
@@ -233,6 +235,73 @@ TEST(ModelFile, KeepsTheWholeLedgerOfAStep) {
   ASSERT_EQ(read.tests.size(), 1U);
   EXPECT_EQ(read.tests.front().log_p, -7133.0);
   EXPECT_EQ(read.tests.front().tied_with, (std::vector<std::string>{"bar-modulus"}));
+}
+
+/// Three steps: add A, add B, revert to after A.
+ModelFile walked() {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  begin_step(file, "add temperature");
+  file.model.effects.push_back(use_named("temperature"));
+  begin_step(file, "add crosstalk:g2");
+  file.model.effects.push_back(use_named("crosstalk:g2"));
+  const Model after_one = file.at(1).model;
+  begin_step(file, "revert to step 1");
+  file.model = after_one;
+  return file;
+}
+
+TEST(ModelFile, IsWhatItWasAfterAnyStep) {
+  const ModelFile file = walked();
+  const std::vector<std::size_t> effects{2, 3, 4, 3};
+  for (std::size_t steps = 0; steps < effects.size(); ++steps) {
+    const ModelFile then = file.at(steps);
+    EXPECT_EQ(then.model.effects.size(), effects[steps]) << steps;
+    EXPECT_EQ(then.history.size(), steps);
+  }
+  EXPECT_THROW((void)file.at(4), InputError);
+}
+
+// What a reversion led to is where another one begins.
+TEST(ModelFile, KnowsSinceWhichStepItIsWhatItIs) {
+  const ModelFile file = walked();
+  EXPECT_EQ(file.first_alike(0), 0U);
+  EXPECT_EQ(file.first_alike(1), 1U);
+  EXPECT_EQ(file.first_alike(2), 2U);
+  EXPECT_EQ(file.first_alike(3), 1U);
+  const ModelFile again = parse_model(format_model(file), "m.toml");
+  EXPECT_EQ(again.first_alike(3), 1U);
+}
+
+TEST(DigestOfFiles, IsTheSameInAnyOrderAndKnowsThatOfOlderHistories) {
+  const auto folder = std::filesystem::temp_directory_path();
+  const auto one = folder / "kolsky-digest-one";
+  const auto two = folder / "kolsky-digest-two";
+  std::ofstream(one) << "abc";
+  std::ofstream(two) << "";
+  EXPECT_EQ(digest_of_files({one, two}), digest_of_files({two, one}));
+  // printf '%s%s' $(printf abc | sha256sum | cut -c1-64) $(printf '' | sha256sum | cut -c1-64) |
+  // sha256sum, and the other way round
+  const std::string abc_first = "17076dc047c0c18dc1ba5e0310336762a1db0b7daa275b1004887c2cca2c25b0";
+  const std::string empty_first =
+      "302d3d24b187100835e04a2cd639ad14026ab49e914d2fdc80abf018000b10dd";
+  EXPECT_EQ(digest_of_files({one, two}), abc_first);
+  EXPECT_TRUE(is_digest_of(abc_first, {two, one}));
+  EXPECT_TRUE(is_digest_of(empty_first, {two, one}));
+  EXPECT_FALSE(is_digest_of(empty_first, {one, two}));
+  EXPECT_FALSE(is_digest_of(abc_first, {one}));
+  std::filesystem::remove(one);
+  std::filesystem::remove(two);
+}
+
+TEST(ModelFile, SaysOfABenchFileThatItIsOne) {
+  try {
+    (void)parse_model("kind = \"bar\"\n[sampling]\nfrequency_Hz = 1e6\n[[gauges]]\nname = \"g1\"\n",
+                      "bench.toml");
+    FAIL() << "a bench file was taken for a model";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("bench file"), std::string::npos) << error.what();
+  }
 }
 
 TEST(ModelFile, RefusesAHistoryThatWasEdited) {

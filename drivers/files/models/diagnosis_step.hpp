@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "drivers/files/models/model_file.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
+
+namespace kolsky {
+
+/// How a fit came out, as a model's history keeps it.
+[[nodiscard]] StepFit fit_of(const Misfit& misfit, std::size_t captures);
+
+/// Takes a diagnosis into a model, whoever made it: a step with its verdict, what was added, every
+/// test of an effect that was worth one, misfit, held-out misfit and seeds; and the model with what
+/// was found, but where the verdict is "unknown".
+/// @param captures  that it was made of
+void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis,
+                   const std::vector<std::filesystem::path>& captures, const std::string& note);
+
+}  // namespace kolsky
