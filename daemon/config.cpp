@@ -13,6 +13,7 @@
 #include "drivers/files/settings/material_file.hpp"
 #include "drivers/files/settings/toml_table.hpp"
 #include "drivers/files/tables/shot_facts.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/bridge/bridge.hpp"
 
 namespace kolsky {
@@ -234,6 +235,15 @@ void choose_window(TriggerConfig& trigger, double sample_rate_Hz) {
   }
 }
 
+/// Without a bar model the paper's PMMA is assumed: said to be wrong now, and not shot by shot.
+void require_bars_assumable(const DaemonConfig& config, const Bench& bench) {
+  try {
+    (void)assumed_bars(bench);
+  } catch (const InputError& error) {
+    throw error.inside(config.bench.string());
+  }
+}
+
 std::size_t find_trigger_channel(const DaemonConfig& config, const Bench& bench) {
   std::string known;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
@@ -309,6 +319,9 @@ Apparatus read_apparatus(DaemonConfig& config) {
   apparatus.bench_toml = std::move(file.text);
   if (config.bar_model) {
     apparatus.bar_model = read_material(*config.bar_model);
+    require_bar_model_holds(*apparatus.bar_model, apparatus.bench, config.bar_model->string());
+  } else if (apparatus.bench.kind == BenchKind::shpb) {
+    require_bars_assumable(config, apparatus.bench);
   }
   const std::size_t asked = config.digitiser.channels.size();
   const std::size_t gauges = apparatus.bench.channels().size();

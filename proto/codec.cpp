@@ -77,6 +77,18 @@ void encode(const Material& material, v1::Material& message) {
   encode(material.E2_Pa, *message.mutable_e2_pa());
   encode(material.eta2_Pa_s, *message.mutable_eta2_pa_s());
   message.set_source(material.source);
+  if (material.covariance) {
+    message.mutable_covariance()->Add(material.covariance->begin(), material.covariance->end());
+  }
+  if (material.identified) {
+    v1::MaterialIdentified& identified = *message.mutable_identified();
+    if (material.identified->band_limit_Hz) {
+      identified.set_band_limit_hz(*material.identified->band_limit_Hz);
+    }
+    if (material.identified->temperature_K) {
+      identified.set_temperature_k(*material.identified->temperature_K);
+    }
+  }
 }
 
 Material decode(const v1::Material& message) {
@@ -87,6 +99,24 @@ Material decode(const v1::Material& message) {
   material.E2_Pa = decode(message.e2_pa());
   material.eta2_Pa_s = decode(message.eta2_pa_s());
   material.source = message.source();
+  if (message.covariance_size() > 0) {
+    auto& covariance = material.covariance.emplace();
+    if (static_cast<std::size_t>(message.covariance_size()) != covariance.size()) {
+      throw InputError("bar_model.covariance",
+                       "has " + std::to_string(message.covariance_size()) + " numbers",
+                       "send nine, row by row, or none");
+    }
+    std::copy(message.covariance().begin(), message.covariance().end(), covariance.begin());
+  }
+  if (message.has_identified()) {
+    Material::Identified& identified = material.identified.emplace();
+    if (message.identified().has_band_limit_hz()) {
+      identified.band_limit_Hz = message.identified().band_limit_hz();
+    }
+    if (message.identified().has_temperature_k()) {
+      identified.temperature_K = message.identified().temperature_k();
+    }
+  }
   return material;
 }
 

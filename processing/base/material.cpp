@@ -1,5 +1,7 @@
 #include "processing/base/material.hpp"
 
+#include <cmath>
+
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 
@@ -10,6 +12,24 @@ namespace {
 constexpr Range kModulus{1e5, 1e15, "Pa", "give pascals: 5.66 GPa is 5.66e9"};
 constexpr Range kViscosity{1e-2, 1e15, "Pa s", "give pascal seconds: 1.81 MPa s is 1.81e6"};
 constexpr Range kRetardation{1e-7, 10.0, "s", ""};
+constexpr Range kBand{1.0, 1e9, "Hz", "give hertz"};
+constexpr Range kTemperature{1.0, 2000.0, "K", "give kelvins: 20 degrees Celsius are 293.15"};
+constexpr std::size_t kParameters = 3;
+constexpr double kRounding = 1e-6;
+
+void require_covariance(const std::array<double, kParameters * kParameters>& numbers) {
+  const auto at = [&](std::size_t i, std::size_t j) { return numbers.at(i * kParameters + j); };
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    for (std::size_t j = 0; j < kParameters; ++j) {
+      const double most = std::sqrt(at(i, i) * at(j, j));
+      if (!(std::abs(at(i, j) - at(j, i)) <= kRounding * most &&
+            std::abs(at(i, j)) <= most * (1.0 + kRounding) && std::isfinite(most))) {
+        throw InputError("covariance", "is not a covariance",
+                         "give a symmetric matrix with no correlation above 1");
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -60,6 +80,16 @@ void check(const Material& material) {
                          in_words(kRetardation.least, "") + " to " +
                          in_words(kRetardation.most, kRetardation.unit),
                      "check its unit: 2.86 kPa s is 2860, 1.81 MPa s is 1.81e6");
+  }
+  if (material.covariance) {
+    require_covariance(*material.covariance);
+  }
+  if (material.identified && material.identified->band_limit_Hz) {
+    require_in_range("identified.band_limit_Hz", {*material.identified->band_limit_Hz}, kBand);
+  }
+  if (material.identified && material.identified->temperature_K) {
+    require_in_range("identified.temperature_K", {*material.identified->temperature_K},
+                     kTemperature);
   }
 }
 

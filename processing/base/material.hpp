@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 
 #include "processing/base/measured.hpp"
@@ -15,6 +17,17 @@ struct Material {
   Measured E2_Pa;
   Measured eta2_Pa_s;
   std::string source;  ///< where the numbers come from, for people
+  /// Of E1, E2 and eta2, row by row, in their units; none: their own deviations, independent.
+  std::optional<std::array<double, 9>> covariance{};
+
+  /// Where an identification from waves holds.
+  struct Identified {
+    std::optional<double> band_limit_Hz{};  ///< up to which the records were used
+    std::optional<double> temperature_K{};  ///< of the bars
+    friend bool operator==(const Identified&, const Identified&) = default;
+  };
+  /// None: nobody has identified it from waves.
+  std::optional<Identified> identified{};
 };
 
 /// PMMA of the paper's Table 4, row 1.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/identification/bar_judge.hpp"
@@ -182,6 +184,31 @@ void warn_of_bench(const BarData& data, const BarFit& fit, std::vector<std::stri
       warnings.push_back(fit.bench[i].name + " would have to be off by " + rounded(moves) +
                          " of its filed deviations");
     }
+  }
+}
+
+/// Moduli of one temperature are asked of all shots: what they differ by beyond that is said.
+void take_temperatures(const std::vector<Shot>& shots, BarIdentification& result) {
+  std::vector<double> known_K;
+  for (const Shot& shot : shots) {
+    if (const auto temperature_K = temperature_of(shot)) {
+      known_K.push_back(*temperature_K);
+    }
+  }
+  if (known_K.empty()) {
+    return;
+  }
+  if (known_K.size() == shots.size()) {
+    result.temperature_K =
+        std::accumulate(known_K.begin(), known_K.end(), 0.0) / static_cast<double>(known_K.size());
+  }
+  const auto [coldest, warmest] = std::minmax_element(known_K.begin(), known_K.end());
+  if (*warmest - *coldest > kNearEnough_K) {
+    result.warnings.push_back(
+        "shots were taken from " + in_words(*coldest, "K") + " to " + in_words(*warmest, "K") +
+        ": the moduli are of no one temperature, PMMA's change by some 0.3 % per kelvin; identify "
+        "shots within " +
+        in_words(kNearEnough_K, "K") + " of each other");
   }
 }
 
@@ -461,6 +488,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   for (const Shot& shot : shots) {
     result.shot_ids.push_back(shot.id);
   }
+  take_temperatures(shots, result);
   warn_of_fit(result, result.warnings);
   warn_of_choices(result, result.warnings);
   warn_of_bench(data, result.three_element, result.warnings);

@@ -47,6 +47,7 @@ struct BarIdentification {
   BarSpectrum straight_lines;       ///< the paper's analysis, where it applies
   std::vector<FittedNumber> paper;  ///< three-element solid through it up to 15 kHz
   std::vector<std::string> shot_ids;
+  std::optional<double> temperature_K;  ///< mean of the shots', where all are known
   std::vector<std::string> warnings;
 };
 

@@ -7,6 +7,15 @@
 namespace kolsky {
 
 BarPrior::BarPrior(const Material& m) : material(m) {
+  from_waves = m.identified.has_value();
+  if (m.covariance) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        covariance[i][j] = (*m.covariance)[3 * i + j];
+      }
+    }
+    return;
+  }
   covariance[0][0] = m.E1_Pa.sd * m.E1_Pa.sd;
   covariance[1][1] = m.E2_Pa.sd * m.E2_Pa.sd;
   covariance[2][2] = m.eta2_Pa_s.sd * m.eta2_Pa_s.sd;

@@ -18,7 +18,7 @@ struct BarPrior {
   /// material's density is part of the covariance, as the moduli are off by what it is off by.
   bool from_waves = false;
 
-  /// The material's own deviations, as if they were independent.
+  /// With the material's covariance; without one its own deviations, as if they were independent.
   explicit BarPrior(const Material& m);
 };
 

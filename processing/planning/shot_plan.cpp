@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/reduction/reducer.hpp"
@@ -115,6 +116,7 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
     throw InputError("kind", "is not \"shpb\", so there is no specimen to plan for",
                      "use a bench file of kind \"shpb\" with bars.output and specimen");
   }
+  require_bar_model_holds(bars, bench, "the bar model");
   (void)shpb_stations(bench);  // both bars have a gauge
   ShotPlan plan;
   plan.pulse = pulse;

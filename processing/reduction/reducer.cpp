@@ -1,5 +1,6 @@
 #include "processing/reduction/reducer.hpp"
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
@@ -82,11 +83,18 @@ Reduction Reducer::reduce(const Shot& shot) {
   if (!unusable.empty()) {
     return not_reducible(unusable);
   }
-  const ReductionOptions& options = state_->options;
+  ReductionOptions options = state_->options;
   const bool assumed = !options.bar_model && !shot.bar_model;
   const Material material = options.bar_model ? *options.bar_model
                             : shot.bar_model  ? *shot.bar_model
-                                              : paper_pmma();
+                                              : assumed_bars(shot.bench);
+  if (!options.bar_model && shot.bar_model) {
+    require_bar_model_holds(material, shot, "the capture's bar model");
+    require_band_known(material, options.band_limit_Hz, "the capture's bar model");
+  }
+  if (!options.most_band_Hz && material.identified) {
+    options.most_band_Hz = material.identified->band_limit_Hz;
+  }
   const Station in = station_on(shot.bench, "input");
   const Station out = station_on(shot.bench, "output");
   std::vector<double> numbers = shpb_numbers(shot.bench, material, options.theory, in, out);

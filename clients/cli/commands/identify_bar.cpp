@@ -1,5 +1,3 @@
-#include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <ostream>
 
@@ -52,28 +50,6 @@ BarIdentificationOptions options_from(const Settings& settings) {
   return options;
 }
 
-/// Mean of the shots' temperatures, where all are known.
-std::optional<double> temperature_K(const std::vector<Shot>& shots) {
-  double sum = 0.0;
-  for (const Shot& shot : shots) {
-    const auto fact = shot.meta.find("temperature_K");
-    if (fact != shot.meta.end()) {
-      char* end = nullptr;
-      const double value = std::strtod(fact->second.c_str(), &end);
-      if (end == fact->second.c_str() || *end != '\0' || !std::isfinite(value)) {
-        throw InputError(shot.id + ": meta temperature_K",
-                         "\"" + fact->second + "\" is no temperature", "give kelvins, as 296.5");
-      }
-      sum += value;
-    } else if (shot.bench.temperature_K) {
-      sum += shot.bench.temperature_K->value;
-    } else {
-      return std::nullopt;
-    }
-  }
-  return sum / static_cast<double>(shots.size());
-}
-
 void write_material(const std::string& path, const BarIdentification& result,
                     const std::vector<Shot>& shots) {
   const BarFit& fit = result.three_element;
@@ -85,6 +61,13 @@ void write_material(const std::string& path, const BarIdentification& result,
   material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
   material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
   material.source = "kolsky identify bar, " + std::to_string(shots.size()) + " shots";
+  auto& covariance = material.covariance.emplace();
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      covariance[3 * i + j] = fit.covariance[i][j];
+    }
+  }
+  material.identified = Material::Identified{fit.band_limit_Hz, result.temperature_K};
   try {
     check(material);
   } catch (const InputError& error) {
@@ -92,19 +75,8 @@ void write_material(const std::string& path, const BarIdentification& result,
                      "cannot file this fit: " + error.place() + " " + error.problem(),
                      "file an elastic bar by bars.*.youngs_modulus_Pa in the bench instead");
   }
-  Identified identified;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      identified.covariance[3 * i + j] = fit.covariance[i][j];
-    }
-  }
-  identified.shots = shots.size();
-  identified.band_limit_Hz = fit.band_limit_Hz;
-  identified.dispersion = name_of(fit.theory);
-  identified.chi2_reduced = fit.chi2_reduced;
-  identified.temperature_K = temperature_K(shots);
   NewFile file(path);
-  file.write(format_material(material, identified));
+  file.write(format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced}));
   file.publish(kReadableByAll);
 }
 

@@ -14,6 +14,7 @@
 #include "clients/figure/layout.hpp"
 #include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/identification/parameter_budget.hpp"
 #include "processing/specimen/fit_warnings.hpp"

@@ -9,6 +9,7 @@
 #include "clients/figure/layout.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/planning/shot_plan.hpp"
@@ -25,6 +26,13 @@ struct Settings {
   std::optional<double> pulse_duration_s;
   std::optional<double> rise_s;
   std::optional<double> noise_microstrain;
+};
+
+/// What the bars are taken to be.
+struct Bars {
+  Material material;
+  std::string in_words;
+  bool assumed = false;
 };
 
 void require_option(const std::optional<double>& number, const std::string& name,
@@ -58,7 +66,7 @@ PlannedPulse pulse_of(const Settings& s, const Bench& bench, const Material& bar
   return pulse_of_striker(bench, bars, *speed, rise_s);
 }
 
-JsonValue describe(const ShotPlan& plan) {
+JsonValue describe(const ShotPlan& plan, const Bars& bars) {
   JsonList gauges;
   for (const GaugeForecast& gauge : plan.gauges) {
     gauges.push_back(JsonObject{{"name", gauge.name},
@@ -76,6 +84,8 @@ JsonValue describe(const ShotPlan& plan) {
                                              {"text", check.text}}});
   }
   return JsonObject{
+      {"bar_model", bars.in_words},
+      {"bar_model_assumed", bars.assumed},
       {"pulse", JsonObject{{"peak_force_N", plan.pulse.step_force_N.front()},
                            {"duration_s", plan.pulse.duration_s() + plan.pulse.rise_s},
                            {"rise_s", plan.pulse.rise_s}}},
@@ -104,11 +114,12 @@ std::string line(const std::string& name, const std::string& text) {
   return fmt::format("  {:<18}{}\n", name, text);
 }
 
-std::string report(const ShotPlan& plan) {
+std::string report(const ShotPlan& plan, const Bars& bars) {
   const double pulse_s = plan.pulse.duration_s() + plan.pulse.rise_s;
   std::string text =
       line("pulse", fmt::format("{} for {}", with_unit(plan.pulse.step_force_N.front(), "N"),
-                                with_unit(pulse_s, "s")));
+                                with_unit(pulse_s, "s"))) +
+      line("bars", bars.in_words);
   if (!plan.reduction.quality.reducible) {
     return text + line("result", "none: " + plan.reduction.quality.reason);
   }
@@ -141,19 +152,35 @@ std::string report(const ShotPlan& plan) {
   return text;
 }
 
+Bars bars_of(const Settings& settings, const Bench& bench) {
+  if (settings.bar_model) {
+    const BarModelFile model = read_bar_model(*settings.bar_model);
+    require_holds(model, bench);
+    return {model.prior.material, model.name, false};
+  }
+  try {
+    const Material material = assumed_bars(bench);
+    if (bench.input.youngs_modulus_Pa && bench.output && bench.output->youngs_modulus_Pa) {
+      return {material, "elastic, moduli from the bench", false};
+    }
+    return {material, material.source + ", assumed because no bar model was given", true};
+  } catch (const InputError& error) {
+    throw error.inside(settings.bench);
+  }
+}
+
 int run(const Settings& settings, Context& context) {
   const Bench bench = read_bench(settings.bench).bench;
-  const Material bars =
-      settings.bar_model ? read_bar_model(*settings.bar_model).prior.material : paper_pmma();
+  const Bars bars = bars_of(settings, bench);
   const Material specimen = read_material(settings.specimen);
   constexpr Range kNoise{1e-6, 1e5, "microstrain", "give microstrain, as 4"};
   require_option(settings.noise_microstrain, "--noise", kNoise);
   PlanOptions options;
   options.noise_strain = 1e-6 * settings.noise_microstrain.value_or(1e6 * options.noise_strain);
   try {
-    const ShotPlan plan =
-        plan_shot(bench, bars, specimen, pulse_of(settings, bench, bars), options);
-    context.out << (context.json ? to_text(describe(plan)) + "\n" : report(plan));
+    const ShotPlan plan = plan_shot(bench, bars.material, specimen,
+                                    pulse_of(settings, bench, bars.material), options);
+    context.out << (context.json ? to_text(describe(plan, bars)) + "\n" : report(plan, bars));
   } catch (const InputError& error) {
     throw error.inside(settings.bench);
   }

@@ -216,8 +216,7 @@ int run(const Settings& settings, Context& context) {
     refuse_for_ball(settings);
   }
   if (bars.has_value()) {
-    require_temperature(*bars, reduced.shot);
-    require_density(*bars, reduced.shot.bench);
+    require_holds(*bars, reduced.shot);
     const std::string unchecked = temperature_unchecked(*bars, reduced.shot);
     if (!unchecked.empty()) {
       reduced.reduction.bar_model += " (" + unchecked + ")";

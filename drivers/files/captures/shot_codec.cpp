@@ -14,6 +14,9 @@ namespace kolsky {
 namespace {
 
 constexpr std::uint32_t kVersion = 1;
+/// With what an identification files of the bar model beside its numbers. Others are still written
+/// as they were: their checksums stand in stored captures.
+constexpr std::uint32_t kVersionIdentified = 2;
 constexpr std::size_t kGapBytes = 17;
 constexpr std::size_t kLeastMetaBytes = 8;
 constexpr std::size_t kLeastChannelBytes = 45;
@@ -86,6 +89,48 @@ std::uint8_t code_bytes(const ChannelRecord& channel) {
   return fits_16_bits(channel) ? 2 : 4;
 }
 
+bool has_identification(const Shot& shot) {
+  return shot.bar_model && (shot.bar_model->covariance || shot.bar_model->identified);
+}
+
+void put_optional(ByteWriter& writer, const std::optional<double>& number) {
+  writer.put(static_cast<std::uint8_t>(number ? 1 : 0));
+  if (number) {
+    writer.put(*number);
+  }
+}
+
+std::optional<double> get_optional(ByteReader& reader) {
+  return reader.get_flag() ? std::optional(reader.get<double>()) : std::nullopt;
+}
+
+void put_identification(ByteWriter& writer, const Material& material) {
+  writer.put(static_cast<std::uint8_t>(material.covariance ? 1 : 0));
+  if (material.covariance) {
+    for (const double number : *material.covariance) {
+      writer.put(number);
+    }
+  }
+  writer.put(static_cast<std::uint8_t>(material.identified ? 1 : 0));
+  if (material.identified) {
+    put_optional(writer, material.identified->band_limit_Hz);
+    put_optional(writer, material.identified->temperature_K);
+  }
+}
+
+void get_identification(ByteReader& reader, Material& material) {
+  if (reader.get_flag()) {
+    for (double& number : material.covariance.emplace()) {
+      number = reader.get<double>();
+    }
+  }
+  if (reader.get_flag()) {
+    Material::Identified& identified = material.identified.emplace();
+    identified.band_limit_Hz = get_optional(reader);
+    identified.temperature_K = get_optional(reader);
+  }
+}
+
 void put_material(ByteWriter& writer, const std::optional<Material>& material) {
   writer.put(static_cast<std::uint8_t>(material ? 1 : 0));
   if (!material) {
@@ -141,10 +186,13 @@ std::optional<TriggerEvent> get_trigger(ByteReader& reader) {
 }
 
 void put_metadata(ByteWriter& writer, const Shot& shot) {
-  writer.put(kVersion);
+  writer.put(has_identification(shot) ? kVersionIdentified : kVersion);
   writer.put_text(shot.id);
   writer.put_text(shot.bench_toml);
   put_material(writer, shot.bar_model);
+  if (has_identification(shot)) {
+    put_identification(writer, *shot.bar_model);
+  }
   writer.put(shot.rate.numerator);
   writer.put(shot.rate.denominator);
   writer.put(shot.first_tick);
@@ -287,14 +335,21 @@ void encode_shot(const Shot& shot, std::vector<std::byte>& out) {
 
 Shot decode_shot(std::span<const std::byte> bytes, const std::string& place) {
   ByteReader reader(bytes, place);
-  if (const auto version = reader.get<std::uint32_t>(); version != kVersion) {
+  const auto version = reader.get<std::uint32_t>();
+  if (version != kVersion && version != kVersionIdentified) {
     reader.refuse("shot of format " + std::to_string(version) + ", this program reads " +
-                  std::to_string(kVersion));
+                  std::to_string(kVersion) + " and " + std::to_string(kVersionIdentified));
   }
   Shot shot;
   shot.id = reader.get_text();
   shot.bench_toml = reader.get_text();
   shot.bar_model = get_material(reader);
+  if (version == kVersionIdentified) {
+    if (!shot.bar_model) {
+      reader.refuse("an identification of no bar model");
+    }
+    get_identification(reader, *shot.bar_model);
+  }
   shot.rate.numerator = reader.get<std::int64_t>();
   shot.rate.denominator = reader.get<std::int64_t>();
   shot.first_tick = reader.get<Tick>();

@@ -1,5 +1,6 @@
 #include "drivers/files/settings/material_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -8,6 +9,17 @@
 namespace kolsky {
 
 namespace {
+
+std::array<double, 9> read_covariance(const TomlTable& table) {
+  std::array<double, 9> covariance{};
+  const std::vector<double> numbers = table.numbers("covariance");
+  if (numbers.size() != covariance.size()) {
+    throw table.error("covariance", "has " + std::to_string(numbers.size()) + " numbers",
+                      "give nine, row by row, of E1_Pa, E2_Pa and eta2_Pa_s");
+  }
+  std::copy(numbers.begin(), numbers.end(), covariance.begin());
+  return covariance;
+}
 
 Material read(const TomlTable& table) {
   table.expect({"density_kg_m3", "poisson_ratio", "E1_Pa", "E2_Pa", "eta2_Pa_s", "source",
@@ -19,9 +31,16 @@ Material read(const TomlTable& table) {
   material.E2_Pa = table.measured("E2_Pa");
   material.eta2_Pa_s = table.measured("eta2_Pa_s");
   material.source = table.optional_text("source").value_or("");
-  // What an identification files beside the values, for its own use.
-  table.accept("covariance");
-  table.accept("identified");
+  if (table.has("covariance")) {
+    material.covariance = read_covariance(table);
+  }
+  if (const auto identified = table.optional_table("identified")) {
+    material.identified = Material::Identified{identified->optional_number("band_limit_Hz"),
+                                               identified->optional_number("temperature_K")};
+    for (const std::string& key : identified->keys()) {
+      identified->accept(key);  // the rest of that is for people
+    }
+  }
   table.finish();
   try {
     check(material);
@@ -86,22 +105,31 @@ std::string format_material(const Material& material) {
   text += number_line("E1_Pa", material.E1_Pa);
   text += number_line("E2_Pa", material.E2_Pa);
   text += number_line("eta2_Pa_s", material.eta2_Pa_s);
+  if (material.covariance) {
+    text += "covariance = [";  // E1, E2, eta2, row by row
+    for (std::size_t i = 0; i < material.covariance->size(); ++i) {
+      text += (i == 0 ? "" : ", ") + digits((*material.covariance)[i]);
+    }
+    text += "]\n";
+  }
+  if (material.identified) {
+    text += "\n[identified]\n";
+    if (material.identified->band_limit_Hz) {
+      text += "band_limit_Hz = " + digits(*material.identified->band_limit_Hz) + "\n";
+    }
+    if (material.identified->temperature_K) {
+      text += "temperature_K = " + digits(*material.identified->temperature_K) + "\n";
+    }
+  }
   return text;
 }
 
 std::string format_material(const Material& material, const Identified& identified) {
-  std::string text = format_material(material) + "covariance = [";  // E1, E2, eta2, row by row
-  for (std::size_t i = 0; i < identified.covariance.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + digits(identified.covariance[i]);
-  }
-  text += "]\n\n[identified]\nshots = " + std::to_string(identified.shots) + "\n";
-  text += "band_limit_Hz = " + digits(identified.band_limit_Hz) + "\n";
-  text += "dispersion = " + quoted(identified.dispersion) + "\n";
-  text += "chi2_reduced = " + digits(identified.chi2_reduced) + "\n";
-  if (identified.temperature_K) {
-    text += "temperature_K = " + digits(*identified.temperature_K) + "\n";
-  }
-  return text;
+  Material from_waves = material;
+  from_waves.identified = material.identified.value_or(Material::Identified{});
+  return format_material(from_waves) + "shots = " + std::to_string(identified.shots) +
+         "\ndispersion = " + quoted(identified.dispersion) +
+         "\nchi2_reduced = " + digits(identified.chi2_reduced) + "\n";
 }
 
 }  // namespace kolsky

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "processing/base/material.hpp"
@@ -16,17 +14,14 @@ namespace kolsky {
 /// TOML with as many digits as it takes for the same bits to be read back.
 [[nodiscard]] std::string format_material(const Material& material);
 
-/// What an identification files beside the values.
+/// How the values were identified, for people.
 struct Identified {
-  std::array<double, 9> covariance{};  ///< of E1, E2, eta2, row by row
   std::size_t shots = 0;
-  double band_limit_Hz = 0.0;  ///< up to which the records were used
-  std::string dispersion;      ///< how waves were taken to travel
+  std::string dispersion;  ///< how waves were taken to travel
   double chi2_reduced = 0.0;
-  std::optional<double> temperature_K{};
 };
 
-/// The same with `covariance` and the table `[identified]` below.
+/// The same with these in the table `[identified]`.
 [[nodiscard]] std::string format_material(const Material& material, const Identified& identified);
 
 }  // namespace kolsky

@@ -90,6 +90,25 @@ TEST_F(ConfigTest, TakesTheDefaultsWhereTheFileIsSilent) {
   EXPECT_FALSE(config.bar_model);
 }
 
+TEST_F(ConfigTest, TakesABarModelWithWhereItHoldsAndRefusesItElsewhere) {
+  const std::string moduli =
+      "poisson_ratio = 0.36\nE1_Pa = 5.0e9\nE2_Pa = 37e9\neta2_Pa_s = 1.8e6\n"
+      "covariance = [4e10, 1e10, 0, 1e10, 9e16, 0, 0, 0, 1e8]\n[identified]\n"
+      "band_limit_Hz = 6000\n";
+  const std::string with_model = "bar_model = \"pmma.toml\"\n" + std::string(kLeast);
+  write("bench.toml", "temperature_K = 293.0\n" + std::string(kStrainBench));
+  write("pmma.toml", "density_kg_m3 = 1180\n" + moduli + "temperature_K = 294.0\n");
+  DaemonConfig config = read(with_model);
+  const Apparatus apparatus = read_apparatus(config);
+  ASSERT_TRUE(apparatus.bar_model && apparatus.bar_model->covariance);
+  EXPECT_EQ((*apparatus.bar_model->covariance)[1], 1e10);
+  EXPECT_EQ(apparatus.bar_model->identified, (Material::Identified{6000.0, 294.0}));
+  write("pmma.toml", "density_kg_m3 = 1180\n" + moduli + "temperature_K = 250.0\n");
+  EXPECT_TRUE(holds(error_of(with_model), {"pmma.toml", "250.0 K", "293.0 K"}));
+  write("pmma.toml", "density_kg_m3 = 2700\n" + moduli);
+  EXPECT_TRUE(holds(error_of(with_model), {"pmma.toml", "2700 kg/m3"}));
+}
+
 TEST_F(ConfigTest, TakesEveryKey) {
   write("pmma.toml",
         "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.0e9\nE2_Pa = 37e9\n"

@@ -33,6 +33,19 @@ TEST(Codec, GivesBackWhatIsOptionalAndEmpty) {
   expect_same(decode_shot(encoded(shot), "shot"), shot);
 }
 
+TEST(Codec, KeepsWhereABarModelHolds) {
+  Shot shot = make_shot(2);
+  shot.bar_model->covariance = {4.0, 1.0, 0.0, 1.0, 9.0, -2.0, 0.0, -2.0, 16.0};
+  expect_same(decode_shot(encoded(shot), "shot"), shot);
+  shot.bar_model->identified = Material::Identified{6000.0 / 7.0, std::nullopt};
+  expect_same(decode_shot(encoded(shot), "shot"), shot);
+  shot.bar_model->covariance.reset();
+  shot.bar_model->identified = Material::Identified{std::nullopt, 250.0};
+  expect_same(decode_shot(encoded(shot), "shot"), shot);
+  shot.bar_model->covariance = {4.0, 7.0, 0.0, 7.0, 9.0, -2.0, 0.0, -2.0, 16.0};
+  EXPECT_THROW(check_storable(shot), InputError) << "a correlation above 1";
+}
+
 TEST(Codec, KeepsCodesThatLeaveTheRangeOfTheirBits) {
   Shot shot = make_shot(3);
   shot.channels[1].codes[5] = 65535;
@@ -69,8 +82,8 @@ TEST(Codec, RefusesWhatIsLeftOver) {
 
 TEST(Codec, RefusesALaterFormat) {
   auto bytes = encoded(make_shot(8));
-  bytes[0] = std::byte{2};
-  expect_refused([&] { (void)decode_shot(bytes, "shot"); }, {"format 2"});
+  bytes[0] = std::byte{3};
+  expect_refused([&] { (void)decode_shot(bytes, "shot"); }, {"format 3"});
 }
 
 // Any change gives another shot or a refusal, never a crash or room for what is not there.

@@ -127,6 +127,8 @@ void expect_same(const Shot& actual, const Shot& expected) {
     expect_bits(actual.bar_model->E2_Pa, expected.bar_model->E2_Pa);
     expect_bits(actual.bar_model->eta2_Pa_s, expected.bar_model->eta2_Pa_s);
     EXPECT_EQ(actual.bar_model->source, expected.bar_model->source);
+    EXPECT_EQ(actual.bar_model->covariance, expected.bar_model->covariance);
+    EXPECT_EQ(actual.bar_model->identified, expected.bar_model->identified);
   }
   EXPECT_EQ(actual.rate, expected.rate);
   EXPECT_EQ(actual.first_tick, expected.first_tick);

@@ -67,6 +67,28 @@ TEST(IdentifyBar, EveryRowOfTable4WithTolerances) {
   }
 }
 
+TEST(IdentifyBar, ShotsOfSeveralTemperaturesAreSaidToBe) {
+  std::vector<Shot> shots = draw(paper_bar(), 2, 5);
+  for (Shot& shot : shots) {
+    shot.bench.temperature_K = Measured{293.0};
+  }
+  const auto warned_of_temperature = [](const BarIdentification& result) {
+    return std::any_of(result.warnings.begin(), result.warnings.end(), [](const auto& warning) {
+      return warning.find("no one temperature") != std::string::npos;
+    });
+  };
+  shots[0].meta["temperature_K"] = "292.5";
+  const auto alike = identify_bar(shots, {.compare_solids = false});
+  EXPECT_FALSE(warned_of_temperature(alike));
+  ASSERT_TRUE(alike.temperature_K);
+  EXPECT_DOUBLE_EQ(*alike.temperature_K, 292.75);
+  shots[0].meta["temperature_K"] = "283";
+  shots[1].meta["temperature_K"] = "303";
+  EXPECT_TRUE(warned_of_temperature(identify_bar(shots, {.compare_solids = false})));
+  shots[1].meta["temperature_K"] = "warm";
+  EXPECT_THROW((void)identify_bar(shots, {.compare_solids = false}), InputError);
+}
+
 TEST(IdentifyBar, TheSpectrumHoldsTheTruthTo15kHz) {
   const auto result = identify_bar(draw(paper_bar(), 10, 3), {.compare_solids = false});
   const RodMaterial& m = paper_bar().setup().material;

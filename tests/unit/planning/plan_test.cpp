@@ -74,6 +74,20 @@ TEST(PlanShot, TellsTheAmplifiersRangeInVolts) {
   EXPECT_NEAR(plan.gauges[1].highest_reading, most / 1e-4, 1e-6);
 }
 
+TEST(PlanShot, RefusesBarsThatTheModelDoesNotHoldFor) {
+  const LinearShpb model;
+  Bench bench = model.bench();
+  bench.temperature_K = Measured{293.0};
+  Material bars = paper_pmma();
+  const PlannedPulse pulse = pulse_of_strain(bench, bars, 1e-3, 1e-4, 0.0);
+  bars.identified = Material::Identified{std::nullopt, 330.0};
+  EXPECT_THROW((void)plan_shot(bench, bars, core(), pulse, {}), InputError);
+  bars.identified = Material::Identified{6000.0, 294.5};
+  EXPECT_LE(plan_shot(bench, bars, core(), pulse, {}).reduction.band_limit_Hz, 6000.0);
+  bars.density_kg_m3 = {2700.0};
+  EXPECT_THROW((void)plan_shot(bench, bars, core(), pulse, {}), InputError);
+}
+
 TEST(Pulse, OfAStrikerCarriesItsMomentum) {
   const LinearShpb model;
   Bench bench = model.bench();

@@ -29,6 +29,8 @@ void expect_same(const Material& a, const Material& b) {
   expect_same_number(a.E2_Pa, b.E2_Pa);
   expect_same_number(a.eta2_Pa_s, b.eta2_Pa_s);
   EXPECT_EQ(a.source, b.source);
+  EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.identified, b.identified);
 }
 
 TEST(MaterialFile, ReadsTheFiveKeys) {
@@ -45,8 +47,13 @@ TEST(MaterialFile, TakesWhatAnIdentificationFiles) {
   const ScratchFolder folder;
   const Material material = read_material(
       folder.write("m.toml", "source = \"ten shots\"\nE1_Pa_sd = 1e5\n" + std::string(kCore) +
-                                 "[covariance]\nparameters = [\"E1_Pa\", \"E2_Pa\"]\nmatrix = "
-                                 "[[1.0, 0.1], [0.1, 2.0]]\n[identified]\nshots = 10\n"));
+                                 "covariance = [1, 0.1, 0, 0.1, 2, 0, 0, 0, 3]\n"
+                                 "[identified]\nshots = 10\nband_limit_Hz = 6000\n"));
+  ASSERT_TRUE(material.covariance);
+  EXPECT_EQ((*material.covariance)[3], 0.1);
+  ASSERT_TRUE(material.identified);
+  EXPECT_EQ(material.identified->band_limit_Hz, 6000.0);
+  EXPECT_FALSE(material.identified->temperature_K);
   EXPECT_EQ(material.source, "ten shots");
   EXPECT_EQ(material.E1_Pa.sd, 1e5);
 }
@@ -61,6 +68,12 @@ TEST(MaterialFile, WhatIsWrittenReadsBackToTheBit) {
   odd.eta2_Pa_s = {98765.4321e-1, 1e-300};
   odd.source = "a \"quoted\" \\ line\nand\ttab µ \x7F";
   expect_same(parse_material(format_material(odd), "m.toml"), odd);
+  odd.covariance = {1.0 / 3.0, 0.1, 0.0, 0.1, 2.0 / 7.0, -1e-3, 0.0, -1e-3, 1e14 / 3.0};
+  odd.identified = Material::Identified{94.39e3 / 7.0, 293.15};
+  expect_same(parse_material(format_material(odd), "m.toml"), odd);
+  const std::string with_more = format_material(odd, {10, "exact", 1.01});
+  EXPECT_NE(with_more.find("dispersion = \"exact\""), std::string::npos);
+  expect_same(parse_material(with_more, "m.toml"), odd);
 }
 
 struct MaterialRefusal {

@@ -40,6 +40,8 @@ void expect_same(const Material& a, const Material& b) {
     EXPECT_EQ((a.*field).sd, (b.*field).sd);
   }
   EXPECT_EQ(a.source, b.source);
+  EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.identified, b.identified);
 }
 
 TEST(BallCodec, ComesBackExact) {
@@ -93,6 +95,16 @@ TEST(ShotCodec, ComesBackExact) {
   EXPECT_EQ(back.software_version, shot.software_version);
   ASSERT_TRUE(back.bar_model);
   expect_same(*back.bar_model, *shot.bar_model);
+}
+
+TEST(ShotCodec, KeepsWhereABarModelHolds) {
+  Shot shot = full_shot(8);
+  shot.bar_model->covariance = {4.0, 1.0, 0.0, 1.0, 9.0, -2.0, 0.0, -2.0, 16.0};
+  shot.bar_model->identified = Material::Identified{6000.0 / 7.0, std::nullopt};
+  expect_same(*wire::decode(over_the_wire(encoded(shot))).bar_model, *shot.bar_model);
+  shot.bar_model->covariance.reset();
+  shot.bar_model->identified = Material::Identified{};
+  expect_same(*wire::decode(over_the_wire(encoded(shot))).bar_model, *shot.bar_model);
 }
 
 TEST(ShotCodec, WhatIsAbsentStaysAbsent) {

@@ -155,6 +155,17 @@ v1::Shot shot() {
   return shot;
 }
 
+v1::Shot shot_identified() {
+  v1::Shot identified = shot();
+  v1::Material& material = *identified.mutable_bar_model();
+  for (const double number : {4.0, 1.0, 0.0, 1.0, 9.0, -2.0, 0.0, -2.0, 16.0}) {
+    material.add_covariance(number);
+  }
+  material.mutable_identified()->set_band_limit_hz(6000.0);
+  material.mutable_identified()->set_temperature_k(293.0);
+  return identified;
+}
+
 v1::Quality quality() {
   v1::Quality quality;
   quality.set_reducible(true);
@@ -491,6 +502,7 @@ std::vector<Fixture> fixtures() {
       fixture("status", status()),
       fixture("preview", preview()),
       fixture("shot", shot()),
+      fixture("shot_identified", shot_identified()),
       fixture("result", result()),
       fixture("result_irreducible", irreducible()),
       fixture("result_ball", ball_result()),

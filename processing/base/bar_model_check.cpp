@@ -1,0 +1,139 @@
+#include "processing/base/bar_model_check.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string_view>
+
+#include "processing/base/error.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kDensityApart = 0.01;
+constexpr double kDeviations = 3.0;
+/// Densities of PMMA are from 1150 to 1200 kg/m3.
+constexpr double kNoPmmaApart = 0.05;
+
+std::string with_decimals(double value, int decimals) {
+  std::array<char, 64> text{};
+  (void)std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+using OnBar = std::function<void(std::string_view, const Bar&)>;
+
+void for_viscoelastic_bars(const Bench& bench, const OnBar& use) {
+  if (!bench.input.youngs_modulus_Pa) {
+    use("input", bench.input);
+  }
+  if (bench.output && !bench.output->youngs_modulus_Pa) {
+    use("output", *bench.output);
+  }
+}
+
+void require_temperature(const Material& model, std::optional<double> there_K,
+                         const std::string& place, const std::string& name) {
+  const auto known_K = model.identified ? model.identified->temperature_K : std::nullopt;
+  if (known_K && there_K && std::abs(*there_K - *known_K) > kNearEnough_K) {
+    throw InputError(
+        name,
+        "was identified at " + with_decimals(*known_K, 1) + " K, and " + place + " at " +
+            with_decimals(*there_K, 1) + " K",
+        "identify the bars within " + with_decimals(kNearEnough_K, 0) + " K of the shots");
+  }
+}
+
+void require_density(const Material& model, const Bench& bench, const std::string& name) {
+  const Measured& identified = model.density_kg_m3;
+  for_viscoelastic_bars(bench, [&](std::string_view, const Bar& bar) {
+    const double apart = std::abs(identified - bar.density_kg_m3);
+    if (apart > kDensityApart * bar.density_kg_m3 &&
+        apart > kDeviations * std::hypot(identified.sd, bar.density_kg_m3.sd)) {
+      throw InputError(name,
+                       "is of bars of " + with_decimals(identified, 0) +
+                           " kg/m3, and the bench's have " + with_decimals(bar.density_kg_m3, 0),
+                       "file the same density in both: moduli give the wave speed with the one "
+                       "they were identified with");
+    }
+  });
+}
+
+bool any_viscoelastic(const Bench& bench) {
+  bool any = false;
+  for_viscoelastic_bars(bench, [&](std::string_view, const Bar&) { any = true; });
+  return any;
+}
+
+}  // namespace
+
+std::optional<double> temperature_of(const Shot& shot) {
+  const auto fact = shot.meta.find("temperature_K");
+  if (fact == shot.meta.end()) {
+    return shot.bench.temperature_K ? std::optional(shot.bench.temperature_K->value) : std::nullopt;
+  }
+  char* end = nullptr;
+  const double value = std::strtod(fact->second.c_str(), &end);
+  if (end == fact->second.c_str() || *end != '\0' || !(value > 0.0) || !std::isfinite(value)) {
+    throw InputError("capture " + shot.id + ": meta temperature_K",
+                     "\"" + fact->second + "\" is no temperature", "give kelvins, as 296.5");
+  }
+  return value;
+}
+
+void require_bar_model_holds(const Material& model, const Bench& bench, const std::string& name) {
+  require_density(model, bench, name);
+  if (any_viscoelastic(bench) && bench.temperature_K) {
+    require_temperature(model, bench.temperature_K->value, "the bench is filed", name);
+  }
+}
+
+void require_bar_model_holds(const Material& model, const Shot& shot, const std::string& name) {
+  require_density(model, shot.bench, name);
+  if (any_viscoelastic(shot.bench)) {
+    require_temperature(model, temperature_of(shot), "capture " + shot.id + " was taken", name);
+  }
+}
+
+void require_band_known(const Material& model, std::optional<double> asked_Hz,
+                        const std::string& name) {
+  const auto known_Hz = model.identified ? model.identified->band_limit_Hz : std::nullopt;
+  if (known_Hz && asked_Hz && *asked_Hz > *known_Hz) {
+    throw InputError(name,
+                     "was identified up to " + with_decimals(*known_Hz, 0) + " Hz, and " +
+                         with_decimals(*asked_Hz, 0) + " Hz are asked for",
+                     "give a lower --band-limit, or identify the bars with shorter pulses");
+  }
+}
+
+std::string temperature_unchecked(const Material& model, const Shot& shot) {
+  const auto known_K = model.identified ? model.identified->temperature_K : std::nullopt;
+  if (!known_K || temperature_of(shot)) {
+    return "";
+  }
+  return "identified at " + with_decimals(*known_K, 1) +
+         " K; what this shot's bars had is not on file: give temperature_K in the bench or the "
+         "capture's meta";
+}
+
+Material assumed_bars(const Bench& bench) {
+  Material pmma = paper_pmma();
+  for_viscoelastic_bars(bench, [&](std::string_view which, const Bar& bar) {
+    const double off = bar.density_kg_m3 / pmma.density_kg_m3 - 1.0;
+    if (std::abs(off) > kNoPmmaApart) {
+      throw InputError(
+          "bars." + std::string(which) + ".youngs_modulus_Pa",
+          "is not filed, nor is a bar model given, and a bar of " +
+              with_decimals(bar.density_kg_m3, 0) + " kg/m3 is not the paper's PMMA of " +
+              with_decimals(pmma.density_kg_m3, 0) + " that would be assumed: " +
+              with_decimals(100.0 * std::abs(off), 0) + " % " + (off > 0.0 ? "denser" : "lighter"),
+          "file the modulus of an elastic bar, or give the bar model of a viscoelastic one");
+    }
+  });
+  return pmma;
+}
+
+}  // namespace kolsky

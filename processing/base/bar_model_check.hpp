@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "processing/base/shot.hpp"
+
+namespace kolsky {
+
+/// Bars this near to each other in temperature count as alike.
+inline constexpr double kNearEnough_K = 2.0;
+
+/// A shot's temperature: the fact `temperature_K` of the capture, else the bench's.
+/// @throws InputError where that fact is no number
+[[nodiscard]] std::optional<double> temperature_of(const Shot& shot);
+
+/// Refuses a bar model for what it does not hold for: viscoelastic bars of another density (moduli
+/// tell a wave's speed only with the density they were identified with), more than 1 % and three
+/// filed deviations off; and, where both are known, bars more than 2 K from the temperature it was
+/// identified at (PMMA changes by some 0.3 % per kelvin). A bench of elastic bars takes any.
+/// @param name  of the model, for the message
+/// @throws InputError
+void require_bar_model_holds(const Material& model, const Bench& bench, const std::string& name);
+void require_bar_model_holds(const Material& model, const Shot& shot, const std::string& name);
+
+/// Refuses a band that reaches beyond the one in which the model was identified.
+/// @throws InputError
+void require_band_known(const Material& model, std::optional<double> asked_Hz,
+                        const std::string& name);
+
+/// What to say where a bar model's temperature is known and the shot's is not; else nothing.
+[[nodiscard]] std::string temperature_unchecked(const Material& model, const Shot& shot);
+
+/// What viscoelastic bars of which nothing is filed are taken to be: the paper's PMMA.
+/// @throws InputError where a bar without a modulus is more than 5 % denser or lighter than that
+[[nodiscard]] Material assumed_bars(const Bench& bench);
+
+}  // namespace kolsky
