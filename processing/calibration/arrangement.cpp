@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/identification/bar_records.hpp"
@@ -22,6 +23,8 @@ constexpr double kAlike = 0.01;
 constexpr double kSilent = 0.03;
 /// What is kept of the time until faces can part.
 constexpr double kSafely = 0.97;
+/// Pulses that give a modulus more times the paper's, or less, were not of bars that touch.
+constexpr double kMostTimesStiffer = 3.0;
 
 std::optional<FirstPulse> pulse_of(const Shot& shot, std::size_t channel) {
   return first_pulse(readings_of(shot.channels[channel]), shot.rate.Hz());
@@ -130,7 +133,7 @@ void cut_before_faces_part(Shot& shot, const BarPrior& bars) {
   const double time_s = bench.distance_to_specimen_m(bench.gauges[first]) / speed_in +
                         2.0 * bench.output->length_m / speed_out +
                         nearest_m / std::max(speed_in, speed_out);
-  cut(shot, static_cast<std::size_t>(pulse->half + kSafely * time_s * shot.rate.Hz()));
+  cut(shot, static_cast<std::size_t>(pulse->foot + kSafely * time_s * shot.rate.Hz()));
 }
 
 /// One bar of a split bench by itself.
@@ -217,7 +220,34 @@ void split_passes(Shot& shot, const BarPrior& bars) {
 CalibrationPart& part_of(std::vector<CalibrationPart>& parts, BarsLay lay) {
   const auto found =
       std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.lay == lay; });
-  return found != parts.end() ? *found : parts.emplace_back(CalibrationPart{lay, {}, false, {}});
+  if (found != parts.end()) {
+    return *found;
+  }
+  CalibrationPart& part = parts.emplace_back();
+  part.lay = lay;
+  return part;
+}
+
+/// Of the first pulse from the first gauge to the last, where both bars are viscoelastic and both
+/// show it.
+std::optional<double> pulse_speed_m_per_s(const Shot& shot) {
+  const Bench& bench = shot.bench;
+  if (bench.input.youngs_modulus_Pa || !bench.output || bench.output->youngs_modulus_Pa ||
+      bench.gauges.size() < 2 || shot.channels.size() != bench.gauges.size() ||
+      lay_of(shot) != BarsLay::together) {
+    return std::nullopt;
+  }
+  const auto nearer = [&](const Gauge& a, const Gauge& b) {
+    return way_to_m(bench, a) < way_to_m(bench, b);
+  };
+  const auto [near, far] = std::minmax_element(bench.gauges.begin(), bench.gauges.end(), nearer);
+  const auto seen_near = pulse_of(shot, static_cast<std::size_t>(near - bench.gauges.begin()));
+  const auto seen_far = pulse_of(shot, static_cast<std::size_t>(far - bench.gauges.begin()));
+  if (!seen_near || !seen_far || seen_far->half <= seen_near->half) {
+    return std::nullopt;
+  }
+  return (way_to_m(bench, *far) - way_to_m(bench, *near)) * shot.rate.Hz() /
+         (seen_far->half - seen_near->half);
 }
 
 void prepare(CalibrationPart& part, const BarPrior& bars) {
@@ -274,6 +304,29 @@ double way_to_m(const Bench& bench, const Gauge& gauge) {
   return bench.input.length_m + slice_m + gauge.position_m;
 }
 
+BarPrior bars_to_begin_with(const std::vector<Shot>& shots) {
+  BarPrior bars(paper_pmma());
+  if (shots.empty() || shots.front().bench.kind != BenchKind::shpb) {
+    return bars;
+  }
+  bars = BarPrior(assumed_bars(shots.front().bench));
+  for (const Shot& shot : shots) {
+    const auto speed = pulse_speed_m_per_s(shot);
+    if (!speed) {
+      continue;
+    }
+    const Material pmma = bars.material;
+    const double stiffer = shot.bench.input.density_kg_m3 * *speed * *speed / pmma.E1_Pa;
+    if (stiffer > 1.0 / kMostTimesStiffer && stiffer < kMostTimesStiffer) {
+      bars.material.E1_Pa.value *= stiffer;
+      bars.material.E2_Pa.value *= stiffer;
+      bars.material.eta2_Pa_s.value *= stiffer;
+    }
+    break;
+  }
+  return bars;
+}
+
 std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPrior& bars) {
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot");
@@ -298,6 +351,7 @@ std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPr
     part_of(parts, lay_of(shot)).shots.push_back(shot);
   }
   for (CalibrationPart& part : parts) {
+    part.bars = bars;
     prepare(part, bars);
   }
   return parts;

@@ -22,6 +22,8 @@ struct CalibrationPart {
   bool two_passes = false;
   /// Gauges whose pulses arrive in each other's order: by name, on the part's bench exchanged.
   std::vector<std::pair<std::string, std::string>> swapped;
+  /// What viscoelastic bars were taken to be where records were cut, and where a fit begins.
+  BarPrior bars{paper_pmma()};
 };
 
 /// Sorts shots by how the bars lay, which the records show: a bar that stays silent was not
@@ -30,6 +32,11 @@ struct CalibrationPart {
 /// @throws InputError where the shots are of different benches or kinds, or hold no pulse
 [[nodiscard]] std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots,
                                                    const BarPrior& bars);
+
+/// What viscoelastic bars are taken to be before anything of them is known: the paper's PMMA, and
+/// of bars that touch one as much stiffer as the pulse is faster from gauge to gauge.
+/// @throws InputError where a split bench's bars are too dense or too light for any PMMA
+[[nodiscard]] BarPrior bars_to_begin_with(const std::vector<Shot>& shots);
 
 /// Whether the filed specimen is a slice of the bars themselves.
 [[nodiscard]] bool specimen_is_slice_of_bar(const Bench& bench);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/calibration/part_fit.hpp"
 
@@ -64,13 +65,15 @@ BarPrior as_found(const PartResult& part, BarPrior bars) {
   return bars;
 }
 
-/// Where one gauge stands for two, what its record is parted by depends on the moduli: it is parted
-/// again by those it gave.
+/// Where one gauge stands for two, what its record is parted by depends on the moduli, and so does
+/// where the records of bars together end: they are parted and cut again by those they gave.
 PartResult fitted_part(const std::vector<Shot>& shots, const std::vector<CalibrationPart>& parts,
                        std::size_t index, const BarPrior& bars, const CalibrationOptions& options) {
   PartResult fitted = fit_part(parts[index], options);
-  const bool elastic = parts[index].shots.front().bench.input.youngs_modulus_Pa.has_value();
-  if (!parts[index].two_passes || elastic) {
+  const CalibrationPart& part = parts[index];
+  const bool elastic = part.shots.front().bench.input.youngs_modulus_Pa.has_value();
+  const bool cut_by_guess = part.lay == BarsLay::together && !options.bars;
+  if (elastic || !(part.two_passes || cut_by_guess)) {
     return fitted;
   }
   return fit_part(arrange(shots, as_found(fitted, bars))[index], options);
@@ -111,7 +114,16 @@ std::string name_of(Certificate certificate) {
 }
 
 Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& options) {
-  const BarPrior bars = options.bars.value_or(BarPrior(paper_pmma()));
+  if (options.bars) {
+    for (const Shot& shot : shots) {
+      require_bar_model_holds(options.bars->material, shot, "the bar model");
+    }
+    require_band_known(
+        options.bars->material,
+        options.band_limit_Hz > 0.0 ? std::optional(options.band_limit_Hz) : std::nullopt,
+        "the bar model");
+  }
+  const BarPrior bars = options.bars ? *options.bars : bars_to_begin_with(shots);
   const std::vector<CalibrationPart> parts = arrange(shots, bars);
   require_trusted(shots.front().bench, options.trusted);
   Calibration result;

@@ -70,8 +70,8 @@ struct Calibration {
 };
 
 struct CalibrationOptions {
-  /// Moduli of viscoelastic bars as filed; none: a bar's own are found, those of a split bench are
-  /// the paper's PMMA, held.
+  /// Moduli of viscoelastic bars as filed; none: they are found, those of a split bench as of one
+  /// material.
   std::optional<BarPrior> bars;
   double band_limit_Hz = 0.0;
   std::vector<std::string> trusted;  ///< gauges whose gain, place and time count as right
@@ -84,7 +84,8 @@ struct CalibrationOptions {
 /// times. Filed numbers move within their deviations; where one is off by more than three, reckoned
 /// for the whole bench (with n numbers, as rare as three are for one), the one whose release
 /// explains most is named and set free, and so on until what is filed agrees with the rest.
-/// @throws InputError as arrange and read_campaign, and where the bench lacks a trusted gauge
+/// @throws InputError as arrange and read_campaign, where the bench lacks a trusted gauge, and
+/// where a bar model does not hold for the bench or the shots (see require_bar_model_holds)
 [[nodiscard]] Calibration calibrate(const std::vector<Shot>& shots,
                                     const CalibrationOptions& options);
 

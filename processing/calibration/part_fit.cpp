@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -58,7 +59,7 @@ class PartFit {
   PartFit(const CalibrationPart& part, const CalibrationOptions& options)
       : part_(part),
         options_(options),
-        bars_(options.bars.value_or(BarPrior(paper_pmma()))),
+        bars_(options.bars.value_or(part.bars)),
         campaign_(read_campaign(part.shots)) {
     result_.lay = part.lay;
     result_.two_passes = part.two_passes;
@@ -99,22 +100,27 @@ class PartFit {
 
   void tell(const std::string& step) const { options_.progress(name_of(part_.lay) + ": " + step); }
 
+  /// Waves by themselves do not tell: where the far end answers otherwise than a variant has it,
+  /// other waves may hide some of that. All combinations are fitted, exact waves and a return each
+  /// at a price, as elementary waves and a far end that says nothing are the simpler story.
   void choose_variant() {
     tell("which waves, and whether the far end answers");
     const bool may_return = part_.lay != BarsLay::together && !part_.two_passes;
-    variant_.far_end_seen = may_return;
-    double best = objective(variant_);
-    const auto attempt = [&](const PartVariant& other, double margin) {
-      const double tried = objective(other);
-      if (tried < best - margin) {
-        best = tried;
-        variant_ = other;
+    double best = std::numeric_limits<double>::infinity();
+    for (const bool exact_waves : {false, true}) {
+      for (const bool far_end_seen : {false, true}) {
+        if (far_end_seen && !may_return) {
+          continue;
+        }
+        const PartVariant variant{exact_waves, far_end_seen};
+        const double price =
+            kClearlyBetter * (static_cast<int>(exact_waves) + static_cast<int>(far_end_seen));
+        const double tried = objective(variant) + price;
+        if (tried < best) {
+          best = tried;
+          variant_ = variant;
+        }
       }
-    };
-    attempt({true, may_return}, kClearlyBetter);
-    if (may_return) {
-      // Where nothing of a return is in the records, its absence is the simpler story.
-      attempt({variant_.exact_waves, false}, -kClearlyBetter);
     }
     result_.exact_waves = variant_.exact_waves;
     result_.far_end_seen = variant_.far_end_seen;

@@ -57,8 +57,10 @@ bool elastic(const Bench& bench) {
   return bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa);
 }
 
-bool each_bar_has_moduli(const Bench& bench) {
-  return bench.output && !bench.input.youngs_modulus_Pa && !bench.output->youngs_modulus_Pa;
+/// Bars of which nothing is filed are of one material: one gauge on each would not tell two apart.
+bool each_bar_has_moduli(const Bench& bench, const CalibrationOptions& options) {
+  return options.bars && bench.output && !bench.input.youngs_modulus_Pa &&
+         !bench.output->youngs_modulus_Pa;
 }
 
 void add_moduli(const std::string& effect, const std::string& prefix, const Material& material,
@@ -121,10 +123,10 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
     number.least_sd = kExactly * kModulusStep;
     list.push_back(number);
   } else {
-    const bool believed = options.bars.has_value() || bench.kind == BenchKind::shpb;
-    const Material material = options.bars ? options.bars->material : paper_pmma();
+    const bool believed = options.bars.has_value();
+    const Material& material = options.bars ? options.bars->material : part.bars.material;
     add_moduli(kBars, "", material, believed, list);
-    if (each_bar_has_moduli(bench)) {
+    if (each_bar_has_moduli(bench, options)) {
       add_moduli(kOutputBar, "output:", material, believed, list);
     }
   }
@@ -134,14 +136,13 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
 Model part_model(const CalibrationPart& part, const Bench& bench, const CalibrationOptions& options,
                  const PartVariant& variant, const std::vector<ModelNumber>& numbers,
                  const std::set<std::string>& released, double loosen) {
-  const BarPrior bars = options.bars.value_or(BarPrior(paper_pmma()));
   Model model;
   model.kind = bench.kind;
   if (!elastic(bench)) {
     model.effects.push_back(use_named(kBars));
     hold(model.effects.back());
   }
-  if (each_bar_has_moduli(bench)) {
+  if (each_bar_has_moduli(bench, options)) {
     model.effects.push_back(use_named(kOutputBar));
     hold(model.effects.back());
   }
@@ -158,7 +159,7 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
     model.effects.push_back(use);
   }
   if (bench.kind == BenchKind::shpb) {
-    model.effects.push_back(specimen_use(bench, bars));
+    model.effects.push_back(specimen_use(bench, part.bars));
     if (specimen_is_slice_of_bar(bench)) {
       EffectUse use = use_named("specimen-inertia");
       use.values[0].value = 1.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "processing/base/error.hpp"
 #include "processing/identification/known_unknowns.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/waves/bar_modes.hpp"
@@ -84,12 +85,15 @@ std::optional<Measured> striker_speed(const Shot& shot) {
   if (found != shot.meta.end()) {
     double value = 0.0;
     const char* end = found->second.data() + found->second.size();
-    if (std::from_chars(found->second.data(), end, value).ptr == end && value > 0.0) {
-      const double sd = shot.bench.striker && shot.bench.striker->speed_m_per_s
-                            ? relative_sd(*shot.bench.striker->speed_m_per_s) * value
-                            : 0.0;
-      return Measured{value, sd};
+    if (std::from_chars(found->second.data(), end, value).ptr != end || !(value > 0.0) ||
+        !std::isfinite(value)) {
+      throw InputError("capture " + shot.id + ": meta striker_speed_m_per_s",
+                       "\"" + found->second + "\" is no speed", "give metres per second, as 12.5");
     }
+    const double sd = shot.bench.striker && shot.bench.striker->speed_m_per_s
+                          ? relative_sd(*shot.bench.striker->speed_m_per_s) * value
+                          : 0.0;
+    return Measured{value, sd};
   }
   return shot.bench.striker ? shot.bench.striker->speed_m_per_s : std::nullopt;
 }

@@ -32,7 +32,11 @@ CalibrationOptions options_from(const Settings& settings, const std::vector<Shot
   options.trusted = settings.trusted;
   options.workers = all_cores();
   if (settings.bar_model) {
-    options.bars = read_bar_model(*settings.bar_model).prior;
+    const BarModelFile model = read_bar_model(*settings.bar_model);
+    for (const Shot& shot : shots) {
+      require_holds(model, shot);
+    }
+    options.bars = model.prior;
   } else if (!shots.empty() && shots.front().bar_model) {
     options.bars = BarPrior(*shots.front().bar_model);
   }
@@ -84,8 +88,7 @@ Command calibrate_command() {
       option("--bench-out", "B2.toml",
              "corrected bench file to write, with deviations; never in the place of another",
              &s.bench_out),
-      option("--bar-model", "M.toml",
-             "what viscoelastic bars are filed to be; else found (one bar) or the paper's PMMA",
+      option("--bar-model", "M.toml", "what viscoelastic bars are filed to be; else found",
              &s.bar_model),
       option("--trust", "GAUGE", "a gauge whose numbers count as right, where shots cannot tell",
              &s.trusted),

@@ -30,15 +30,16 @@ std::string unit_of(CalibratedNumber::Of of) {
 
 JsonValue describe_number(const CalibratedNumber& number, BarsLay lay, const Bench& bench) {
   const bool measured_at_all = number.standing != Standing::unexplained;
+  const bool filed = number.standing != Standing::unfiled;
   const double none = std::numeric_limits<double>::quiet_NaN();  // null
   JsonObject object{{"id", number.id},
                     {"unit", unit_of(number.of)},
-                    {"filed", number.filed.value},
-                    {"filed_sd", number.filed.sd},
+                    {"filed", filed ? number.filed.value : none},
+                    {"filed_sd", filed ? number.filed.sd : none},
                     {"measured", measured_at_all ? number.measured.value : none},
                     {"sd", measured_at_all ? number.measured.sd : none},
                     {"combined", measured(number.combined)},
-                    {"deviations", measured_at_all ? number.deviations : none},
+                    {"deviations", measured_at_all && filed ? number.deviations : none},
                     {"verdict", name_of(number.standing)},
                     {"tied_with", number.tied_with}};
   if (!number.gauge.empty()) {
@@ -108,10 +109,11 @@ std::string row(const CalibratedNumber& number, BarsLay lay, const Bench& bench)
   text += filed ? fmt::format("{:>14.7g} ± {:<9.2g}", number.filed.value, number.filed.sd)
                 : fmt::format("{:>14}   {:<9}", "-", "");
   // What explains nothing was not measured by it either.
-  text += number.standing == Standing::unexplained
-              ? fmt::format("{:>14}   {:<9}{:>8}  ", "-", "", "")
-              : fmt::format("{:>14.7g} ± {:<9.2g}{:>8.1f}  ", number.measured.value,
-                            number.measured.sd, number.deviations);
+  text +=
+      number.standing == Standing::unexplained
+          ? fmt::format("{:>14}   {:<9}{:>8}  ", "-", "", "")
+          : fmt::format("{:>14.7g} ± {:<9.2g}{:>8}  ", number.measured.value, number.measured.sd,
+                        filed ? fmt::format("{:.1f}", number.deviations) : "-");
   text += name_of(number.standing);
   if (number.standing == Standing::tied) {
     text += fmt::format(" with {}", fmt::join(number.tied_with, ", "));

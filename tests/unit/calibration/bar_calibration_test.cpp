@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "processing/base/error.hpp"
 #include "processing/calibration/calibration.hpp"
@@ -17,8 +19,11 @@ constexpr int kLong = 1536;
 /// Enough for the pulse's first passage at every gauge, and less of the price.
 constexpr int kShort = 1024;
 
+enum class FarEnd { free, silent };
+
 testing::Campaign campaign(std::uint64_t seed, testing::Tolerances tolerances, int shots,
-                           const std::vector<std::string>& effects = {}, int samples = kShort) {
+                           const std::vector<std::string>& effects = {}, int samples = kShort,
+                           FarEnd far_end = FarEnd::free) {
   testing::CampaignWishes wishes;
   wishes.seed = seed;
   wishes.shots = shots;
@@ -26,7 +31,9 @@ testing::Campaign campaign(std::uint64_t seed, testing::Tolerances tolerances, i
   wishes.rate_Hz = 5e5;
   wishes.tolerances = tolerances;
   testing::Campaign made = testing::draw_campaign(wishes);
-  testing::hide(made, testing::parse_effect("end-reflection=0"));
+  if (far_end == FarEnd::free) {
+    testing::hide(made, testing::parse_effect("end-reflection=0"));
+  }
   for (const std::string& effect : effects) {
     testing::hide(made, testing::parse_effect(effect));
   }
@@ -66,6 +73,33 @@ TEST(BarCalibration, BenchFiledWithinItsDeviationsPasses) {
   // No shot tells a common gain: what enters the bar is free.
   EXPECT_EQ(part.cannot_tell.front(),
             "gauge-factor:g1, gauge-factor:g2, gauge-factor:g3, gauge-factor:g4");
+}
+
+/// Phase speed of elementary waves in a solid of three elements.
+double speed_m_per_s(const testing::Campaign& made, double frequency_Hz) {
+  const auto& solid = made.world.material;
+  const std::complex<double> i_omega(0.0, 2.0 * std::numbers::pi * frequency_Hz);
+  const std::complex<double> J =
+      1.0 / solid.E1_Pa + 1.0 / (solid.E2_Pa + i_omega * solid.eta2_Pa_s);
+  return 1.0 / std::sqrt(solid.density_kg_m3 * J).real();
+}
+
+// Judged with a return that is not there, exact waves look better than elementary ones.
+TEST(BarCalibration, BenchWhoseFarEndReturnsNothingPasses) {
+  for (const std::uint64_t seed : {102U, 303U}) {
+    const testing::Campaign made =
+        campaign(seed, testing::Tolerances::filed, 2, {}, kLong, FarEnd::silent);
+    const Calibration calibration = calibrate(testing::shots_of(made), {});
+    EXPECT_EQ(calibration.certificate, Certificate::pass) << seed;
+    const PartResult& part = calibration.parts.front();
+    EXPECT_FALSE(part.far_end_seen) << seed;
+    EXPECT_FALSE(part.exact_waves) << seed;
+    EXPECT_NEAR(part.chi2_reduced, 1.0, 0.1) << seed;
+    EXPECT_NEAR(part.wave_speed_m_per_s.value, speed_m_per_s(made, part.wave_speed_at_Hz),
+                4.0 * part.wave_speed_m_per_s.sd)
+        << seed;
+    EXPECT_LT(part.wave_speed_m_per_s.sd, 10.0) << seed;
+  }
 }
 
 TEST(BarCalibration, TellsHowFarItIs) {
@@ -197,6 +231,23 @@ TEST(BarCalibration, RefusesWhatCannotServe) {
     std::fill(channel.codes.begin() + 200, channel.codes.end(), channel.codes[100]);
   }
   EXPECT_THROW((void)calibrate(silent, {}), InputError);
+  std::vector<Shot> struck = shots;
+  struck[0].meta["striker_speed_m_per_s"] = "12,5";
+  for (Shot& shot : struck) {
+    shot.bench.striker = Striker{Measured{0.2}, shot.bench.input.diameter_m,
+                                 shot.bench.input.density_kg_m3, Measured{12.0, 0.1}};
+  }
+  try {
+    (void)calibrate(struck, {});
+    ADD_FAILURE() << "12,5 is no speed";
+  } catch (const InputError& error) {
+    EXPECT_NE(error.place().find("striker_speed_m_per_s"), std::string::npos) << error.what();
+  }
+  Material of_others = paper_pmma();
+  of_others.density_kg_m3 = {1.1 * shots[0].bench.input.density_kg_m3};
+  CalibrationOptions with_others;
+  with_others.bars = BarPrior(of_others);
+  EXPECT_THROW((void)calibrate(shots, with_others), InputError);
   shots[1].bench_toml += "\n# another\n";
   EXPECT_THROW((void)calibrate(shots, {}), InputError);
 }
