@@ -1,0 +1,63 @@
+#include "drivers/files/models/diagnosis_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+namespace kolsky {
+namespace {
+
+Diagnosis found(DiagnosisVerdict verdict) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = verdict;
+  diagnosis.effects = {"temperature"};
+  diagnosis.tied_with["temperature"] = {"bar-modulus"};
+  diagnosis.after.chi2_reduced = 1.02;
+  diagnosis.after.degrees_of_freedom = 2268.0;
+  diagnosis.held_out = {1.78, 0.99, 1.003};
+  CandidateResult candidate;
+  candidate.effect = "temperature";
+  candidate.unit = "1/K";
+  candidate.strength = 3e-3;
+  candidate.sd = 1e-5;
+  candidate.log_p = -700.0;
+  candidate.verdict = "tied";
+  diagnosis.candidates = {candidate};
+  Model model = paper_model(BenchKind::bar, false);
+  model.effects.push_back(use_named("temperature"));
+  diagnosis.model = model;
+  return diagnosis;
+}
+
+TEST(AddDiagnosis, KeepsAllThatALedgerTellsOfIt) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  add_diagnosis(file, found(DiagnosisVerdict::tied), {}, "live, shots of store");
+  const ModelFile again = parse_model(format_model(file), "m.toml");
+  EXPECT_NE(again.model.find("temperature"), nullptr);
+  ASSERT_EQ(again.history.size(), 1U);
+  const ModelStep& step = again.history.front();
+  EXPECT_EQ(step.action, "diagnose: temperature");
+  EXPECT_TRUE(std::regex_match(step.when, std::regex(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)")))
+      << step.when;
+  EXPECT_EQ(step.note, "live, shots of store");
+  EXPECT_EQ(step.verdict, "tied");
+  EXPECT_EQ(step.added, std::vector<std::string>{"temperature"});
+  EXPECT_EQ(step.fit->chi2_reduced, 1.02);
+  EXPECT_EQ(step.held_out->before, 1.78);
+  EXPECT_EQ(step.held_out->after, 0.99);
+  EXPECT_FALSE(step.seeds.empty());
+  ASSERT_EQ(step.tests.size(), 1U);
+  EXPECT_EQ(step.tests.front().tied_with, std::vector<std::string>{"bar-modulus"});
+}
+
+TEST(AddDiagnosis, LeavesTheModelWhereNothingExplainsTheMisfit) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  add_diagnosis(file, found(DiagnosisVerdict::unknown), {}, "");
+  EXPECT_EQ(file.model.find("temperature"), nullptr);
+  EXPECT_EQ(file.history.front().verdict, "unknown");
+}
+
+}  // namespace
+}  // namespace kolsky
