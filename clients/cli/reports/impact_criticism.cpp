@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "clients/cli/reports/candidates_page.hpp"
+#include "clients/cli/reports/comparison_text.hpp"
 #include "clients/terminal/plot.hpp"
 #include "processing/base/error.hpp"
 
@@ -154,6 +155,17 @@ JsonValue describe_speeds(const ImpactComparison& comparison) {
   return list;
 }
 
+std::string impact_words(const ImpactStudy& study, const Studied& studied) {
+  std::string text = in_words(studied.misfit);
+  if (studied.misfit.repeatable_share > studied.misfit.noise_floor_share) {
+    text.pop_back();  // the full stop
+    text += study.within_calculation(studied.fit.residual)
+                ? ", within what the calculation may be off by."
+                : ", and more than the calculation may be off by.";
+  }
+  return text;
+}
+
 std::string speeds_table(const ImpactComparison& comparison) {
   std::string text =
       fmt::format("  {:>9} {:>6} {:>14} {:>9} {:>9} {:>18} {:>18}  {}\n", "speed m/s", "shots",
@@ -215,8 +227,9 @@ Page impact_page(const std::string& title, const std::string& note,
   return page;
 }
 
-Page impact_diagnosis_page(const std::string& title, ImpactStudy& study, const Model& before,
-                           const Diagnosis& diagnosis) {
+Page impact_diagnosis_page(const std::string& title, const std::vector<double>& times_s,
+                           const Model& before, const Diagnosis& diagnosis,
+                           const ImpactsSeen& seen) {
   Page page;
   page.title = title;
   page.headline = "Verdict: " + kolsky::name_of(diagnosis.verdict);
@@ -232,14 +245,11 @@ Page impact_diagnosis_page(const std::string& title, ImpactStudy& study, const M
   for (const NextExperiment& next : diagnosis.next_experiment) {
     page.notes.push_back("next: " + next.change);
   }
-  const auto times_s = study.residuals().times_s();
-  const Studied first = study.fit(before);
-  page.sections.push_back(speeds_section("Before", study.compare(first), times_s));
+  page.sections.push_back(speeds_section("Before", seen.before, times_s));
   page.sections.push_back(
       {"What might be missing", {}, {}, {}, {candidates_table(diagnosis, "speeds")}});
   if (diagnosis.model && !diagnosis.effects.empty()) {
-    const Studied last = study.fit(*diagnosis.model);
-    page.sections.push_back(speeds_section("With what was found", study.compare(last), times_s));
+    page.sections.push_back(speeds_section("With what was found", seen.after, times_s));
   }
   page.sections.push_back(
       model_section("The model with what was found", diagnosis.model.value_or(before)));

@@ -5,6 +5,7 @@
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/report/html.hpp"
 #include "clients/terminal/terminal.hpp"
+#include "processing/criticism/impact/impact_diagnosis.hpp"
 #include "processing/criticism/impact/impact_study.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 
@@ -19,6 +20,9 @@ void require_kind(const Model& model, const Campaign& campaign);
                                        const Campaign& campaign);
 [[nodiscard]] JsonValue describe_speeds(const ImpactComparison& comparison);
 
+/// A misfit's shares of the signal's energy in a sentence, and what bounds what repeats.
+[[nodiscard]] std::string impact_words(const ImpactStudy& study, const Studied& studied);
+
 /// Speed by speed: misfit, peak forces, restitution.
 [[nodiscard]] std::string speeds_table(const ImpactComparison& comparison);
 /// The places that fail most.
@@ -32,8 +36,10 @@ void require_kind(const Model& model, const Campaign& campaign);
 [[nodiscard]] Page impact_page(const std::string& title, const std::string& note,
                                const ImpactComparison& comparison, ImpactStudy& study,
                                const Model& model);
-/// What `kolsky diagnose --report` writes of impacts. Fits both models again.
-[[nodiscard]] Page impact_diagnosis_page(const std::string& title, ImpactStudy& study,
-                                         const Model& before, const Diagnosis& diagnosis);
+/// What `kolsky diagnose --report` writes of impacts.
+/// @param times_s  of the judged samples, ImpactResiduals::times_s()
+[[nodiscard]] Page impact_diagnosis_page(const std::string& title,
+                                         const std::vector<double>& times_s, const Model& before,
+                                         const Diagnosis& diagnosis, const ImpactsSeen& seen);
 
 }  // namespace kolsky::cli

@@ -11,6 +11,7 @@
 
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/impact/flat_effects.hpp"
 #include "processing/criticism/impact/impact_search.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 
@@ -19,11 +20,12 @@ namespace kolsky {
 namespace {
 
 constexpr double kAllowedRest = 0.03;   ///< of a misfit that certified effects explain
-constexpr double kUnexplained = -9.2;   ///< ln of the chance that noise leaves as much
 constexpr double kSpeedsDiffer = -9.2;  ///< ln of the chance of strengths so different
 constexpr double kWorthAllowing = 0.8;  ///< of the solver's usual share: less is not worth it
-constexpr double kPart = 0.02;  ///< of what an effect explains: no matter where speeds differ
+constexpr double kPart = 0.02;    ///< of what an effect explains: no matter where speeds differ
+constexpr double kPressed = 2.0;  ///< deviations beyond its bound that a law would have to go
 const char* const kReading = "three-dimensional-reading";
+const char* const kLaw = "finite-strain-law";
 constexpr std::array kReadingNames{"full", "bulk-E1", "bulk-Einf", "exact"};
 
 /// chi2 that strengths of their own at every speed would gain over the common one.
@@ -42,6 +44,31 @@ double disagreement(const Studied& studied, const std::string& id, const ImpactR
     q += information > 0.0 ? pull * pull / information : 0.0;
   }
   return q;
+}
+
+/// By how many of its deviations the finite-strain law would leave its bounds if it might: to first
+/// order, from the slope that is left at the bound.
+double law_beyond_bounds(const Studied& studied) {
+  const ModelFit& fit = studied.fit;
+  const std::vector<FreeNumber>& numbers = studied.composition.numbers();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const FreeNumber& own = numbers[i];
+    const double value = own.value_at(fit.theta[i]);
+    const double edge = 1e-6 * (own.upper - own.lower);
+    if (studied.composition.uses()[own.use].id() != kLaw ||
+        (value > own.lower + edge && value < own.upper - edge)) {
+      continue;
+    }
+    const auto at = static_cast<Eigen::Index>(i);
+    double slope = fit.jacobian.col(at).dot(fit.residual);
+    if (own.prior_sd > 0.0) {
+      slope += (value - own.prior_mean) * own.scale / (own.prior_sd * own.prior_sd);
+    }
+    const double variance = fit.covariance(at, at);
+    const double doubt = fit.doubt.size() > 0 ? fit.doubt(at, at) : 0.0;
+    return std::abs(slope) * variance / std::sqrt(variance + doubt);
+  }
+  return 0.0;
 }
 
 double sum(const std::vector<double>& values) {
@@ -77,7 +104,7 @@ class Diagnostician {
   Diagnostician(ImpactStudy& study, const DiagnosisOptions& options)
       : study_(study), options_(options) {}
 
-  Diagnosis run(const Model& model) {
+  Diagnosis run(const Model& model, ImpactsSeen* seen) {
     options_.progress(fmt::format("impacts at {} speeds on {} and {} elements, then the fit",
                                   records().groups.size(), study_.residuals().meshes().fine,
                                   study_.residuals().meshes().middle));
@@ -98,6 +125,12 @@ class Diagnostician {
     weigh_beside_others(first, current);
     weigh_beside_rest(first);
     conclude(first, current);
+    ImpactComparison after = study_.compare(current);
+    note_restitution(after);
+    if (seen != nullptr) {
+      seen->before = diagnosis_.effects.empty() ? after : compared_at_first(first);
+      seen->after = std::move(after);
+    }
     return std::move(diagnosis_);
   }
 
@@ -366,7 +399,7 @@ class Diagnostician {
     diagnosis_.model = current.model;
     const auto [chi2, freedom] = study_.repeated(current.fit.residual);
     const double explained = first.fit.objective() - current.fit.objective();
-    diagnosis_.unexplained_log_p = log_chi2_tail(chi2 / kSolverDoubt, freedom);
+    diagnosis_.unexplained_log_p = study_.unexplained_log_p(current.fit.residual);
     const bool rest = diagnosis_.unexplained_log_p < kUnexplained &&
                       chi2 - freedom > kAllowedRest * std::max(0.0, explained);
     set_held_out(first, current);
@@ -381,7 +414,9 @@ class Diagnostician {
       diagnosis_.effects.clear();
       diagnosis_.tied_with.clear();
     } else if (diagnosis_.effects.empty()) {
-      diagnosis_.verdict = DiagnosisVerdict::adequate;
+      // What a ball lacks may have gone into the law's form, as far as that goes.
+      diagnosis_.verdict = law_beyond_bounds(current) > kPressed ? DiagnosisVerdict::untestable
+                                                                 : DiagnosisVerdict::adequate;
     } else {
       const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                     [](const auto& own) { return !own.second.empty(); });
@@ -457,13 +492,9 @@ class Diagnostician {
           study_.campaign().shots.size() - unsaid, 100.0 * residuals.rebound_sd(),
           ImpactWhitening::kRestitutionDoubt));
     }
-    if (const EffectUse* law = current.model.find("finite-strain-law")) {
-      diagnosis_.notes.push_back(fmt::format(
-          "finite-strain law: {:.2f} ± {:.2f} on the way from Kirchhoff's stress (0) to Cauchy's "
-          "(1)",
-          law->values[0].value, law->values[0].sd));
-    }
+    note_law(current);
     note_friction(current);
+    note_flat_effects(current);
     if (residuals.falling_share() > 0.0) {
       diagnosis_.notes.push_back(fmt::format(
           "at the highest speed {:.2g} % of the softening layer is strained beyond 1/(2|b|), from "
@@ -480,13 +511,22 @@ class Diagnostician {
     for (std::string& line : what_records_hold(study_, current)) {
       diagnosis_.notes.push_back(std::move(line));
     }
-    for (const SpeedSummary& speed : study_.compare(current).speeds) {
+  }
+
+  void note_restitution(const ImpactComparison& comparison) {
+    for (const SpeedSummary& speed : comparison.speeds) {
       if (speed.restitution_measured > 0.0) {
         diagnosis_.notes.push_back(fmt::format(
             "restitution at {:.1f} m/s: {:.4f} foretold, {:.4f} measured", speed.speed_m_per_s,
             speed.restitution_foretold, speed.restitution_measured));
       }
     }
+  }
+
+  /// The first model with the forces that it was fitted with, which are at hand.
+  [[nodiscard]] ImpactComparison compared_at_first(const Studied& first) {
+    study_.residuals().anchor(first.composition, first_anchor_);
+    return study_.compare(first);
   }
 
   /// Friction that is filed within a deviation is fitted, and so it is never missing.
@@ -515,13 +555,46 @@ class Diagnostician {
                       second->friction, second->behind, kStandsBefore * scale_);
     }
     diagnosis_.notes.push_back(std::move(note));
-    const EffectUse* law = current.model.find("finite-strain-law");
-    const EffectParameter& s = law->effect->about().parameters.front();
-    if (law->values[0].value <= s.lower || law->values[0].value >= s.upper) {
-      diagnosis_.notes.emplace_back(
-          "the finite-strain law stands at its bound: friction and moduli, which trade with it, "
-          "may "
-          "be further off than they say");
+  }
+
+  void note_law(const Studied& current) {
+    const EffectUse* law = current.model.find(kLaw);
+    if (law == nullptr) {
+      return;
+    }
+    std::string note = fmt::format(
+        "finite-strain law: {:.2f} ± {:.2f} on the way from Kirchhoff's stress (0) to Cauchy's (1)",
+        law->values[0].value, law->values[0].sd);
+    if (const double beyond = law_beyond_bounds(current); beyond > 0.0) {
+      note += fmt::format(", at its bound, beyond which the records want it by {:.1f} deviations",
+                          beyond);
+      note += beyond > kPressed ? ": something is missing that nothing tested here explains, and "
+                                  "what is fitted took it up"
+                                : "";
+    }
+    diagnosis_.notes.push_back(std::move(note));
+  }
+
+  /// What has no slope at none is not to be excluded by a search that begins there.
+  void note_flat_effects(const Studied& current) {
+    std::vector<std::string> untested;
+    for (const CandidateResult& result : diagnosis_.candidates) {
+      if (result.verdict == "untestable") {
+        untested.push_back(result.effect);
+      }
+    }
+    for (const FlatEffect& flat : flat_effects(study_, current, untested, kStandsBefore * scale_)) {
+      if (!(flat.not_excluded > 0.0)) {
+        continue;
+      }
+      std::string note =
+          fmt::format("cannot exclude {} up to {:.2g} {}, which has no slope at none", flat.id,
+                      flat.not_excluded, flat.unit);
+      if (flat.nearest > 0.0) {
+        note += fmt::format("; at {:.2g} {} chi2 is less by {:.0f}, where {:.0f} tells",
+                            flat.nearest, flat.unit, flat.gain, kStandsBefore * scale_);
+      }
+      diagnosis_.notes.push_back(std::move(note));
     }
   }
 
@@ -569,9 +642,9 @@ class Diagnostician {
 
 }  // namespace
 
-Diagnosis diagnose_impacts(ImpactStudy& study, const Model& model,
-                           const DiagnosisOptions& options) {
-  return Diagnostician(study, options).run(model);
+Diagnosis diagnose_impacts(ImpactStudy& study, const Model& model, const DiagnosisOptions& options,
+                           ImpactsSeen* seen) {
+  return Diagnostician(study, options).run(model, seen);
 }
 
 }  // namespace kolsky

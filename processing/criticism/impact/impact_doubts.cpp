@@ -134,11 +134,7 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
   rebound_sd_ = std::max(rebound_sd_, filed_rebound_sd(records_));
   whitening_ = std::make_unique<ImpactWhitening>(
       records_, shapes, ImpactDoubts{noise, speed_sd_, rebound_sd_, solver_sd_});
-  signal_energy_ = 0.0;
-  for (const std::vector<double>& judged : records_.judged) {
-    const Eigen::Map<const Eigen::VectorXd> y(judged.data(), noise.rows());
-    signal_energy_ += y.dot(noise_inverse_ * y);
-  }
+  energy_ = std::make_unique<ImpactEnergy>(records_, shapes, noise, noise_inverse_, speed_sd_);
 }
 
 void ImpactResiduals::allow(double share, const Composition& composition,

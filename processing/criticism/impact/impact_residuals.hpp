@@ -9,6 +9,7 @@
 #include "processing/base/workers.hpp"
 #include "processing/criticism/fitting/shot_residuals.hpp"
 #include "processing/criticism/impact/ball_runs.hpp"
+#include "processing/criticism/impact/impact_energy.hpp"
 #include "processing/criticism/impact/impact_records.hpp"
 #include "processing/criticism/impact/impact_whitening.hpp"
 #include "processing/waves/transform.hpp"
@@ -114,8 +115,7 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] std::size_t of_gauges() const {
     return records_.window.samples * campaign_.gauges();
   }
-  /// Energy of all records over that of their noise.
-  [[nodiscard]] double signal_energy() const { return signal_energy_; }
+  [[nodiscard]] const ImpactEnergy& energy() const { return *energy_; }
   [[nodiscard]] double speed_sd() const { return speed_sd_; }  ///< relative
   /// Of a rebound speed, relative: what is filed, or how they scatter where that is more.
   [[nodiscard]] double rebound_sd() const { return rebound_sd_; }
@@ -198,6 +198,7 @@ class ImpactResiduals : public ShotResiduals {
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
   std::vector<double> anchored_at_;
   std::unique_ptr<ImpactWhitening> whitening_;
+  std::unique_ptr<ImpactEnergy> energy_;
   Eigen::VectorXd mesh_;  ///< fine less middle, as the groups' mean residuals hold it
   Eigen::MatrixXd noise_inverse_;
   std::vector<Complex> path_;
@@ -209,7 +210,6 @@ class ImpactResiduals : public ShotResiduals {
   double solver_share_ = 1.0;
   double solver_sd_ = 0.0;
   double mesh_difference_ = 0.0;
-  double signal_energy_ = 0.0;
 };
 
 }  // namespace kolsky

@@ -181,6 +181,15 @@ std::pair<double, double> ImpactStudy::repeated(const Eigen::VectorXd& white) co
   return {chi2, freedom};
 }
 
+double ImpactStudy::unexplained_log_p(const Eigen::VectorXd& white) const {
+  const auto [chi2, freedom] = repeated(white);
+  return log_chi2_tail(chi2 / kSolverDoubt, freedom);
+}
+
+bool ImpactStudy::within_calculation(const Eigen::VectorXd& white) const {
+  return !(unexplained_log_p(white) < kUnexplained);
+}
+
 Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
   Misfit misfit;
   const auto shots = static_cast<double>(campaign_.shots.size());
@@ -191,8 +200,10 @@ Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
   misfit.chi2_reduced = white.squaredNorm() / misfit.degrees_of_freedom;
   const auto [chi2, freedom] = repeated(white);
   misfit.noise_scale = all > freedom ? (white.squaredNorm() - chi2) / (all - freedom) : 1.0;
-  misfit.repeatable_share = std::max(0.0, chi2 - freedom) / residuals_.signal_energy();
-  misfit.noise_floor_share = all / residuals_.signal_energy();
+  const ImpactEnergy& energy = residuals_.energy();
+  misfit.repeatable_share =
+      energy.repeated(residuals_.whitening().means_behind(white)) / energy.signal();
+  misfit.noise_floor_share = energy.noise() / energy.signal();
   misfit.repeatable_log_p = log_chi2_tail(chi2 / std::max(1.0, misfit.noise_scale), freedom);
   return misfit;
 }

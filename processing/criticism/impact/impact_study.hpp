@@ -14,6 +14,9 @@ namespace kolsky {
 /// The window of a tile that is a shot's rebound speed, of no gauge.
 inline constexpr const char* kRebound = "rebound";
 
+/// ln of the chance from which on what repeats is called unexplained.
+inline constexpr double kUnexplained = -9.2;
+
 /// What a model of an impact leaves unexplained in a stretch of a gauge's record of one shot, or of
 /// its rebound speed.
 struct ImpactTile {
@@ -97,6 +100,12 @@ class ImpactStudy {
   [[nodiscard]] Misfit misfit_of(const Eigen::VectorXd& white, double used) const;
   /// chi2 of the groups' means and its degrees of freedom: what repeats.
   [[nodiscard]] std::pair<double, double> repeated(const Eigen::VectorXd& white) const;
+
+  /// ln of the chance that noise and the calculation's error, for all it is known to mimic
+  /// (kSolverDoubt), leave as much that repeats.
+  [[nodiscard]] double unexplained_log_p(const Eigen::VectorXd& white) const;
+  /// Whether they may.
+  [[nodiscard]] bool within_calculation(const Eigen::VectorXd& white) const;
 
   [[nodiscard]] const std::optional<SecondMinimum>& second_minimum() const {
     return second_minimum_;

@@ -38,13 +38,13 @@ ImpactWhitening::ImpactWhitening(const ImpactRecords& records,
   set_own(shapes, doubts);
   set_shared(shapes, doubts);
   set_trends();
-  Eigen::MatrixXd means = shared_;
+  mean_covariance_ = shared_;
   for (std::size_t g = 0; g < own_.size(); ++g) {
     const auto at = static_cast<Eigen::Index>(g) * size_;
-    means.block(at, at, size_, size_) +=
+    mean_covariance_.block(at, at, size_, size_) +=
         own_[g] / static_cast<double>(records_.groups[g].shots.size());
   }
-  mean_root_ = symmetric_power(means, -0.5);
+  mean_root_ = symmetric_power(mean_covariance_, -0.5);
 }
 
 void ImpactWhitening::set_own(const std::vector<ImpactShape>& shapes, const ImpactDoubts& doubts) {
@@ -163,6 +163,10 @@ Eigen::MatrixXd ImpactWhitening::means(const Eigen::MatrixXd& white) const {
     }
   }
   return groups;
+}
+
+Eigen::VectorXd ImpactWhitening::means_behind(const Eigen::VectorXd& white) const {
+  return mean_covariance_ * (mean_root_ * means(white));
 }
 
 Eigen::MatrixXd ImpactWhitening::pulls(const Eigen::MatrixXd& jacobian) const {

@@ -58,6 +58,8 @@ class ImpactWhitening {
   /// What white residuals, or derivatives of them, hold of the groups' means, each by itself
   /// with unit variance.
   [[nodiscard]] Eigen::MatrixXd means(const Eigen::MatrixXd& white) const;
+  /// The groups' mean residuals below each other, of which white ones are made.
+  [[nodiscard]] Eigen::VectorXd means_behind(const Eigen::VectorXd& white) const;
   /// The force's part of D as such means have it.
   [[nodiscard]] Eigen::MatrixXd white_force_doubt() const;
   /// Of D, what the calculation may be off by.
@@ -86,7 +88,8 @@ class ImpactWhitening {
   std::vector<Eigen::MatrixXd> trend_roots_;  ///< (S + |v|^2 E)^-1/2
   Eigen::MatrixXd shared_;
   Eigen::MatrixXd solver_;
-  Eigen::MatrixXd mean_root_;  ///< C^-1/2
+  Eigen::MatrixXd mean_covariance_;  ///< C
+  Eigen::MatrixXd mean_root_;        ///< C^-1/2
 };
 
 /// A symmetric matrix's power; eigenvalues that are nothing beside the largest are held there.

@@ -53,6 +53,7 @@ Waterfall waterfall(ImpactStudy& study, const std::vector<LineageStep>& lineage)
   fall.folds = by_speed ? speeds : fall.shots;
   const auto all = static_cast<double>(fall.shots * residuals.per_shot());
   fall.pull_counts = false;
+  fall.allowance = "what the calculation may be off by";
   LeftOnFolds before;
   double penalty = 0.0;
   for (const LineageStep& own : lineage) {
@@ -71,6 +72,7 @@ Waterfall waterfall(ImpactStudy& study, const std::vector<LineageStep>& lineage)
       step.strengths = numbers_of(*use, "");
     }
     penalty = studied.fit.penalty;
+    fall.within_allowance = study.within_calculation(studied.fit.residual);
     before = std::move(left);
     fall.steps.push_back(std::move(step));
   }
@@ -78,7 +80,7 @@ Waterfall waterfall(ImpactStudy& study, const std::vector<LineageStep>& lineage)
   // Arrivals and offsets take up their share of the noise.
   const double left = 1.0 - residuals.eliminated() / static_cast<double>(residuals.per_shot());
   fall.floor = left * (fall.shots > speeds ? rest.noise_scale : 1.0);
-  fall.signal = residuals.signal_energy() / all;
+  fall.signal = residuals.energy().signal() / all;
   fall.repeats = rest.repeatable_share * fall.signal;
   return fall;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "processing/base/error.hpp"
 #include "processing/criticism/impact/impact_whitening.hpp"
@@ -206,6 +207,54 @@ std::vector<Shot> a_few() {
   own.across = 5;
   own.speeds_m_per_s = {31.1};
   return testing::impact_shots(own);
+}
+
+/// Shares of the signal's energy are by what the gauges said, whatever the calculation is allowed
+/// to be off by. White noise hardly reorders them, so that plain sums say nearly the same.
+TEST(ImpactStudy, WhatRepeatsIsAShareOfTheRecordsEnergy) {
+  testing::ImpactWishes own = two_speeds(27, 2);
+  own.across = 6;
+  own.core_b = 0.9;
+  ThrownBalls balls(testing::impact_shots(own), {240, 512, 512});
+  const Studied linear = balls.study.as_it_is(paper_with({}));
+  ImpactResiduals& residuals = balls.study.residuals();
+  const auto foretold = residuals.foretell(linear.composition, linear.fit.theta, 0);
+  const auto size = static_cast<Eigen::Index>(residuals.of_gauges());
+  double repeats = 0.0;
+  double signal = 0.0;
+  for (const SpeedGroup& group : residuals.records().groups) {
+    const auto count = static_cast<double>(group.shots.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    for (const std::size_t n : group.shots) {
+      mean += foretold.residual[n].head(size) / count;
+      for (const double strain : residuals.records().judged[n]) {
+        signal += strain * strain;
+      }
+    }
+    mean.array() -= mean.mean();  // an offset is no misfit
+    repeats += count * mean.squaredNorm();
+  }
+  EXPECT_GT(repeats / signal, 1e-4) << "there is misfit";
+  EXPECT_NEAR(linear.misfit.repeatable_share, repeats / signal, 0.35 * repeats / signal);
+  // A microstrain of white noise through a Gaussian that halves the power at 10 kHz.
+  const double sigma_s = std::sqrt(std::log(2.0)) / (2.0 * std::numbers::pi * 10e3);
+  const double variance = 1e-12 * 1e-6 / (2.0 * std::sqrt(std::numbers::pi) * sigma_s);
+  const double noise = 4.0 * static_cast<double>(size) * variance / signal;
+  EXPECT_GT(linear.misfit.noise_floor_share, 0.5 * noise);
+  EXPECT_LT(linear.misfit.noise_floor_share, 2.0 * noise);
+  EXPECT_GT(linear.misfit.repeatable_share, 20.0 * linear.misfit.noise_floor_share);
+  EXPECT_FALSE(balls.study.within_calculation(linear.fit.residual));
+}
+
+/// Where nothing is hidden the other code's mesh repeats in every shot, far over the noise: the
+/// calculation may be off by that.
+TEST(ImpactStudy, AnotherCodesMeshRepeatsWithinWhatIsAllowedForTheCalculation) {
+  testing::ImpactWishes own = two_speeds(28, 2);
+  own.across = 7;
+  ThrownBalls balls(testing::impact_shots(own));
+  const Studied studied = balls.study.fit(paper_with({}));
+  EXPECT_GT(studied.misfit.repeatable_share, 2.0 * studied.misfit.noise_floor_share);
+  EXPECT_TRUE(balls.study.within_calculation(studied.fit.residual));
 }
 
 /// What two meshes differ by is told as residuals hold it: each shot's own arrival takes a shift in

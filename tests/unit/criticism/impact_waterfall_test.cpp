@@ -30,6 +30,18 @@ TEST(ImpactWaterfall, FallsToTheNoiseByWhatWasHidden) {
   EXPECT_GT(fall.steps[0].held_out, 3.0 * fall.floor);
   EXPECT_LT(fall.steps[1].held_out, 1.5 * fall.floor);
   EXPECT_GT(fall.closed(), 0.8);
+  // The shares are by the noise alone: what repeats goes as the square of the rms that the speeds
+  // show, and most of it is left by the linear ball at 51 m/s.
+  const auto share = [&](std::size_t step) { return fall.steps[step].misfit.repeatable_share; };
+  const auto noise_share = [&](std::size_t step) {
+    return fall.steps[step].misfit.noise_floor_share;
+  };
+  const SpeedMisfit& fastest = fall.steps[0].speeds[1];
+  EXPECT_GT(share(0) / noise_share(0),
+            0.2 * std::pow(fastest.rms_percent / fastest.noise_percent, 2));
+  EXPECT_GT(share(0), 4.0 * share(1));
+  EXPECT_NEAR(fall.repeats / fall.signal, share(1), 1e-12);
+  EXPECT_TRUE(fall.within_allowance);
   EXPECT_EQ(fall.steps[1].better, 2U);
   EXPECT_NEAR(fall.steps[1].gain / (4.0 * 29.0), fall.steps[0].held_out - fall.steps[1].held_out,
               0.2 * (fall.steps[0].held_out - fall.steps[1].held_out));
