@@ -38,6 +38,11 @@ Target target_of(const Bench& bench, TargetKind kind) {
     throw InputError("bars.input.youngs_modulus_Pa", "is missing: the ball strikes an elastic bar",
                      "give the bar's modulus, or --target rigid");
   }
+  if (bench.input.poisson_ratio.value >= 0.5) {
+    throw InputError("bars.input.poisson_ratio",
+                     in_words(bench.input.poisson_ratio, "") + " has no finite bulk modulus",
+                     "give a ratio below 0.5, or --target rigid");
+  }
   target.diameter_m = bench.input.diameter_m;
   target.length_m = bench.input.length_m;
   target.density_kg_m3 = bench.input.density_kg_m3;
@@ -96,7 +101,6 @@ ImpactModel impact_on(const Bench& bench, const BallMaterial& core, const BallMa
   }
   model.target = target_of(bench, target);
   model.speed_m_per_s = speed_m_per_s;
-  model.output_interval_s = 1.0 / bench.sampling_frequency_Hz;
   return model;
 }
 

@@ -104,6 +104,8 @@ class Body {
 
   /// The element whose area has shrunk most: the inverted one, where there is one.
   [[nodiscard]] ElementIndex most_squeezed() const;
+  /// The element that a wave crosses soonest as it is made: the one that bounds the step.
+  [[nodiscard]] ElementIndex soonest_crossed() const;
   /// "element 12 of row 3 of block 1, at R 2.1 mm, Z 0.4 mm": places in the undeformed body.
   [[nodiscard]] std::string describe(ElementIndex element) const;
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "processing/impact/body.hpp"
 #include "processing/impact/quadrilateral.hpp"
@@ -147,6 +148,31 @@ ElementIndex Body::most_squeezed() const {
     }
   }
   return worst;
+}
+
+ElementIndex Body::soonest_crossed() const {
+  ElementIndex soonest;
+  double least_s2 = std::numeric_limits<double>::infinity();
+  const auto between_m = [&](std::size_t a, std::size_t b) {
+    return std::hypot(mesh_.R_m[a] - mesh_.R_m[b], mesh_.Z_m[a] - mesh_.Z_m[b]);
+  };
+  for (const Range& range : ranges_) {
+    const Block& block = mesh_.blocks[range.region.block];
+    const std::size_t end = range.region.first_row + range.region.rows;
+    for (std::size_t row = range.region.first_row; row < end; ++row) {
+      for (std::size_t column = 0; column < block.columns; ++column) {
+        const auto n = corners(block, column, row);
+        const double area_m2 = std::abs(jacobian_at(mesh_, n, 0.5, 0.5).determinant());
+        const double across_m = area_m2 / std::max(between_m(n[0], n[3]), between_m(n[1], n[2]));
+        const double square_s2 = across_m * across_m / range.wave_speed_squared;
+        if (square_s2 < least_s2) {
+          least_s2 = square_s2;
+          soonest = {range.region.block, column, row};
+        }
+      }
+    }
+  }
+  return soonest;
 }
 
 std::string Body::describe(ElementIndex element) const {

@@ -14,4 +14,13 @@ namespace kolsky::impact {
 [[nodiscard]] std::vector<double> mean_rate(std::span<const double> values, double interval_s,
                                             double window_s);
 
+/// Histories of an impact at another interval, all as long as these two make them.
+/// Means over the intervals round their times, of such means (the first interval begins half way
+/// through it): their sum times the interval stays.
+[[nodiscard]] std::vector<double> means_at(std::span<const double> means, double interval_s,
+                                           double wanted_s);
+/// Values between those known; the last one holds.
+[[nodiscard]] std::vector<double> values_at(std::span<const double> values, double interval_s,
+                                            double wanted_s);
+
 }  // namespace kolsky::impact

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kSafety = 0.85;          // of the critical step; results are the same to 0.95
 constexpr double kFinest = 1e-4;          // of the critical step: what is asked for must end
+constexpr double kLeastStep = 1e-3;       // of the first: a ball that is crushed takes for ever
 constexpr double kPenalty = 0.4;          // of the ball's highest mode, for the nodes in contact
 constexpr int kRoughly = 15;              // Lanczos steps: within a few per cent, for the penalty
 constexpr int kClosely = 32;              // within a thousandth, for the step
@@ -25,6 +26,11 @@ constexpr double kLongest_s = 5e-3;
 constexpr double kClosesWithin = 2e-3;    // of the start's energy: as good as all usual impacts
 constexpr double kNoResultBeyond = 5e-2;  // force and restitution are off by as much and more
 constexpr double kAtTheEdge = 0.95;       // of the way to it: where a patch begins to cross it
+
+// To a hundredth: meshes tell no more.
+std::string millimetres(double length_m) {
+  return in_words(1e-2 * std::round(1e5 * length_m), "mm");
+}
 
 Body make_ball(const ImpactModel& model) {
   std::vector<double> diameters_m;
@@ -121,7 +127,9 @@ class Run {
     first_s_ = least_s_ = model_.time_step_s > 0.0 ? model_.time_step_s : kSafety * critical_s_;
     if (first_s_ > critical_s_) {
       throw InputError(
-          "time_step_s", in_words(first_s_, "s") + " is past stability for this mesh",
+          "time_step_s",
+          in_words(first_s_, "s") + " is past stability at " + when() + ", where " + narrowest() +
+              " is crossed soonest",
           "give at most " + in_words(kSafety * critical_s_, "s") + ", or leave it to the solver");
     }
     if (first_s_ < kFinest * critical_s_) {
@@ -148,6 +156,23 @@ class Run {
     }
     wanted_s_ = kSafety * critical_s;
     least_s_ = std::min(least_s_, wanted_s_);
+    if (wanted_s_ < kLeastStep * first_s_) {
+      refuse_crushed();
+    }
+  }
+
+  // What bounds the step before anything moves.
+  [[nodiscard]] std::string narrowest() const {
+    return ball_share_ < 1.0 ? "the bar's " + bar_->describe(bar_->soonest_crossed())
+                             : ball_.describe(ball_.soonest_crossed());
+  }
+
+  void refuse_crushed() const {
+    throw InputError("impact",
+                     ball_.describe(ball_.most_squeezed()) + " is crushed at " + when() +
+                         ": the stable step is below a thousandth of the first",
+                     std::string(model_.sabot_mass_kg > 0.0 ? "take a lighter sabot, " : "") +
+                         "lower the speed or stiffen the solid");
   }
 
   [[nodiscard]] std::string when() const { return in_words(time_s_, "s"); }
@@ -186,7 +211,8 @@ class Run {
     const double velocity_step_s = steps_ == 0 ? 0.5 * next_s_ : 0.5 * (before_s_ + next_s_);
     energy_.dissipated_J += ball.dissipated_W * velocity_step_s;
     energy_.friction_J += touch_.friction_J;
-    impulse_ += (touch_.force_N - rear_touch_.force_N) * velocity_step_s;
+    impulse_ += touch_.force_N * velocity_step_s;
+    sabot_impulse_ += rear_touch_.force_N * velocity_step_s;
     observer_.add(time_s_, velocity_step_s, touch_, ball_, bar_ ? &*bar_ : nullptr);
     if (survey_) {
       take_stock(ball, bar_stored_J, velocity_step_s);
@@ -277,6 +303,7 @@ class Run {
     const double mass = ball_.mass_kg();
     history.mass_kg = mass;
     history.impulse_N_s = impulse_;
+    history.sabot_impulse_N_s = sabot_impulse_;
     history.release_time_s = last_touch_s_;
     history.rebound_speed_m_per_s = ball_.axial_momentum() / mass;
     history.restitution = history.rebound_speed_m_per_s / model_.speed_m_per_s;
@@ -353,12 +380,18 @@ class Run {
     }
   }
 
+  [[nodiscard]] std::string layer(std::size_t number) const {
+    if (model_.layers.size() != 2) {
+      return "layer " + std::to_string(number + 1);
+    }
+    return number == 0 ? "the core" : "the cover";
+  }
+
   void remark(ImpactHistory& history) const {
     if (crosses_edge(history)) {
-      history.remarks.push_back("the contact patch comes to " +
-                                in_words(1e3 * history.largest_contact_radius_m, "mm") +
-                                " from the ball's axis and the bar's edge lies at " +
-                                in_words(1e3 * nearest_edge_m(), "mm"));
+      history.remarks.push_back(
+          "the contact patch comes to " + millimetres(history.largest_contact_radius_m) +
+          " from the ball's axis and the bar's edge lies at " + millimetres(nearest_edge_m()));
     }
     remark_energy(history);
     remark_reflection(history);
@@ -371,9 +404,8 @@ class Run {
       const Solid& solid = model_.layers[i].solid;
       if (history.falling_share[i] > 0.0) {
         history.remarks.push_back(
-            in_words(0.1 * std::round(1e3 * history.falling_share[i]), "%") + " of layer " +
-            std::to_string(i + 1) + " is strained beyond " +
-            in_words(solid.falls_beyond_strain(), "") +
+            in_words(0.1 * std::round(1e3 * history.falling_share[i]), "%") + " of " + layer(i) +
+            " is strained beyond " + in_words(solid.falls_beyond_strain(), "") +
             ", from where on stress falls with strain at a nonlinearity of " +
             in_words(solid.nonlinearity, "") +
             ": outside of what the law allows, and what is calculated hangs on the mesh");
@@ -383,7 +415,7 @@ class Run {
          ++i) {
       if (history.strained_share[i] > 0.05) {
         history.remarks.push_back(in_words(std::round(100.0 * history.strained_share[i]), "%") +
-                                  " of layer " + std::to_string(i + 1) +
+                                  " of " + layer(i) +
                                   " is beyond a strain of 0.1 at the largest deformation: "
                                   "agreement here does not validate the linear "
                                   "law at small strains, nor its failure refute it");
@@ -402,6 +434,7 @@ class Run {
   double sabot_speed_ = 0.0;
   double initial_J_ = 0.0;
   double impulse_ = 0.0;
+  double sabot_impulse_ = 0.0;
   double work_J_ = 0.0;  // that the ball's elements took up
   EnergyLedger energy_;
   ContactSums touch_;

@@ -57,8 +57,9 @@ struct ImpactHistory {
   std::vector<double>
       strained_share;  ///< by layer: volume beyond 0.1 equivalent Hencky strain at the turn
   std::vector<double>
-      falling_share;  ///< by layer: volume where stress falls with strain, at the turn
-  double impulse_N_s = 0.0;
+      falling_share;               ///< by layer: volume where stress falls with strain, at the turn
+  double impulse_N_s = 0.0;        ///< on the target: force samples times their interval
+  double sabot_impulse_N_s = 0.0;  ///< of a sabot on the ball, towards the target
   double rebound_speed_m_per_s = 0.0;  ///< of the centre of mass
   double restitution = 0.0;
   EnergyLedger energy;

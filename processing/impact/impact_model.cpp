@@ -15,6 +15,7 @@ namespace {
 constexpr std::array kTargetNames = {"rigid", "dashpot", "bar"};
 constexpr double kFastest_m_per_s = 500.0;  // shells of the ball would be shocks long before
 constexpr std::size_t kMostElements = 1'000'000;
+constexpr double kHeaviestSabot_kg = 1.0;
 constexpr double kMostNonlinear = 1e3;  // the step would shrink with its root, and on
 
 void require(bool good, const std::string& place, const std::string& what,
@@ -109,8 +110,9 @@ void check(const ImpactModel& model) {
   require(not_negative(model.friction) && model.friction <= 10.0, "friction",
           in_words(model.friction, "") + " is not a coefficient of friction",
           "give a number from 0 to 10");
-  require(not_negative(model.sabot_mass_kg), "sabot_mass_kg", "is not a mass",
-          "give kilograms, 0 for none");
+  require(not_negative(model.sabot_mass_kg) && model.sabot_mass_kg <= kHeaviestSabot_kg,
+          "sabot_mass_kg", in_words(model.sabot_mass_kg, "kg") + " is no sabot's mass",
+          "give kilograms, at most 1, 0 for none");
   require(not_negative(model.offset_m), "offset_m", "is not a distance", "give metres, 0 or more");
   check_target(model.target, model.offset_m);
   const std::size_t least = least_elements(model.layers.size());

@@ -45,6 +45,9 @@ struct Probe {
   double axial_m = 0.0;
 };
 
+/// Of histories, whatever the bench samples at: a contact lasts some 400 of it.
+inline constexpr double kHistoryInterval_s = 1e-6;
+
 /// One impact, complete: the same model gives the same history, bit for bit, on the same processor.
 struct ImpactModel {
   std::vector<Layer> layers;
@@ -57,7 +60,8 @@ struct ImpactModel {
   std::size_t elements = 2048;          ///< of the ball, about
   std::size_t bar_elements_across = 8;  ///< over the bar's radius; the mesh along it is as fine
   double time_step_s = 0.0;             ///< 0: what stability allows
-  double output_interval_s = 1e-6;
+  double output_interval_s =
+      kHistoryInterval_s;   ///< of the histories, which peak and contact time are of
   double duration_s = 0.0;  ///< 0: until the ball has left (and the gauges have seen it)
 
   std::vector<Probe> probes;

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/impact/quadrilateral.hpp"
+
 namespace kolsky::impact {
 namespace {
 
 constexpr double kContactShare = 0.01;  // of the peak: contact_time_s counts above it
 constexpr double kSmallStrain = 0.1;    // to which the linear laws were identified
 constexpr double kPatchShare = 0.07;    // a probe's patch, of the ball's radius
-
-std::array<std::size_t, 4> corners_round(const Block& block, std::size_t column, std::size_t row) {
-  return {block.node(column, row), block.node(column + 1, row), block.node(column + 1, row + 1),
-          block.node(column, row + 1)};
-}
 
 Field field_of(const Body& ball, double time_s) {
   Field field;
@@ -23,10 +20,11 @@ Field field_of(const Body& ball, double time_s) {
     for (std::size_t row = region.first_row; row < region.first_row + region.rows; ++row) {
       for (std::size_t column = 0; column < block.columns; ++column) {
         FieldElement element;
-        const auto nodes = corners_round(block, column, row);
+        const auto nodes = corners(block, column, row);
+        constexpr std::array<std::size_t, 4> kRound = {0, 1, 3, 2};
         for (std::size_t k = 0; k < 4; ++k) {
-          element.r_m[k] = ball.r_m(nodes[k]);
-          element.z_m[k] = ball.z_m(nodes[k]);
+          element.r_m[k] = ball.r_m(nodes[kRound[k]]);
+          element.z_m[k] = ball.z_m(nodes[kRound[k]]);
         }
         element.axial_stress_Pa = -ball.axial_stress_Pa({region.block, column, row});
         element.layer = region.solid;
@@ -77,7 +75,7 @@ Observer::Patch Observer::patch_round(const Body& ball, const Probe& probe) {
       for (std::size_t column = 0; column < mesh.blocks[b].columns; ++column) {
         double R_m = 0.0;
         double Z_m = 0.0;
-        for (const std::size_t node : corners_round(mesh.blocks[b], column, row)) {
+        for (const std::size_t node : corners(mesh.blocks[b], column, row)) {
           R_m += 0.25 * mesh.R_m[node];
           Z_m += 0.25 * mesh.Z_m[node];
         }

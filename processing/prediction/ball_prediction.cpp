@@ -177,11 +177,15 @@ std::vector<BallPrediction> foretell_impacts(
   for (std::size_t i = 0; i < options.draws; ++i) {
     draws.push_back(materials.next(numbers));
   }
-  const double interval_s = 1.0 / bench.sampling_frequency_Hz;
+  const double interval_s = impact::kHistoryInterval_s;
   const auto run = [&](const Material& core_material, const Material& cover_material,
                        const ForetoldSpeed& asked, double speed_m_per_s, std::size_t elements) {
-    impact::ImpactModel model = impact::impact_on(bench, {core_material, options.reading},
-                                                  {cover_material, options.reading},
+    const auto part = [&](const Material& material) {
+      impact::BallMaterial own{material, options.reading};
+      own.law = options.law;
+      return own;
+    };
+    impact::ImpactModel model = impact::impact_on(bench, part(core_material), part(cover_material),
                                                   impact::TargetKind::dashpot, speed_m_per_s);
     model.friction = options.friction;
     model.elements = elements;

@@ -33,6 +33,7 @@ struct ForetoldSpeed {
 
 struct PredictionOptions {
   impact::Reading reading = impact::Reading::full;
+  impact::FiniteStrain law = impact::FiniteStrain::kirchhoff;
   double friction = 0.3;
   std::size_t draws = 32;
   std::size_t elements = 512;        ///< of the draws

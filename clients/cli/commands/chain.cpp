@@ -35,6 +35,7 @@ struct Settings {
   std::vector<std::string> ball_shots;
   std::optional<std::string> bench;
   std::optional<std::string> reading;
+  std::optional<std::string> law;
   std::optional<double> friction;
   std::optional<std::uint64_t> draws;
   std::optional<std::uint64_t> elements;
@@ -77,6 +78,9 @@ PredictionOptions options_of(const Settings& settings) {
   PredictionOptions options;
   if (settings.reading) {
     options.reading = impact::reading_named(*settings.reading, std::string(kPlace) + "--reading");
+  }
+  if (settings.law) {
+    options.law = impact::finite_strain_named(*settings.law, std::string(kPlace) + "--law");
   }
   options.friction = settings.friction.value_or(options.friction);
   if (!(options.friction >= 0.0 && options.friction <= 2.0)) {
@@ -471,6 +475,10 @@ Command chain_command() {
       option("--reading", "READING",
              "the uniaxial law in three dimensions: full (default), bulk-E1, bulk-Einf, exact",
              &s.reading),
+      option("--law", "STRESS",
+             "what the law gives from Hencky's strain: kirchhoff (default) or cauchy stress, by "
+             "which codes differ",
+             &s.law),
       option("--friction", "MU", "coefficient between ball and bar, 0.3 unless given", &s.friction),
       option("--draws", "N",
              "balls drawn from the specimens' posterior, at each speed; 32 unless given", &s.draws),

@@ -34,6 +34,24 @@ JsonValue describe(const impact::Solid& solid) {
                     {"nonlinearity", solid.nonlinearity}};
 }
 
+JsonValue describe(const impact::Field& field) {
+  JsonList r_m;
+  JsonList z_m;
+  std::vector<double> axial_stress_Pa;
+  JsonList layers;
+  for (const impact::FieldElement& element : field.elements) {
+    r_m.push_back(std::vector<double>(element.r_m.begin(), element.r_m.end()));
+    z_m.push_back(std::vector<double>(element.z_m.begin(), element.z_m.end()));
+    axial_stress_Pa.push_back(element.axial_stress_Pa);
+    layers.push_back(static_cast<std::uint64_t>(element.layer));
+  }
+  return JsonObject{{"time_s", field.time_s},
+                    {"r_m", std::move(r_m)},
+                    {"z_m", std::move(z_m)},
+                    {"axial_stress_Pa", std::move(axial_stress_Pa)},
+                    {"layer", std::move(layers)}};
+}
+
 JsonValue mesh_of(const impact::ImpactHistory& history) {
   return JsonObject{{"elements", static_cast<std::uint64_t>(history.elements)},
                     {"steps", static_cast<std::uint64_t>(history.steps)},
@@ -45,15 +63,21 @@ JsonValue mesh_of(const impact::ImpactHistory& history) {
 
 JsonValue describe(const ImpactRun& run) {
   const impact::ImpactHistory& history = run.history;
+  const double interval_s = run.model.output_interval_s;
+  // Numbers are of the history as it was calculated, lists as the bench samples.
+  const double wanted_s = 1.0 / run.bench.sampling_frequency_Hz;
+  const auto sampled = [&](const std::vector<double>& values) {
+    return impact::values_at(values, interval_s, wanted_s);
+  };
   JsonList probes;
   for (std::size_t i = 0; i < history.probe_strain.size(); ++i) {
     probes.push_back(JsonObject{
         {"name", run.probe_names[i]},
         {"radial_m", run.model.probes[i].radial_m},
         {"axial_m", run.model.probes[i].axial_m},
-        {"strain", history.probe_strain[i]},
+        {"strain", sampled(history.probe_strain[i])},
         {"strain_rate_per_s",
-         impact::mean_rate(history.probe_strain[i], run.model.output_interval_s, kRateWindow_s)}});
+         sampled(impact::mean_rate(history.probe_strain[i], interval_s, kRateWindow_s))}});
   }
   JsonList gauges;
   for (std::size_t i = 0; i < history.gauge_strain.size(); ++i) {
@@ -61,8 +85,17 @@ JsonValue describe(const ImpactRun& run) {
         {"name", run.gauge_names[i]},
         {"position_m", run.model.gauge_positions_m[i]},
         {"strain",
-         impact::low_passed(history.gauge_strain[i], run.model.output_interval_s, kGaugeCutoff_Hz)},
-        {"strain_raw", history.gauge_strain[i]}});
+         sampled(impact::low_passed(history.gauge_strain[i], interval_s, kGaugeCutoff_Hz))},
+        {"strain_raw", sampled(history.gauge_strain[i])}});
+  }
+  JsonList fields;
+  for (const impact::Field& field : history.fields) {
+    fields.push_back(describe(field));
+  }
+  std::vector<double> force_N = impact::means_at(history.force_N, interval_s, wanted_s);
+  std::vector<double> time_s;
+  for (std::size_t n = 0; n < force_N.size(); ++n) {
+    time_s.push_back(static_cast<double>(n) * wanted_s);
   }
   return JsonObject{{"speed_m_per_s", run.model.speed_m_per_s},
                     {"friction", run.model.friction},
@@ -78,6 +111,7 @@ JsonValue describe(const ImpactRun& run) {
                     {"restitution", history.restitution},
                     {"rebound_speed_m_per_s", history.rebound_speed_m_per_s},
                     {"impulse_N_s", history.impulse_N_s},
+                    {"sabot_impulse_N_s", history.sabot_impulse_N_s},
                     {"mass_kg", history.mass_kg},
                     {"mass_from_geometry_kg", run.mass.geometry_kg},
                     {"density_scale", run.mass.density_scale},
@@ -92,9 +126,10 @@ JsonValue describe(const ImpactRun& run) {
                     {"gauge_low_pass_Hz", kGaugeCutoff_Hz},
                     {"probes", std::move(probes)},
                     {"gauges", std::move(gauges)},
-                    {"time_s", history.time_s},
-                    {"force_N", history.force_N},
-                    {"contact_radius_m", history.contact_radius_m}};
+                    {"fields", std::move(fields)},
+                    {"time_s", std::move(time_s)},
+                    {"force_N", std::move(force_N)},
+                    {"contact_radius_m", sampled(history.contact_radius_m)}};
 }
 
 }  // namespace kolsky::cli

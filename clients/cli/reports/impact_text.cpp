@@ -43,12 +43,19 @@ std::string solid_text(const impact::Solid& solid, const impact::BallMaterial& f
 
 std::string energy_text(const impact::EnergyLedger& energy) {
   const auto share = [&](double part_J) { return 100.0 * part_J / energy.initial_J; };
-  return fmt::format(
+  std::string text = fmt::format(
       "of {}: kinetic {:.1f} %, stored {:.1f} %, dissipated {:.1f} %, into the target {:.1f} %, "
-      "friction {:.1f} %; closes to {:.3f} %",
+      "friction {:.1f} %",
       with_unit(energy.initial_J, "J"), share(energy.kinetic_J), share(energy.stored_J),
-      share(energy.dissipated_J), share(energy.radiated_J), share(energy.friction_J),
-      100.0 * std::abs(energy.worst_closure));
+      share(energy.dissipated_J), share(energy.radiated_J), share(energy.friction_J));
+  if (energy.sabot_J > 0.0) {
+    text += fmt::format(", the sabot's {:.1f} %", share(energy.sabot_J));
+  }
+  constexpr double kShown = 0.05;  // %
+  if (share(energy.contact_J) > kShown) {
+    text += fmt::format(", left in the contact {:.1f} %", share(energy.contact_J));
+  }
+  return text + fmt::format("; closes to {:.3f} %", 100.0 * std::abs(energy.worst_closure));
 }
 
 std::string paragraph(const std::string& name, const std::string& text, int columns) {

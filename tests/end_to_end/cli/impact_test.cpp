@@ -1,6 +1,9 @@
 // kolsky impact as a person or a script runs it.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
@@ -74,9 +77,92 @@ TEST(Impact, ReportTellsAPerson) {
       scene::kolsky(impact({"--speed", "51", "--elements", "300", "--reading", "bulk-Einf"}));
   EXPECT_EQ(answer.code, 0) << answer.err;
   for (const char* words : {"restitution", "781.2 MPa at once", "filed E1 987 MPa",
-                            "of layer 1 is beyond", "closes to", "contact force"}) {
+                            "of the core is beyond", "closes to", "contact force"}) {
     EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
   }
+}
+
+/// The shares of the energy that a person reads sum to all of it, the sabot's among them.
+TEST(Impact, SharesOfTheEnergySumToTheWhole) {
+  const Answer answer = scene::kolsky(impact(
+      {"--speed", "40.3", "--elements", "300", "--sabot-mass", "0.002", "--offset", "0.004"}));
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  std::string text = answer.out.substr(answer.out.find("  energy"));
+  text = text.substr(0, text.find("closes to"));
+  double sum = 0.0;
+  for (std::size_t at = text.find(" %"); at != std::string::npos; at = text.find(" %", at + 1)) {
+    sum += std::stod(text.substr(text.find_last_of(" \n", at - 1)));
+  }
+  EXPECT_NEAR(sum, 100.0, 0.5) << text;
+  EXPECT_NE(text.find("the sabot's"), std::string::npos) << text;
+}
+
+TEST(Impact, ListsAreAsTheBenchSamplesAndNumbersAreNot) {
+  const Folder folder;
+  std::string bench = text_of(kBenches + "paper-impact.toml");
+  const std::size_t at = bench.find("sampling_frequency_Hz");
+  bench.replace(at, bench.find('\n', at) - at, "sampling_frequency_Hz = 20e3");
+  folder.write("slow.toml", bench);
+  std::vector<std::string> words = impact({"--speed", "40.3", "--elements", "300", "--json"});
+  const nlohmann::json usual = scene::json_of(scene::kolsky(words));
+  words[2] = folder / "slow.toml";
+  const nlohmann::json slow = scene::json_of(scene::kolsky(words));
+  EXPECT_EQ(slow["peak_force_N"], usual["peak_force_N"]);
+  EXPECT_EQ(slow["contact_time_s"], usual["contact_time_s"]);
+  EXPECT_NEAR(slow["time_s"][1].get<double>(), 50e-6, 1e-12);
+  for (const char* list : {"force_N", "contact_radius_m"}) {
+    EXPECT_EQ(slow[list].size(), slow["time_s"].size()) << list;
+  }
+  double sum = 0.0;
+  for (const double force_N : slow["force_N"]) {
+    sum += 50e-6 * force_N;
+  }
+  EXPECT_NEAR(sum, slow["impulse_N_s"].get<double>(), 1e-6);
+}
+
+TEST(Impact, JsonHoldsTheFieldsAndPointsAskedFor) {
+  const nlohmann::json json =
+      scene::json_of(scene::kolsky(impact({"--speed", "40.3", "--elements", "300", "--json",
+                                           "--field", "1e-4", "--probe", "0.005,0.010"})));
+  ASSERT_EQ(json["fields"].size(), 1U);
+  const nlohmann::json& field = json["fields"][0];
+  EXPECT_NEAR(field["time_s"].get<double>(), 1e-4, 1e-6);
+  for (const char* list : {"r_m", "z_m", "axial_stress_Pa", "layer"}) {
+    EXPECT_EQ(field[list].size(), json["mesh"]["elements"].get<std::size_t>()) << list;
+  }
+  // The quadrilaterals, turned about the axis, are the ball: squeezed by less than a tenth of its
+  // volume. Pappus: area times the way of its centre.
+  double volume_m3 = 0.0;
+  for (std::size_t n = 0; n < field["r_m"].size(); ++n) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double r = field["r_m"][n][k];
+      const double next_r = field["r_m"][n][(k + 1) % 4];
+      const double rise =
+          field["z_m"][n][(k + 1) % 4].get<double>() - field["z_m"][n][k].get<double>();
+      volume_m3 += std::numbers::pi / 3.0 * (r * r + r * next_r + next_r * next_r) * rise;
+    }
+  }
+  EXPECT_NEAR(std::abs(volume_m3), std::numbers::pi / 6.0 * std::pow(0.0427, 3), 0.1 * 4.08e-5);
+  ASSERT_EQ(json["probes"].size(), 1U);
+  EXPECT_EQ(json["probes"][0]["radial_m"], 0.005);
+  EXPECT_EQ(json["probes"][0]["axial_m"], 0.010);
+  EXPECT_TRUE(
+      refused(scene::kolsky(impact({"--speed", "40.3", "--probe", "0.03,0"})), {"--probe"}));
+  EXPECT_TRUE(refused(scene::kolsky(impact({"--speed", "40.3", "--probe", "0.003"})), {"--probe"}));
+}
+
+TEST(Impact, ABarsPoissonRatioIsNamedWithItsFileAndLine) {
+  const Folder folder;
+  std::string bench = text_of(kBenches + "paper-impact.toml");
+  const std::size_t at = bench.find("poisson_ratio");
+  bench.replace(at, bench.find('\n', at) - at, "poisson_ratio = 0.5");
+  folder.write("rubber.toml", bench);
+  std::vector<std::string> words = impact({"--speed", "40.3"});
+  words[2] = folder / "rubber.toml";
+  const auto line =
+      1 + std::count(bench.begin(), bench.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  EXPECT_TRUE(refused(scene::kolsky(words), {"rubber.toml:" + std::to_string(line),
+                                             "bars.input.poisson_ratio", "below 0.5"}));
 }
 
 TEST(Impact, SvgShowsTheBallAndItsScale) {

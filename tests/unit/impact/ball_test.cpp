@@ -134,16 +134,18 @@ TEST(PaperBall, RestitutionFallsWithSpeed) {
   }
 }
 
+// The paper's figure 12: 1500 to 4000 /s. Behind the centre ours, a mean over 20 us, stays below.
 TEST(PaperBall, CoreStrainRatesAreOfThePapersSize) {
   ImpactModel model = paper_impact(40.3);
-  model.elements = 512;
+  model.elements = 2048;
   model.probes = {{0.0, 0.010}, {0.0, 0.0}, {0.0, -0.010}};
   const ImpactHistory history = simulate(model);
-  for (const std::vector<double>& strain : history.probe_strain) {
-    const std::vector<double> rate = mean_rate(strain, model.output_interval_s, 20e-6);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<double> rate =
+        mean_rate(history.probe_strain[i], model.output_interval_s, 20e-6);
     const double largest = *std::max_element(rate.begin(), rate.end());
-    EXPECT_GT(largest, 1000.0);
-    EXPECT_LT(largest, 5000.0);
+    EXPECT_GT(largest, i < 2 ? 1500.0 : 1000.0) << i;
+    EXPECT_LT(largest, i < 2 ? 4000.0 : 1500.0) << i;
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/impact/filter.hpp"
+#include "processing/impact/impact.hpp"
 #include "tests/unit/impact/paper_ball.hpp"
 
 namespace kolsky::impact {
@@ -68,6 +69,64 @@ TEST(BenchImpact, RefusesABarWithoutAModulusUnlessTheTargetIsRigid) {
   bench.ball.reset();
   EXPECT_THROW((void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::rigid, 40.3),
                InputError);
+}
+
+/// What a ball does is no matter of how fast the gauges are read.
+TEST(BenchImpact, NumbersDoNotDependOnTheSamplingRate) {
+  std::vector<ImpactHistory> histories;
+  for (const double rate_Hz : {20e3, 1e6, 1e9}) {
+    Bench bench = paper_bench();
+    bench.sampling_frequency_Hz = rate_Hz;
+    ImpactModel model =
+        impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::dashpot, 40.3);
+    model.elements = 300;
+    histories.push_back(simulate(model));
+  }
+  for (const ImpactHistory& history : histories) {
+    EXPECT_EQ(history.peak_force_N, histories[1].peak_force_N);
+    EXPECT_EQ(history.contact_time_s, histories[1].contact_time_s);
+  }
+}
+
+TEST(BenchImpact, ABarWithoutABulkModulusIsRefusedByItsKey) {
+  Bench bench = paper_bench();
+  bench.input.poisson_ratio = {0.5};
+  try {
+    (void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::dashpot, 40.3);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "bars.input.poisson_ratio");
+  }
+  EXPECT_NO_THROW((void)impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::rigid, 40.3));
+}
+
+// F = 6 t (s in us), as means over intervals: 0 to 1/2 as over a whole one, then round 1, 2, 3.
+TEST(MeansAt, KeepTheSumAndAreTheMeansOfTheFunction) {
+  const std::vector<double> means{0.75, 6.0, 12.0, 18.0};
+  const auto at = [&](double wanted_s) { return means_at(means, 1e-6, wanted_s); };
+  EXPECT_EQ(at(1e-6), means);
+  // Sums to 0.5, 1.5, 2.5 and 3.5 us: 0.75, 6.75, 18.75, 36.75; between them on a line.
+  const std::vector<double> coarse = at(2e-6);
+  ASSERT_EQ(coarse.size(), 3U);
+  EXPECT_NEAR(coarse[0], 1.5 + 0.375, 1e-9) << "within an interval its mean is all there is";
+  EXPECT_NEAR(coarse[1], 12.0, 1e-9);
+  for (const double wanted_s : {2e-6, 0.5e-6, 0.3e-6, 1.7e-6}) {
+    const std::vector<double> own = at(wanted_s);
+    EXPECT_NEAR(std::accumulate(own.begin(), own.end(), 0.0) * wanted_s, 36.75e-6, 1e-15)
+        << wanted_s;
+  }
+}
+
+TEST(ValuesAt, LieOnTheLineBetweenThem) {
+  const std::vector<double> line{0.0, 2.0, 4.0, 6.0};
+  EXPECT_EQ(values_at(line, 1e-6, 1e-6), line);
+  const std::vector<double> fine = values_at(line, 1e-6, 0.25e-6);
+  ASSERT_GE(fine.size(), 12U);
+  for (std::size_t n = 0; n <= 12; ++n) {
+    EXPECT_NEAR(fine[n], 0.5 * static_cast<double>(n), 1e-9);
+  }
+  EXPECT_EQ(fine.back(), 6.0) << "the last one holds";
+  EXPECT_EQ(fine.size(), means_at(line, 1e-6, 0.25e-6).size());
 }
 
 TEST(LowPass, HasItsCutoffAndKeepsTheMean) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "processing/impact/impact.hpp"
@@ -111,6 +112,16 @@ TEST(Effects, ASabotThatFollowsAddsItsPush) {
   EXPECT_GT(with.rebound_speed_m_per_s, 0.0);
   EXPECT_LT(with.rebound_speed_m_per_s, without.rebound_speed_m_per_s - 0.5);
   EXPECT_LT(std::abs(with.energy.worst_closure), 2e-3);
+  // Samples times interval are the impulse on the target; less the sabot's push they are what turns
+  // the ball round, and the sabot's push is what slows the sabot down.
+  const double sum =
+      std::accumulate(with.force_N.begin(), with.force_N.end(), 0.0) * model.output_interval_s;
+  EXPECT_NEAR(with.impulse_N_s, sum, 1e-9 * sum);
+  EXPECT_NEAR(sum - with.sabot_impulse_N_s, with.mass_kg * (40.3 + with.rebound_speed_m_per_s),
+              1e-3 * sum);
+  const double left_m_per_s = 40.3 - with.sabot_impulse_N_s / model.sabot_mass_kg;
+  EXPECT_NEAR(with.energy.sabot_J, 0.5 * model.sabot_mass_kg * left_m_per_s * left_m_per_s,
+              1e-6 * with.energy.initial_J);
 }
 
 TEST(Effects, OffCentreContactOverhangsAndSaysSo) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 
 #include "processing/base/error.hpp"
 #include "processing/impact/impact.hpp"
@@ -56,6 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"NegativeFriction", [](ImpactModel& m) { m.friction = -0.1; }, "friction"},
         Refusal{"PastTheEdge", [](ImpactModel& m) { m.offset_m = 0.014; }, "offset"},
         Refusal{"NegativeSabot", [](ImpactModel& m) { m.sabot_mass_kg = -1.0; }, "sabot"},
+        Refusal{"SabotOfATon", [](ImpactModel& m) { m.sabot_mass_kg = 1000.0; }, "sabot"},
         Refusal{"TooFewElements", [](ImpactModel& m) { m.elements = 3; }, "elements"},
         Refusal{"NoRoomForRings", [](ImpactModel& m) { m.elements = 64; }, "elements"},
         Refusal{"EnergyThatDoesNotClose",
@@ -92,6 +94,41 @@ TEST(ImpactRun, StopsAtAnInvertedElementWithItsPlaceAndTime) {
     EXPECT_NE(error.problem().find("element"), std::string::npos) << error.what();
     EXPECT_NE(error.problem().find(" s"), std::string::npos) << error.what();
   }
+}
+
+/// What refuses a model says.
+std::string refusal_of(const ImpactModel& model) {
+  try {
+    (void)simulate(model);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Between a wall and a kilogram at 200 m/s: no element turns inside out, and the step goes to
+// nothing.
+TEST(ImpactRun, StopsWhereTheBallIsCrushedWithThePlaceTheTimeAndTheMend) {
+  ImpactModel model = paper_impact(200.0, TargetKind::rigid);
+  model.elements = 300;
+  model.sabot_mass_kg = 1.0;
+  const std::string said = refusal_of(model);
+  for (const char* word : {"element", "is crushed at", " s", "thousandth", "lighter sabot"}) {
+    EXPECT_NE(said.find(word), std::string::npos) << word << "\n" << said;
+  }
+}
+
+TEST(ImpactRun, NamesTheElementThatAStepIsTooLargeForAtTheStart) {
+  ImpactModel model = paper_impact(40.3);
+  model.elements = 256;
+  model.time_step_s = 5e-6;
+  std::string said = refusal_of(model);
+  EXPECT_NE(said.find("at 0 s, where element"), std::string::npos) << said;
+  // On a bar whose elements are the smaller ones it is one of them.
+  model.target.kind = TargetKind::bar;
+  model.target.length_m = 0.3;
+  said = refusal_of(model);
+  EXPECT_NE(said.find("where the bar's element"), std::string::npos) << said;
 }
 
 TEST(ImpactRun, StopsWhereAGivenStepIsOvertakenByTheDeformation) {
