@@ -23,7 +23,10 @@ constexpr double kPanelHeight = 360.0;
 constexpr double kTitleHeight = 34.0;
 constexpr double kNoteHeight = 18.0;
 constexpr double kLegendSample = 22.0;
+constexpr double kLegendGap = 14.0;
+constexpr double kLegendHeight = 17.0;
 constexpr double kCharacterWidth = 6.6;  // of the legend's font, about
+constexpr double kTitleCharacter = 8.0;  // of the title's
 constexpr double kResolution = 0.25;     // of a line, in page units
 constexpr double kPadding = 0.04;        // of the data's span, round the data
 
@@ -39,11 +42,46 @@ AxisRange padded(AxisRange range) {
   return {range.low - margin, range.high + margin};
 }
 
+double legend_width(const std::string& name) {
+  return kCharacterWidth * static_cast<double>(name.size()) + kLegendSample + 5.0 + kLegendGap;
+}
+
+// Series by the lines of the legend above a frame of this width: beside the title where all have
+// room there, else on lines of their own.
+std::vector<std::vector<std::size_t>> legend_lines(const Panel& panel, double width) {
+  std::vector<std::vector<std::size_t>> lines(1);
+  if (panel.series.size() < 2) {
+    return lines;
+  }
+  double wanted = kTitleCharacter * static_cast<double>(panel.title.size());
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    wanted += legend_width(panel.series[i].name);
+    lines[0].push_back(i);
+  }
+  if (wanted <= width) {
+    return lines;
+  }
+  lines = {{}, {}};
+  double used = 0.0;
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    const double own = legend_width(panel.series[i].name);
+    if (used + own > width && !lines.back().empty()) {
+      lines.emplace_back();
+      used = 0.0;
+    }
+    lines.back().push_back(i);
+    used += own;
+  }
+  return lines;
+}
+
 class PanelDrawing {
  public:
   PanelDrawing(const Panel& panel, Frame outer)
       : panel_(panel),
-        frame_{outer.left + 72.0, outer.top + 34.0, outer.width - 92.0, outer.height - 90.0},
+        legend_(legend_lines(panel, outer.width - 92.0)),
+        frame_{outer.left + 72.0, outer.top + 34.0 + below_title(), outer.width - 92.0,
+               outer.height - 90.0 - below_title()},
         x_(lay_out(panel.x, padded(x_range(panel)), 8)),
         y_(lay_out(panel.y, padded(y_range(panel)), 7)) {}
 
@@ -111,26 +149,36 @@ class PanelDrawing {
         x, frame_.bottom() + 38.0, escaped(x_.title), side, y, side, y, escaped(y_.title));
   }
 
-  // Title on the left, legend on the right, both above the frame, so that nothing hides a line.
+  [[nodiscard]] double below_title() const {
+    return kLegendHeight * static_cast<double>(legend_.size() - 1);
+  }
+
+  // Title on the left, legend on the right or below it, both above the frame, so that nothing hides
+  // a line.
   [[nodiscard]] std::string heading() const {
+    const double top = frame_.top - 10.0 - below_title();
     std::string out = fmt::format("<text class=\"title\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n",
-                                  frame_.left, frame_.top - 10.0, escaped(panel_.title));
-    if (panel_.series.size() < 2) {
-      return out;
+                                  frame_.left, top, escaped(panel_.title));
+    for (std::size_t n = 0; n < legend_.size(); ++n) {
+      out += legend_line(legend_[n], top + kLegendHeight * static_cast<double>(n));
     }
+    return out;
+  }
+
+  [[nodiscard]] std::string legend_line(const std::vector<std::size_t>& line, double y) const {
+    std::string out;
     double x = frame_.right();
-    for (std::size_t i = panel_.series.size(); i-- > 0;) {
-      const std::string& name = panel_.series[i].name;
+    for (auto own = line.rbegin(); own != line.rend(); ++own) {
+      const std::string& name = panel_.series[*own].name;
       x -= kCharacterWidth * static_cast<double>(name.size());
-      out += fmt::format("<text class=\"mark\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>", x,
-                         frame_.top - 10.0, escaped(name));
+      out += fmt::format("<text class=\"mark\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>", x, y,
+                         escaped(name));
       x -= kLegendSample + 5.0;
       out += fmt::format(
           "<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" stroke=\"{}\" "
           "stroke-width=\"2\"/>\n",
-          x, frame_.top - 14.0, x + kLegendSample, frame_.top - 14.0,
-          kColours.at(i % kColours.size()));
-      x -= 14.0;
+          x, y - 4.0, x + kLegendSample, y - 4.0, kColours.at(*own % kColours.size()));
+      x -= kLegendGap;
     }
     return out;
   }
@@ -161,6 +209,7 @@ class PanelDrawing {
   }
 
   const Panel& panel_;
+  std::vector<std::vector<std::size_t>> legend_;
   Frame frame_;
   AxisLayout x_;
   AxisLayout y_;

@@ -6,6 +6,7 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "clients/report/polyline.hpp"
@@ -81,6 +82,34 @@ TEST(Svg, IsWellFormedWithTitlesUnitsAndLegend) {
                              "force [kN]", "front", "back", "200"}) {
     EXPECT_TRUE(holds(written, wanted)) << wanted;
   }
+}
+
+// A letter of the title's font is some 7.8 wide (rsvg-convert, DejaVu Sans Bold of 14).
+TEST(Svg, ALegendThatHasNoRoomBesideTheTitleStandsBelowIt) {
+  Figure figure = two_forces();
+  const auto places = [&] {
+    std::map<std::string, PagePoint> found;
+    for (const Tree& text : all(parsed(render_svg(figure)), "text")) {
+      found[text.data()] = {std::stod(text.get<std::string>("<xmlattr>.x")),
+                            std::stod(text.get<std::string>("<xmlattr>.y"))};
+    }
+    return found;
+  };
+  auto at = places();
+  EXPECT_EQ(at["front"].y, at["forces"].y);
+  figure.panels[0].title = "35.65 mm core, friction 0.3";
+  figure.panels[0].series = {{"full", {0.0, 1.0}, {0.0, 1.0}},
+                             {"bulk-E1", {0.0, 1.0}, {0.0, 1.0}},
+                             {"bulk-Einf", {0.0, 1.0}, {0.0, 1.0}},
+                             {"exact", {0.0, 1.0}, {0.0, 1.0}}};
+  at = places();
+  const PagePoint title = at[figure.panels[0].title];
+  const double title_end = title.x + 7.8 * static_cast<double>(figure.panels[0].title.size());
+  for (const Series& series : figure.panels[0].series) {
+    const PagePoint own = at[series.name];
+    EXPECT_TRUE(own.y > title.y + 12.0 || own.x - 30.0 > title_end) << series.name;
+  }
+  EXPECT_LT(at["full"].x, at["exact"].x);
 }
 
 TEST(Svg, DrawsValuesWhereTheAxisSaysTheyAre) {
