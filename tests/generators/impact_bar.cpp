@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "processing/impact/body.hpp"
@@ -13,6 +14,16 @@ using impact::Block;
 using impact::Body;
 
 constexpr double kSafety = 0.8;
+
+std::complex<double> component(const std::vector<double>& samples, double interval_s,
+                               double frequency_Hz) {
+  std::complex<double> sum = 0.0;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    sum += samples[n] * std::polar(1.0, -2.0 * std::numbers::pi * frequency_Hz * interval_s *
+                                            static_cast<double>(n));
+  }
+  return sum;
+}
 
 // Area of the face that each of its nodes answers for, consistent with linear edges.
 std::vector<double> face_areas(const Body& body) {
@@ -64,6 +75,25 @@ BarRecords press(const PressedBar& bar) {
     body.advance(n == 0 ? 0.5 * step_s : step_s, step_s);
   }
   return records;
+}
+
+std::function<double(double)> bell(double length_s, double peak_Pa) {
+  return [=](double t) {
+    const double half = std::sin(std::numbers::pi * t / length_s);
+    return t < length_s ? peak_Pa * half * half : 0.0;
+  };
+}
+
+BarWave wave_between(const BarRecords& records, double distance_m, double frequency_Hz,
+                     double nominal_m_per_s) {
+  const std::complex<double> ratio =
+      component(records.strain[1], records.interval_s, frequency_Hz) /
+      component(records.strain[0], records.interval_s, frequency_Hz);
+  const double foretold = 2.0 * std::numbers::pi * frequency_Hz * distance_m / nominal_m_per_s;
+  const double turns = std::round((foretold + std::arg(ratio)) / (2.0 * std::numbers::pi));
+  const double phase = 2.0 * std::numbers::pi * turns - std::arg(ratio);
+  return {2.0 * std::numbers::pi * frequency_Hz * distance_m / phase,
+          -std::log(std::abs(ratio)) / distance_m};
 }
 
 }  // namespace kolsky::testing

@@ -26,4 +26,17 @@ struct BarRecords {
 
 [[nodiscard]] BarRecords press(const PressedBar& bar);
 
+/// One bell of pressure, sin^2.
+[[nodiscard]] std::function<double(double)> bell(double length_s, double peak_Pa);
+
+struct BarWave {
+  double speed_m_per_s = 0.0;
+  double attenuation_per_m = 0.0;
+};
+
+/// What waves of one frequency do between the first two gauges.
+/// @param nominal_m_per_s  finds the turn of the phase
+[[nodiscard]] BarWave wave_between(const BarRecords& records, double distance_m,
+                                   double frequency_Hz, double nominal_m_per_s);
+
 }  // namespace kolsky::testing

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -14,42 +12,6 @@
 
 namespace kolsky::testing {
 namespace {
-
-struct Wave {
-  double speed_m_per_s;
-  double attenuation_per_m;
-};
-
-std::complex<double> component(const std::vector<double>& samples, double interval_s,
-                               double frequency_Hz) {
-  std::complex<double> sum = 0.0;
-  for (std::size_t n = 0; n < samples.size(); ++n) {
-    sum += samples[n] * std::polar(1.0, -2.0 * std::numbers::pi * frequency_Hz * interval_s *
-                                            static_cast<double>(n));
-  }
-  return sum;
-}
-
-// From two gauges; the nominal speed finds the turn of the phase.
-Wave wave_between(const BarRecords& records, double distance_m, double frequency_Hz,
-                  double nominal_m_per_s) {
-  const std::complex<double> ratio =
-      component(records.strain[1], records.interval_s, frequency_Hz) /
-      component(records.strain[0], records.interval_s, frequency_Hz);
-  const double foretold = 2.0 * std::numbers::pi * frequency_Hz * distance_m / nominal_m_per_s;
-  const double turns = std::round((foretold + std::arg(ratio)) / (2.0 * std::numbers::pi));
-  const double phase = 2.0 * std::numbers::pi * turns - std::arg(ratio);
-  return {2.0 * std::numbers::pi * frequency_Hz * distance_m / phase,
-          -std::log(std::abs(ratio)) / distance_m};
-}
-
-// One bell of pressure.
-std::function<double(double)> bell(double length_s, double peak_Pa) {
-  return [=](double t) {
-    const double half = std::sin(std::numbers::pi * t / length_s);
-    return t < length_s ? peak_Pa * half * half : 0.0;
-  };
-}
 
 constexpr double kTitanium_Pa = 113e9;
 const double kTitanium_m_per_s = std::sqrt(kTitanium_Pa / 4420.0);
@@ -133,7 +95,7 @@ PressedBar pmma(std::size_t across) {
 TEST(PmmaBar, PhaseVelocityAndAttenuationAreTheExactOnes) {
   const BarRecords records = press(pmma(fine_meshes() ? 16 : 8));
   for (const PmmaRow& row : kPmma) {
-    const Wave wave = wave_between(records, 0.3, row.frequency_Hz, row.speed_m_per_s);
+    const BarWave wave = wave_between(records, 0.3, row.frequency_Hz, row.speed_m_per_s);
     EXPECT_NEAR(wave.speed_m_per_s, row.speed_m_per_s, 2e-4 * row.speed_m_per_s);
     EXPECT_NEAR(wave.attenuation_per_m, row.attenuation_per_m, 2e-3 * row.attenuation_per_m);
   }
