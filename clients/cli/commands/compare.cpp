@@ -90,7 +90,7 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
     return kDone;
   }
   context.out << settings.model << ": " << note << "\n"
-              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
+              << misfit_text(studied.misfit) << impact_words(study, studied) << "\n"
               << strained_text(studied.model) << "\n"
               << speeds_table(comparison) << "\n"
               << places_table(comparison, campaign)

@@ -93,11 +93,12 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
   require_kind(model, campaign);
   ImpactStudy study(campaign, judges_whole(model), band_limit_of(settings.band_limit_Hz),
                     all_cores());
-  Diagnosis diagnosis = diagnose_impacts(study, model, options);
+  ImpactsSeen seen;
+  Diagnosis diagnosis = diagnose_impacts(study, model, options, &seen);
   if (settings.report) {
-    replace_file(*settings.report,
-                 render_html(impact_diagnosis_page("What " + settings.model + " lacks", study,
-                                                   model, diagnosis)));
+    replace_file(*settings.report, render_html(impact_diagnosis_page(
+                                       "What " + settings.model + " lacks",
+                                       study.residuals().times_s(), model, diagnosis, seen)));
   }
   return diagnosis;
 }
