@@ -14,7 +14,7 @@
 namespace kolsky::cli {
 namespace {
 
-constexpr std::size_t kNameColumns = 18;
+constexpr std::size_t kNameColumns = 24;
 constexpr std::size_t kVerdictColumns = 6;
 constexpr int kPlotColumns = 100;  // wider gives no better view
 constexpr int kLoopRows = 16;
