@@ -265,7 +265,8 @@ Command selftest_command() {
              "off the effect's null, in its unit; else 0.5, 1, 2 and 4 times what theory calls "
              "identifiable",
              &s.sizes),
-      option("--nulls", "N", "campaigns of fresh noise in which nothing is; else 6", &s.nulls),
+      option("--nulls", "N", "campaigns of fresh noise in which nothing is, at most 10000; else 6",
+             &s.nulls),
       option("--seed", "N", "of the fresh noise; else 1", &s.seed),
       option("--band-limit", "HZ",
              "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};

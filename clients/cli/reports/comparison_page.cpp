@@ -320,8 +320,10 @@ Page comparison_page(const std::string& title, const std::string& note, Study& s
   page.sections.push_back(misfit_section("How large the misfit is", studied.misfit));
   page.sections.push_back(where_section("Where it is", comparison, campaign));
   page.sections.push_back(records_section(study, studied, comparer, comparison));
-  add_strengths(page, by_strength(comparison, studied.model, campaign), campaign);
-  add_places(page, comparison, campaign);
+  if (fails_anywhere(comparison)) {
+    add_strengths(page, by_strength(comparison, studied.model, campaign), campaign);
+    add_places(page, comparison, campaign);
+  }
   page.sections.push_back({"The model", {}, {}, {}, {effects_table(studied.model)}});
   return page;
 }
