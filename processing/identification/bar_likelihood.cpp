@@ -19,6 +19,8 @@ constexpr std::size_t kLowestBins = 60;
 /// Noise that falls with frequency across these bins leaves much of the loss to those above them:
 /// twice as many are taken then, without which eta2's intervals are 4 % small.
 constexpr std::size_t kLowestBinsUnderFallingNoise = 120;
+/// Bins of the lowest octave, over which residuals are averaged.
+constexpr Eigen::Index kFirstOctave = 2;
 /// Noise counts as slow where neighbouring samples are correlated by more than this.
 constexpr double kSlow = 0.8;
 /// Places at which noise enters, per bin: what moves faster is not in them. With six times as many
@@ -487,9 +489,69 @@ ShotTerms BarLikelihood::terms_of(std::size_t index, const Slopes& slopes, Eight
   return terms;
 }
 
+BarLikelihood::Slopes BarLikelihood::slopes() const {
+  return {model_.derivatives(place_.at, data_.path(), *place_.transfers),
+          model_.derivatives(place_.at, data_.judged_path(), *place_.passages)};
+}
+
+/// The first columns less what the nuisances make of them.
+Eigen::MatrixXd BarLikelihood::without_nuisances(const EightColumns& columns,
+                                                 Eigen::Index count) const {
+  const Eigen::Index nuisances = 1 + others();
+  Eigen::MatrixXd own(rows(), count);
+  Eigen::MatrixXd shared(rows(), nuisances);
+  for (Eigen::Index row = 0; row < rows(); ++row) {
+    for (Eigen::Index c = 0; c < count; ++c) {
+      own(row, c) = columns(row, c);
+    }
+    for (Eigen::Index n = 0; n < nuisances; ++n) {
+      shared(row, n) = place_.nuisances(row, n);
+    }
+  }
+  const Eigen::MatrixXd among =
+      shared.transpose() * shared + Eigen::MatrixXd::Identity(nuisances, nuisances);
+  const Eigen::LLT<Eigen::MatrixXd> known(among);
+  own -= shared * known.solve(shared.transpose() * own);
+  return own;
+}
+
+/// Of the white residuals, by row.
+Eigen::VectorXd BarLikelihood::mean_squares_by_octaves() const {
+  const Eigen::VectorXd squares =
+      without_nuisances(place_.white_residuals, static_cast<Eigen::Index>(place_.shots.size()))
+          .rowwise()
+          .squaredNorm() /
+      static_cast<double>(place_.shots.size());
+  const Eigen::Index per_bin = 2 * others();
+  const Eigen::Index bins = rows() / per_bin;
+  Eigen::VectorXd means(rows());
+  for (Eigen::Index first = 0; first < bins;) {
+    const Eigen::Index last = std::min(bins, std::max(first + kFirstOctave, 2 * first));
+    const Eigen::Index begin = per_bin * first;
+    const Eigen::Index count = per_bin * (last - first);
+    means.segment(begin, count).setConstant(squares.segment(begin, count).mean());
+    first = last;
+  }
+  return means;
+}
+
+Eigen::MatrixXd BarLikelihood::scatter_beyond(double known) {
+  const auto parameters = static_cast<Eigen::Index>(model_.parameters());
+  const Eigen::VectorXd beyond = (mean_squares_by_octaves().array() - known).max(0.0);
+  const Slopes moving = slopes();
+  EightColumns columns(rows(), parameters);
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(parameters, parameters);
+  for (std::size_t index = 0; index < place_.shots.size(); ++index) {
+    put_slopes(index, moving, columns);
+    whiten(columns);
+    const Eigen::MatrixXd own = without_nuisances(columns, parameters);
+    scatter += own.transpose() * beyond.asDiagonal() * own;
+  }
+  return scatter;
+}
+
 std::vector<ShotTerms> BarLikelihood::terms() {
-  const Slopes slopes{model_.derivatives(place_.at, data_.path(), *place_.transfers),
-                      model_.derivatives(place_.at, data_.judged_path(), *place_.passages)};
+  const Slopes slopes = this->slopes();
   EightColumns columns(rows(), static_cast<Eigen::Index>(model_.parameters()) + 2 + others());
   std::vector<ShotTerms> list;
   for (std::size_t index = 0; index < place_.shots.size(); ++index) {

@@ -64,6 +64,13 @@ class BarLikelihood {
   /// gradient . step + step . information . step / 2.
   [[nodiscard]] std::vector<ShotTerms> terms();
 
+  /// What noise beyond the one that the quiet samples show adds to the scatter of all shots'
+  /// gradients, at the place looked at last. A few hundred quiet samples say little of slow noise,
+  /// the residuals do: their mean square by octaves of frequency, over all shots and gauges, is
+  /// what the noise's power is there, in what the weights take it for.
+  /// @param known  mean square that is reckoned with already
+  [[nodiscard]] Eigen::MatrixXd scatter_beyond(double known);
+
  private:
   using Spectrum = BarData::Spectrum;
 
@@ -102,6 +109,10 @@ class BarLikelihood {
   };
   void put_slopes(std::size_t index, const Slopes& slopes, EightColumns& columns);
   [[nodiscard]] ShotTerms terms_of(std::size_t index, const Slopes& slopes, EightColumns& columns);
+  [[nodiscard]] Slopes slopes() const;
+  [[nodiscard]] Eigen::MatrixXd without_nuisances(const EightColumns& columns,
+                                                  Eigen::Index count) const;
+  [[nodiscard]] Eigen::VectorXd mean_squares_by_octaves() const;
 
   const BarData& data_;
   BarJudge judge_;

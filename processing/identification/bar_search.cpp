@@ -206,7 +206,10 @@ BarFit BarSearch::so_far() {
 BarFit BarSearch::finished() {
   minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
   minimise(BarLikelihood::Shots::each, kNegligibleGain);
-  BarFit fit = describe(place_.objective);
+  const auto judged = static_cast<double>(likelihood_.residuals());
+  const double known = std::max(1.0, (place_.objective - prior_.chi2(place_.at)) / judged);
+  const Eigen::MatrixXd scatter = likelihood_.scatter_beyond(known);
+  BarFit fit = describe(place_.objective, &scatter);
   for (const ShotTerms& shot : place_.shots) {
     fit.shots.push_back(estimate_of(shot, place_, prior_, likelihood_));
   }
@@ -214,7 +217,7 @@ BarFit BarSearch::finished() {
 }
 
 /// @param objective  of every shot by itself
-BarFit BarSearch::describe(double objective) const {
+BarFit BarSearch::describe(double objective, const Eigen::MatrixXd* scatter) const {
   const BarModel& model = likelihood_.model();
   const std::size_t solid = model.solid_parameters();
   BarFit fit;
@@ -230,7 +233,11 @@ BarFit BarSearch::describe(double objective) const {
       -0.5 * (objective + static_cast<double>(model.first_unknown()) *
                               std::log(static_cast<double>(likelihood_.residuals())));
   const double widened = std::max(1.0, fit.chi2_reduced);
-  const Eigen::MatrixXd posterior = inverse_of(place_.information) * widened;
+  const Eigen::MatrixXd inverse = inverse_of(place_.information);
+  Eigen::MatrixXd posterior = inverse * widened;
+  if (scatter != nullptr) {
+    posterior += inverse * *scatter * inverse;
+  }
   fit.at.assign(place_.at.data(), place_.at.data() + place_.at.size());
   fit.posterior = rows_of(posterior);
   fit.parameters = numbers_of(model.theory().solid, place_.at, posterior);

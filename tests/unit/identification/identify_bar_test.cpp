@@ -428,6 +428,28 @@ TEST(IdentifyBar, AnElasticBarInPinkNoiseIsNotLossy) {
   EXPECT_TRUE(result.three_element.lossless);
 }
 
+// What a few hundred quiet samples do not show of slow noise, the residuals do. The mean square of
+// twenty deviations exceeds 2.27 by chance once in a thousand times.
+TEST(IdentifyBar, DeviationsHoldInPinkNoise) {
+  constexpr int kRepeats = 20;
+  double squares = 0.0;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    testing::CampaignWishes wishes;
+    wishes.seed = 9000U + static_cast<unsigned>(repeat);
+    wishes.shots = 4;
+    wishes.gauges = 4;
+    wishes.noise_strain = 4e-6;
+    wishes.colour = testing::NoiseColour::pink;
+    wishes.tolerances = testing::Tolerances::filed;
+    const testing::Campaign made = testing::draw_campaign(wishes);
+    const auto result = identify_bar(testing::shots_of(made), {.compare_solids = false});
+    const FittedNumber& E2 = result.three_element.parameters[1];
+    squares += std::pow((E2.value - made.world.material.E2_Pa) / E2.sd, 2);
+  }
+  std::printf("E2 in pink noise: mean square of deviations %.2f\n", squares / kRepeats);
+  EXPECT_LT(squares / kRepeats, 2.27);
+}
+
 /// A bar whose creep is spread over many times, solved in the time domain with 14 of them.
 std::vector<Shot> spread_creep(const std::string& effect) {
   testing::CampaignWishes wishes;
