@@ -480,6 +480,7 @@ void encode(const Reduction& reduction, const std::string& shot_id, v1::Result& 
   message.set_arrival_s(reduction.arrival_s);
   message.set_arrival_sigma_s(reduction.arrival_sigma_s);
   message.set_band_limit_hz(reduction.band_limit_Hz);
+  message.set_quiet_samples(static_cast<std::uint32_t>(reduction.quiet_samples));
   if (reduction.ball) {
     encode(*reduction.ball, *message.mutable_ball());
   }
@@ -501,6 +502,7 @@ Reduction decode(const v1::Result& message) {
   reduction.arrival_s = message.arrival_s();
   reduction.arrival_sigma_s = message.arrival_sigma_s();
   reduction.band_limit_Hz = message.band_limit_hz();
+  reduction.quiet_samples = message.quiet_samples();
   return reduction;
 }
 

@@ -18,7 +18,7 @@ constexpr double kEnergyLimit = 0.05;
 constexpr double kBandLossLimit = 0.02;
 constexpr double kSignalToNoiseLimit_dB = 30.0;
 constexpr double kSignalToNoiseFloor_dB = 15.0;
-constexpr double kOverlapFloor = 0.10;
+constexpr double kOverlapFloor = 5.0;  // limits
 constexpr double kClosureLimit = 0.10;
 constexpr double kSeparationLimit = 0.10;
 constexpr double kSeparationNoiseLimit = 0.02;
@@ -78,30 +78,31 @@ Check signal_to_noise(const QualityInputs& in) {
 }
 
 Check window_overlap(const QualityInputs& in) {
-  Check check{.name = "window_overlap", .limit = kOverlapLimit, .unit = "1", .text = {}};
+  Check check{.name = "window_overlap", .limit = in.push_limit, .unit = "1", .text = {}};
   check.value = in.push_left_share;
-  check.verdict = check.value <= kOverlapLimit   ? Verdict::pass
-                  : check.value <= kOverlapFloor ? Verdict::warn
-                                                 : Verdict::fail;
-  check.text = check.verdict == Verdict::pass
-                   ? formatted(
-                         "the striker has left before the reflection hides its push: %.1f %% of "
-                         "the peak is left "
-                         "(limit %.0f %%)",
-                         100 * check.value, 100 * kOverlapLimit)
-                   : formatted(
-                         "%.1f %% of the striker's push is left when the reflection hides it "
-                         "(limit %.0f %%)",
-                         100 * check.value, 100 * kOverlapLimit) +
-                         ": it takes a shorter pulse, a gauge further from the specimen, or waves "
-                         "told apart by a second place on the input bar (--separate gauges) or the "
-                         "output bar's force (--separate equilibrium)";
+  check.verdict = check.value <= check.limit                   ? Verdict::pass
+                  : check.value <= kOverlapFloor * check.limit ? Verdict::warn
+                                                               : Verdict::fail;
+  check.text =
+      check.verdict == Verdict::pass
+          ? formatted(
+                "the striker has left before the reflection hides its push: %.1f %% of "
+                "the peak is left "
+                "(limit %.1f %%)",
+                100 * check.value, 100 * check.limit)
+          : formatted(
+                "%.1f %% of the striker's push is left when the reflection hides it "
+                "(limit %.1f %%), if it stays %.0f %% of the largest strain is missing",
+                100 * check.value, 100 * check.limit, 100 * check.value * in.strain_per_push) +
+                ": it takes a shorter pulse, a gauge further from the specimen, or waves "
+                "told apart by a second place on the input bar (--separate gauges) or the "
+                "output bar's force (--separate equilibrium)";
   return check;
 }
 
 /// The same where the waves are told apart by more than time.
 Check separated_overlap(const QualityInputs& in) {
-  Check check{.name = "window_overlap", .limit = kOverlapLimit, .unit = "1", .text = {}};
+  Check check{.name = "window_overlap", .limit = in.push_limit, .unit = "1", .text = {}};
   check.value = in.push_left_share;
   const SeparationJudgement& separated = *in.separated;
   check.text = formatted("%.1f %% of the striker's push is left when the reflection hides it",
@@ -339,8 +340,8 @@ Check band(const QualityInputs& in, const Reduction& r) {
   return check;
 }
 
-Check quiet_start(const QualityInputs& in) {
-  const auto samples = static_cast<double>(in.quiet_samples);
+Check quiet_start(const Reduction& r) {
+  const auto samples = static_cast<double>(r.quiet_samples);
   Check check{.name = "quiet_start",
               .value = samples,
               .limit = kFewQuietSamples,
@@ -360,6 +361,12 @@ Verdict Quality::verdict() const {
     worst = std::max(worst, check.verdict);
   }
   return worst;
+}
+
+const Check* Quality::find(const std::string& check) const {
+  const auto at = std::find_if(checks.begin(), checks.end(),
+                               [&](const Check& candidate) { return candidate.name == check; });
+  return at == checks.end() ? nullptr : &*at;
 }
 
 Reduction not_reducible(std::string reason) {
@@ -441,7 +448,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
                               assumed ? untested(separation, Verdict::pass) : separation,
                               energy_balance(inputs, reduction, end),
                               band(inputs, reduction),
-                              quiet_start(inputs)};
+                              quiet_start(reduction)};
   if (inputs.separated) {
     reduction.quality.checks.push_back(separated_noise(*inputs.separated));
   }

@@ -42,7 +42,8 @@ struct SeparationJudgement {
   bool ends_in_loading = false;      ///< the record does, so nothing after it is known
 };
 
-/// Largest share of the striker's push that may be left where the reflection hides it.
+/// Largest share of the strain that what is left of the striker's push may take off it; of the push
+/// itself it is never more.
 inline constexpr double kOverlapLimit = 0.02;
 
 /// What the checks need besides the histories.
@@ -53,6 +54,9 @@ struct QualityInputs {
   double output_noise_rms = 0.0;
   /// What is left of the striker's push, as a share of its peak, at the end of what is known of it.
   double push_left_share = 0.0;
+  double push_limit = kOverlapLimit;  ///< the share that may be left
+  /// What a push that went on at its peak would take off the largest strain, as a share of it.
+  double strain_per_push = 0.0;
   /// Time, as in the histories, from which a gauge holds waves that came back from a far end too.
   double returns_from_s = 0.0;
   bool may_shorten = true;  ///< nobody asked for a duration
@@ -60,7 +64,6 @@ struct QualityInputs {
   FlatTop flat_top{};
   /// Where the waves of both bars were separated: what there is to say of it.
   std::optional<SeparationJudgement> separated{};
-  std::size_t quiet_samples = 0;  ///< before the pulse
   /// Velocity of the front face over the specimen's length, as long as the histories.
   std::vector<double> front_rate_per_s;
   double specimen_length_m = 0.0;

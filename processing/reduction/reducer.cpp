@@ -73,6 +73,10 @@ void Reducer::set_bar_model(const Material& material) {
   state_->options.bar_model = material;
 }
 
+void Reducer::set_push_goes_on(double share) {
+  state_->options.push_goes_on = share;
+}
+
 Reduction Reducer::reduce(const Shot& shot) {
   require_band_of_record(state_->options.band_limit_Hz, shot);
   if (shot.bench.kind == BenchKind::impact) {

@@ -24,6 +24,10 @@ struct ReductionOptions {
   StressFrom stress = StressFrom::both_faces;
   Corrections corrections;  ///< to the stress
   Separation separation = Separation::as_needed;
+  /// How much of what is left of the striker's push where the reflection hides it goes on behind:
+  /// 0 none of it (it is over), 1 all of it, as strong as it was last seen, for as long again as it
+  /// was seen.
+  double push_goes_on = 0.0;
   std::optional<double> duration_s;  ///< of the histories; else until the first wave comes back to
                                      ///< the specimen from a bar's far end, 2 length / front speed;
                                      ///< where waves are separated at least to the end of the first
@@ -49,6 +53,9 @@ class Reducer {
 
   /// Takes viscoelastic bars to be of another material from now on.
   void set_bar_model(const Material& material);
+
+  /// Takes the striker's push to go on by this share from now on.
+  void set_push_goes_on(double share);
 
  private:
   struct State;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct Quality {
 
   /// The worst of the checks; fail when not reducible.
   [[nodiscard]] Verdict verdict() const;
+  /// Null where there is none of that name.
+  [[nodiscard]] const Check* find(const std::string& check) const;
 };
 
 /// How the waves in a bar are told apart where they overlap.
@@ -59,7 +62,14 @@ struct Reduction {
   double arrival_sigma_s = 0.0;
   double band_limit_Hz = 0.0;
   Separation separation = Separation::never;  ///< how waves were separated, never as_needed
-  std::string bar_model{};                    ///< what the bars were taken to be, for people
+  /// Where equilibrium was taken for granted: from when it may be (infinite: nothing says from
+  /// when). 0 where it was not.
+  double assumed_from_s = 0.0;
+  /// What is left of the striker's push, as a share of its peak, where the reflection hides it; 0
+  /// where that does not stand out of the noise.
+  double push_left_share = 0.0;
+  std::size_t quiet_samples = 0;  ///< before the pulse: baselines and noise are theirs
+  std::string bar_model{};        ///< what the bars were taken to be, for people
   Quality quality;
   /// Of a ball on a bar: then everything from `time_s` to `transmitted` is empty.
   std::optional<BallImpact> ball{};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/separated_faces.hpp"
@@ -49,6 +51,7 @@ class Pass {
     }
     transform_records();
     locate_arrival();
+    weigh_hidden_push();
     separate();
     if (!choose_window()) {
       return not_reducible("the record ends before the pulse has loaded the specimen");
@@ -63,6 +66,7 @@ class Pass {
     set_stress(options_.stress, options_.corrections, *shot_.bench.specimen,
                std::span<const double>(front_rate_per_s_).first(reduction_.time_s.size()),
                reduction_);
+    reduction_.assumed_from_s = assumed_from_s();
     return std::move(reduction_);
   }
 
@@ -153,7 +157,8 @@ class Pass {
   double limit_Hz_of_rate() const { return rate_Hz_ / 2.0; }
 
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
-  /// the striker's push, which is over before the hidden part would have started there.
+  /// the striker's push, which is over before the hidden part would have started there, unless it
+  /// is to be taken to go on.
   void complete_incident() {
     const std::span<Complex> incident = in_band(t_.incident);
     t_.transform.forward(incident_strain(), incident);
@@ -161,11 +166,26 @@ class Pass {
     bars_.kernels.push_from_incident(incident);
     const double known =
         static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
-    const auto end = static_cast<std::size_t>(std::max(0.0, known));
-    const std::span<double> push = std::span(t_.history).first(end);
-    t_.transform.inverse(incident, push);
-    judge_push(push);
-    t_.transform.forward(push, incident);
+    push_end_ = std::min(static_cast<std::size_t>(std::max(0.0, known)), shot_.samples());
+    const std::span<double> push = std::span(t_.history).first(shot_.samples());
+    t_.transform.inverse(incident, push.first(push_end_));
+    judge_push(push.first(push_end_));
+    let_push_go_on(push, options_.push_goes_on * push_left_Pa_);
+    incident_from_push(push, incident);
+  }
+
+  /// Behind what is known of it: for as long again as it is known, which is beyond the loading.
+  void let_push_go_on(std::span<double> push_Pa, double stress_Pa) const {
+    const std::span<double> behind = push_Pa.subspan(push_end_);
+    const auto known =
+        static_cast<std::size_t>(std::max(0.0, static_cast<double>(push_end_) - gauge_foot_));
+    const auto end = behind.begin() + static_cast<std::ptrdiff_t>(std::min(known, behind.size()));
+    std::fill(behind.begin(), end, stress_Pa);
+    std::fill(end, behind.end(), 0.0);
+  }
+
+  void incident_from_push(std::span<const double> push_Pa, std::span<Complex> incident) {
+    t_.transform.forward(push_Pa, incident);
     bars_.kernels.incident_from_push(incident);
     t_.band.apply_half(reduction_.band_limit_Hz, incident);
   }
@@ -174,12 +194,56 @@ class Pass {
   /// that it is the push that is judged and not the noise.
   void judge_push(std::span<const double> push) {
     const auto few = std::min(push.size(), static_cast<std::size_t>(10e-6 * rate_Hz_) + 1);
-    double left = 0.0;
     for (const double stress_Pa : push.last(few)) {
-      left += stress_Pa / static_cast<double>(few);
+      push_left_Pa_ += stress_Pa / static_cast<double>(few);
     }
-    const double peak = largest(push);
-    push_left_share_ = peak > 0.0 ? std::abs(left) / peak : 1.0;
+    push_peak_Pa_ = largest(push);
+    push_left_share_ = push_peak_Pa_ > 0.0 ? std::abs(push_left_Pa_) / push_peak_Pa_ : 1.0;
+    // Less than that is the noise's account.
+    constexpr double kStandsOut = 3.0;
+    push_noise_share_ = kStandsOut * input_noise_ / std::max(largest(incident_strain()), 1e-300) /
+                        std::sqrt(static_cast<double>(std::max<std::size_t>(few, 1)));
+    if (push_left_share_ > push_noise_share_) {
+      reduction_.push_left_share = push_left_share_;
+    }
+  }
+
+  /// What a push that went on at its peak would take off the largest strain, as a share of it: all
+  /// of it counts as reflected, and what it would have done at the specimen is missing.
+  void weigh_hidden_push() {
+    const std::size_t begin = std::min(t_.scratch.size(), first_of_histories() + t_.key.delay);
+    const auto many = static_cast<std::size_t>(first_return_s() * rate_Hz_);
+    const std::size_t count = std::min(many, t_.scratch.size() - begin);
+    const std::span<double> rate = std::span(t_.scratch).first(count);
+    carry(&CarryingKernels::strain_rate, rate, begin);
+    double strain = 0.0;
+    double most = 0.0;
+    std::size_t end = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+      strain += sense_ * rate[n];
+      if (strain > most) {
+        most = strain;
+        end = n + 1;
+      }
+    }
+    const std::span<double> push = std::span(t_.scratch).first(shot_.samples());
+    std::fill(push.begin(), push.begin() + static_cast<std::ptrdiff_t>(push_end_), 0.0);
+    let_push_go_on(push, push_peak_Pa_);
+    const std::span<Complex> hidden = in_band(t_.hidden);
+    incident_from_push(push, hidden);
+    std::transform(hidden.begin(), hidden.end(), t_.hidden_in_rest.begin(),
+                   [](Complex value) { return -value; });
+    bars_.kernels.rate_of_front({hidden, in_band(t_.hidden_in_rest), {}}, in_band(t_.work));
+    t_.transform.inverse(in_band(t_.work), rate.first(end), begin);
+    const double missing =
+        std::accumulate(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+    strain_per_push_ = most > 0.0 ? std::abs(missing) / most : 1.0;
+  }
+
+  /// The share of the push that may be left: it takes no more than so much off the largest strain,
+  /// or does not stand out of the noise.
+  [[nodiscard]] double overlap_limit() const {
+    return std::max(kOverlapLimit / std::max(1.0, strain_per_push_), push_noise_share_);
   }
 
   /// t = 0: the foot of the incident pulse after it has been carried to interface A.
@@ -214,7 +278,7 @@ class Pass {
   void separate() {
     Separation how = options_.separation;
     if (how == Separation::as_needed) {
-      how = push_left_share_ > kOverlapLimit && gauges_at_two_places(shot_.bench, "input")
+      how = push_left_share_ > overlap_limit() && gauges_at_two_places(shot_.bench, "input")
                 ? Separation::gauges
                 : Separation::never;
     }
@@ -228,13 +292,10 @@ class Pass {
   /// until the first loading is over if that is later; as far as the record allows: the waves at
   /// the specimen are known up to a front's travel before the record's end.
   bool choose_window() {
-    const Bench& bench = shot_.bench;
     const double arrival = reduction_.arrival_s * rate_Hz_;
-    first_ = static_cast<std::size_t>(std::ceil(arrival));
-    const double first_return_s = 2.0 * std::min(bars_.input.front_time_s(bench.input.length_m),
-                                                 far_end_time_s(bench.output->length_m));
+    first_ = first_of_histories();
     const double duration_s =
-        options_.duration_s.value_or(std::max(first_return_s, first_loading_s()));
+        options_.duration_s.value_or(std::max(first_return_s(), first_loading_s()));
     const double smear = BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
     // Separated waves still ring at the record's end: nothing of that may come back through the
     // filter.
@@ -247,6 +308,16 @@ class Pass {
     }
     count_ = static_cast<std::size_t>(last) - first_;
     return true;
+  }
+
+  [[nodiscard]] std::size_t first_of_histories() const {
+    return static_cast<std::size_t>(std::ceil(reduction_.arrival_s * rate_Hz_));
+  }
+
+  /// From the arrival until the first wave is back at the specimen from a far end.
+  [[nodiscard]] double first_return_s() const {
+    return 2.0 * std::min(bars_.input.front_time_s(shot_.bench.input.length_m),
+                          far_end_time_s(shot_.bench.output->length_m));
   }
 
   /// How far the record tells what happened at the specimen.
@@ -368,12 +439,14 @@ class Pass {
     q.output_peak = largest(std::span<const double>(t_.output_strain).subspan(begin, end - begin));
     q.output_noise_rms = output_noise_;
     q.push_left_share = push_left_share_;
+    q.push_limit = overlap_limit();
+    q.strain_per_push = strain_per_push_;
     q.returns_from_s = 2.0 * std::min(bars_.input.front_time_s(in_.gauge_to_far_end_m),
                                       far_end_time_s(out_.gauge_to_far_end_m));
     q.may_shorten = !options_.duration_s;
     q.missing_s = missing_s_;
     q.flat_top = longest_flat_top(shot_);
-    q.quiet_samples = faces_ ? faces_->quiet : quiet_;
+    reduction_.quiet_samples = faces_ ? faces_->quiet : quiet_;
     const Specimen& specimen = *shot_.bench.specimen;
     q.front_rate_per_s = front_rate_per_s_;
     q.specimen_length_m = specimen.length_m;
@@ -400,6 +473,28 @@ class Pass {
     return judgement;
   }
 
+  /// From when a specimen that was taken to be in equilibrium may be: its own waves have crossed it
+  /// a few times by then, as fast as the modulus has them that its peak stress has over its strain.
+  [[nodiscard]] double assumed_from_s() const {
+    constexpr double kCrossings = 4.0;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    if (reduction_.separation != Separation::equilibrium) {
+      return 0.0;
+    }
+    const Specimen& specimen = *shot_.bench.specimen;
+    const auto end =
+        reduction_.stress_Pa.begin() + static_cast<std::ptrdiff_t>(loading_end(reduction_));
+    const auto peak = std::max_element(reduction_.stress_Pa.begin(), end, [](double a, double b) {
+      return std::abs(a) < std::abs(b);
+    });
+    const double modulus_Pa =
+        *peak / reduction_.strain[static_cast<std::size_t>(peak - reduction_.stress_Pa.begin())];
+    if (!specimen.density_kg_m3 || !(modulus_Pa > 0.0)) {
+      return kUnknown;
+    }
+    return kCrossings * specimen.length_m / std::sqrt(modulus_Pa / *specimen.density_kg_m3);
+  }
+
   const Shot& shot_;
   const Station& in_;
   const Station& out_;
@@ -411,7 +506,12 @@ class Pass {
   double period_s_;
   double sense_ = 1.0;
   double gauge_foot_ = 0.0;
+  std::size_t push_end_ = 0;  ///< of what is known of the push, in samples of its own
+  double push_left_Pa_ = 0.0;
+  double push_peak_Pa_ = 0.0;
   double push_left_share_ = 0.0;
+  double push_noise_share_ = 0.0;  ///< what that must exceed to stand out of the noise
+  double strain_per_push_ = 0.0;
   double band_loss_ = 0.0;
   double strain_before_ = 0.0;
   double missing_s_ = 0.0;

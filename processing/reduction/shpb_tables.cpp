@@ -84,7 +84,9 @@ ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
       incident(transform.bins()),
       rest(transform.bins()),
       output_spectrum(transform.bins()),
-      work(transform.bins()) {
+      work(transform.bins()),
+      hidden(transform.bins()),
+      hidden_in_rest(transform.bins()) {
   for (std::size_t n = 0; n < path.size(); ++n) {
     path[n] = transform.s(n);
   }

@@ -50,7 +50,7 @@ struct ShpbPlans {
   BandLimit band;
   std::vector<Complex> path;
   std::vector<double> input_strain, output_strain, history, scratch;
-  std::vector<Complex> incident, rest, output_spectrum, work;
+  std::vector<Complex> incident, rest, output_spectrum, work, hidden, hidden_in_rest;
 
   explicit ShpbPlans(const ShpbPlanKey& k);
 };

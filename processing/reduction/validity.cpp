@@ -32,12 +32,65 @@ std::vector<double> running_sums(const std::vector<double>& values) {
 }
 
 std::string quote_text(const Quotable& part) {
-  std::array<char, 200> text{};
+  std::array<char, 100> text{};
   (void)std::snprintf(text.data(), text.size(),
-                      "from %.1f to %.1f us, strains of %.3g to %.3g: there both faces carry the "
-                      "same force and the specimen is loaded",
-                      1e6 * part.from_s, 1e6 * part.to_s, part.from_strain, part.to_strain);
-  return text.data();
+                      "from %.1f to %.1f us, strains of %.3g to %.3g: ", 1e6 * part.from_s,
+                      1e6 * part.to_s, part.from_strain, part.to_strain);
+  return text.data() +
+         std::string(part.assumed
+                         ? "there the specimen is loaded and its own waves have crossed it a few "
+                           "times; that both faces carry the same force is assumed, not tested"
+                         : "there both faces carry the same force and the specimen is loaded");
+}
+
+/// Why the strain must not be quoted at all; empty where it may.
+std::string strain_in_doubt(const Reduction& r) {
+  const Check* overlap = r.quality.find("window_overlap");
+  if (overlap != nullptr && overlap->verdict != Verdict::pass &&
+      r.separation == Separation::never) {
+    return overlap->text;
+  }
+  const Check* energy = r.quality.find("energy_balance");
+  return energy != nullptr && energy->verdict != Verdict::pass ? energy->text : std::string();
+}
+
+/// A stretch of the loading, in samples.
+struct Stretch {
+  std::size_t begin = 0;
+  std::size_t count = 0;
+};
+
+/// The longest in which the faces agree throughout.
+Stretch longest_agreement(const Reduction& r, std::size_t end) {
+  const auto apart = disagreement(r);
+  Stretch best;
+  std::size_t from = 0;
+  for (std::size_t n = 0; n + 1 < end; ++n) {
+    if (!(apart[n] <= kEquilibriumLimit)) {
+      from = n + 1;
+    } else if (n + 1 - from > best.count) {
+      best = {from, n + 1 - from};
+    }
+  }
+  return best;
+}
+
+/// The rest of the loading from when equilibrium may be assumed.
+Stretch assumed_agreement(const Reduction& r, std::size_t end) {
+  const auto from = static_cast<std::size_t>(
+      std::lower_bound(r.time_s.begin(), r.time_s.end(), r.assumed_from_s) - r.time_s.begin());
+  return from + 1 < end ? Stretch{from, end - 1 - from} : Stretch{};
+}
+
+const char* nothing_to_quote(const Reduction& r) {
+  if (r.separation != Separation::equilibrium) {
+    return "no part of the curve: the faces never carry the same force while it is loaded";
+  }
+  return std::isfinite(r.assumed_from_s)
+             ? "no part of the curve: that both faces carry the same force is assumed, not tested, "
+               "and the loading is over before the specimen's own waves have crossed it a few times"
+             : "no part of the curve: that both faces carry the same force is assumed, not tested, "
+               "and without specimen.density_kg_m3 nothing says from when that may be";
 }
 
 /// Power of a record by band, over that of its noise [dB].
@@ -90,7 +143,7 @@ class BandPower {
 std::vector<double> disagreement(const Reduction& r) {
   const std::size_t count = std::min(r.force_front_N.size(), r.force_back_N.size());
   std::vector<double> list(r.time_s.size(), std::numeric_limits<double>::quiet_NaN());
-  if (count < 2) {
+  if (count < 2 || r.separation == Separation::equilibrium) {
     return list;
   }
   std::vector<double> difference(count);
@@ -117,27 +170,22 @@ std::vector<double> disagreement(const Reduction& r) {
 
 Quotable quotable_part(const Reduction& r) {
   Quotable part;
-  part.text = "no part of the curve: the faces never carry the same force while it is loaded";
-  const auto apart = disagreement(r);
-  const std::size_t end = loading_end(r);
-  // The longest stretch of the loading in which the faces agree throughout.
-  std::size_t best = 0;
-  std::size_t begin = 0;
-  std::size_t from = 0;
-  for (std::size_t n = 0; n + 1 < end; ++n) {
-    if (!(apart[n] <= kEquilibriumLimit)) {
-      from = n + 1;
-    } else if (n + 1 - from > best) {
-      best = n + 1 - from;
-      begin = from;
-    }
-  }
-  constexpr std::size_t kFewest = 4;
-  if (best < kFewest) {
+  const std::string doubt = strain_in_doubt(r);
+  if (!doubt.empty()) {
+    part.text = "no part of the curve: " + doubt;
     return part;
   }
-  const std::size_t last = begin + best - 1;
-  part = {true, r.time_s[begin], r.time_s[last], r.strain[begin], r.strain[last], {}};
+  part.text = nothing_to_quote(r);
+  const std::size_t end = loading_end(r);
+  const bool assumed = r.separation == Separation::equilibrium;
+  const Stretch best = assumed ? assumed_agreement(r, end) : longest_agreement(r, end);
+  constexpr std::size_t kFewest = 4;
+  if (best.count < kFewest) {
+    return part;
+  }
+  const std::size_t last = best.begin + best.count - 1;
+  part = {true,           assumed, r.time_s[best.begin], r.time_s[last], r.strain[best.begin],
+          r.strain[last], {}};
   part.text = quote_text(part);
   return part;
 }
@@ -149,12 +197,7 @@ SpectralQuality spectral_quality(const Shot& shot, const Reduction& reduction) {
   }
   const Station in = station_on(shot.bench, "input");
   const Station out = station_on(shot.bench, "output");
-  std::size_t quiet = 0;
-  for (const Check& check : reduction.quality.checks) {
-    if (check.name == "quiet_start") {
-      quiet = static_cast<std::size_t>(check.value);
-    }
-  }
+  const std::size_t quiet = reduction.quiet_samples;
   std::vector<double> strain(shot.samples());
   BandPower bands(shot.samples(), shot.rate.period_s(), quiet, 1.5 * reduction.band_limit_Hz);
   read_station(shot, in, quiet, strain);

@@ -9,13 +9,16 @@
 namespace kolsky {
 
 /// Equilibrium over time: |front - back| over the mean of both forces, each averaged over a moving
-/// window. NaN where the mean force is below a twentieth of its peak.
+/// window. NaN where the mean force is below a twentieth of its peak, and where equilibrium was
+/// taken for granted, which leaves nothing to compare.
 [[nodiscard]] std::vector<double> disagreement(const Reduction& reduction);
 
 /// The part of the curve that may be quoted: both faces agree within the limit that `equilibrium`
-/// has for the whole loading, and the strain still grows.
+/// has for the whole loading, or may be assumed to, and the strain still grows. None where the
+/// strain is not to be had: the striker's push hidden by the reflection, or an open energy balance.
 struct Quotable {
   bool any = false;
+  bool assumed = false;  ///< that the faces carry the same force
   double from_s = 0.0;
   double to_s = 0.0;
   double from_strain = 0.0;

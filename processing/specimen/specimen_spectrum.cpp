@@ -54,10 +54,8 @@ std::vector<Reduction> reduce_all(const std::vector<Shot>& shots, const Material
 /// Whether the striker still pushed when the specimen's answer hid it at the gauge.
 bool overlap(const std::vector<Reduction>& reductions) {
   return std::any_of(reductions.begin(), reductions.end(), [](const Reduction& reduction) {
-    return std::any_of(reduction.quality.checks.begin(), reduction.quality.checks.end(),
-                       [](const Check& check) {
-                         return check.name == "window_overlap" && check.verdict != Verdict::pass;
-                       });
+    const Check* check = reduction.quality.find("window_overlap");
+    return check != nullptr && check->verdict != Verdict::pass;
   });
 }
 

@@ -96,15 +96,6 @@ Shot finer(const Shot& shot) {
   return fine;
 }
 
-std::size_t quiet_samples(const Reduction& reduction) {
-  for (const Check& check : reduction.quality.checks) {
-    if (check.name == "quiet_start") {
-      return static_cast<std::size_t>(check.value);
-    }
-  }
-  return 0;
-}
-
 /// The band, the histories' length and how waves are separated are the shot's.
 ReductionOptions held(ReductionOptions options, const Reduction& nominal) {
   options.band_limit_Hz = nominal.band_limit_Hz;
@@ -125,7 +116,7 @@ class Worker {
         nominal_(nominal),
         sources_(sources),
         noise_(shot.samples()) {
-    const std::size_t quiet = quiet_samples(nominal);
+    const std::size_t quiet = nominal.quiet_samples;
     for (const ChannelRecord& channel : fine_) {
       const std::vector<double> codes(channel.codes.begin(),
                                       channel.codes.begin() + static_cast<std::ptrdiff_t>(quiet));
@@ -136,16 +127,16 @@ class Worker {
   /// @param moves  one per source
   /// @param random draws the noise; none: the samples as they are
   Draw draw(const std::vector<double>& moves, RandomStream* random) {
-    Bench bench = shot_.bench;
-    Material bars = *options_.bar_model;
+    ShotNumbers numbers{shot_.bench, *options_.bar_model};
     for (std::size_t i = 0; i < sources_.size(); ++i) {
-      sources_[i].move(bench, bars, moves[i]);
+      sources_[i].move(numbers, moves[i]);
     }
-    moved_.bench = std::move(bench);
+    moved_.bench = std::move(numbers.bench);
     for (std::size_t c = 0; c < fine_.size(); ++c) {
       add_noise(c, random);
     }
-    reducer_.set_bar_model(bars);
+    reducer_.set_bar_model(numbers.bars);
+    reducer_.set_push_goes_on(numbers.push_goes_on);
     const Reduction reduction = reducer_.reduce(moved_);
     Draw result;
     result.good = reduction.quality.reducible && reduction.time_s.size() > 1;
@@ -283,8 +274,11 @@ std::vector<BudgetLine> budget_of(const Campaign& campaign, const std::vector<Dr
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Draw& up = campaign.moved(draws, i, true);
     const Draw& down = campaign.moved(draws, i, false);
+    if (!up.good || !down.good) {
+      continue;
+    }
     Figures& line = variances[sources[i].group];
-    for (std::size_t f = 0; f < kFigures.size() && up.good && down.good; ++f) {
+    for (std::size_t f = 0; f < kFigures.size(); ++f) {
       line[f] += std::pow((up.figures[f] - down.figures[f]) / 2.0, 2);
     }
   }
@@ -309,6 +303,18 @@ std::vector<BudgetLine> budget_of(const Campaign& campaign, const std::vector<Dr
   return budget;
 }
 
+/// Those that cannot be moved by a deviation to both sides without a draw that cannot be reduced.
+std::vector<std::string> uncounted(const Campaign& campaign, const std::vector<Draw>& draws,
+                                   const std::vector<UncertaintySource>& sources) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (!campaign.moved(draws, i, true).good || !campaign.moved(draws, i, false).good) {
+      names.push_back(sources[i].name);
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const Reduction& reduction,
@@ -323,6 +329,9 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   }
   result.sources = uncertainty_sources(shot.bench, wanted.bars.value_or(BarPrior(*told.bar_model)),
                                        wanted.softening_per_K);
+  if (reduction.separation == Separation::never && reduction.push_left_share > 0.0) {
+    result.sources.push_back(hidden_push_source(reduction.push_left_share));
+  }
   const Campaign campaign(wanted.draws, result.sources.size());
   std::vector<Draw> draws(campaign.count());
   workers.run((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk, std::size_t) {
@@ -338,6 +347,7 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   for (const Draw& draw : joint) {
     (draw.good ? result.draws : result.failed) += 1;
   }
+  result.uncounted = uncounted(campaign, draws, result.sources);
   if (result.draws < 2) {
     return result;
   }

@@ -48,6 +48,8 @@ struct Uncertainty {
   std::vector<UncertainFigure> figures;
   std::vector<BudgetLine> budget;  ///< the largest contribution to the first figure first
   std::vector<UncertaintySource> sources;
+  /// Names of sources that the budget lacks: moved by one deviation the shot cannot be reduced.
+  std::vector<std::string> uncounted;
 };
 
 /// Propagates what is filed with a deviation, and the gauges' noise as it is before the pulse,

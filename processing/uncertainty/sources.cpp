@@ -16,8 +16,8 @@ void add(Sources& sources, const Bench& bench, std::string name, std::string gro
   const Measured number = place(copy);
   if (number.sd > 0.0) {
     sources.push_back({std::move(name), std::move(group), number.value, number.sd,
-                       [place = std::move(place)](Bench& moved, Material&, double deviations) {
-                         Measured& at = place(moved);
+                       [place = std::move(place)](ShotNumbers& moved, double deviations) {
+                         Measured& at = place(moved.bench);
                          at.value += deviations * at.sd;
                        }});
   }
@@ -58,8 +58,8 @@ void add_bar(Sources& sources, const Bench& bench, bool input) {
   const Measured diameter = (input ? bench.input : *bench.output).diameter_m;
   if (diameter.sd > 0.0) {
     sources.push_back({name + "diameter_m", "bar diameters", diameter.value, diameter.sd,
-                       [bar](Bench& b, Material&, double deviations) {
-                         Bar& moved = bar(b);
+                       [bar](ShotNumbers& numbers, double deviations) {
+                         Bar& moved = bar(numbers.bench);
                          const double factor =
                              1.0 + deviations * moved.diameter_m.sd / moved.diameter_m.value;
                          moved.diameter_m.value *= factor;
@@ -89,12 +89,12 @@ void add_density(Sources& sources, const Bench& bench, const BarPrior& bars, boo
   if (density.sd > 0.0) {
     sources.push_back({std::string("bars.") + (input ? "input" : "output") + ".density_kg_m3",
                        "bar densities", density.value, density.sd,
-                       [bar, with_moduli](Bench& b, Material& m, double deviations) {
-                         Measured& at = bar(b).density_kg_m3;
+                       [bar, with_moduli](ShotNumbers& moved, double deviations) {
+                         Measured& at = bar(moved.bench).density_kg_m3;
                          const double move = deviations * relative_sd(at);
                          at.value *= 1.0 + move;
                          if (with_moduli) {
-                           scale(m, move, move, move);
+                           scale(moved.bars, move, move, move);
                          }
                        }});
   }
@@ -106,8 +106,8 @@ void add_bar_model(Sources& sources, const Bench& bench, const BarPrior& bars) {
     const Eigen::Vector3d along = directions.col(i);
     if (along.norm() > 0.0) {
       sources.push_back({"bar model, direction " + std::to_string(3 - i), "bar moduli", 0.0,
-                         along.norm(), [along](Bench&, Material& m, double deviations) {
-                           scale(m, deviations * along[0], deviations * along[1],
+                         along.norm(), [along](ShotNumbers& moved, double deviations) {
+                           scale(moved.bars, deviations * along[0], deviations * along[1],
                                  deviations * along[2]);
                          }});
     }
@@ -132,8 +132,8 @@ Sources uncertainty_sources(const Bench& bench, const BarPrior& bars, double sof
   if (viscoelastic && bench.temperature_K && bench.temperature_K->sd > 0.0) {
     const double change = softening_per_K * bench.temperature_K->sd;
     sources.push_back({"temperature_K", "temperature", bench.temperature_K->value,
-                       bench.temperature_K->sd, [change](Bench&, Material& m, double deviations) {
-                         scale(m, -deviations * change, -deviations * change, 0.0);
+                       bench.temperature_K->sd, [change](ShotNumbers& moved, double deviations) {
+                         scale(moved.bars, -deviations * change, -deviations * change, 0.0);
                        }});
   }
   add(sources, bench, "specimen.length_m", "specimen length",
@@ -150,6 +150,11 @@ Sources uncertainty_sources(const Bench& bench, const BarPrior& bars, double sof
         [](Bench& b) -> Measured& { return *b.specimen->poisson_ratio; });
   }
   return sources;
+}
+
+UncertaintySource hidden_push_source(double left_share) {
+  return {kHiddenPush, "rest of the push", 0.0, left_share,
+          [](ShotNumbers& moved, double deviations) { moved.push_goes_on = deviations; }};
 }
 
 }  // namespace kolsky

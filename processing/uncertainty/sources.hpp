@@ -10,6 +10,13 @@
 
 namespace kolsky {
 
+/// What a shot is reduced with, as far as it is not known.
+struct ShotNumbers {
+  Bench bench;
+  Material bars;
+  double push_goes_on = 0.0;  ///< as in ReductionOptions
+};
+
 /// Something that is filed with a standard deviation.
 struct UncertaintySource {
   std::string name;   ///< as in a bench file, "gauges.g1.position_m"
@@ -17,7 +24,7 @@ struct UncertaintySource {
   double value = 0.0;
   double sd = 0.0;  ///< in the unit of the value
   /// Moves it by so many standard deviations.
-  std::function<void(Bench&, Material&, double)> move;
+  std::function<void(ShotNumbers&, double)> move;
 };
 
 /// Everything of a specimen bench and its bars that is filed with a deviation.
@@ -25,5 +32,12 @@ struct UncertaintySource {
 [[nodiscard]] std::vector<UncertaintySource> uncertainty_sources(const Bench& bench,
                                                                  const BarPrior& bars,
                                                                  double softening_per_K);
+
+inline constexpr const char* kHiddenPush = "push_left_share";
+
+/// What is left of the striker's push where the reflection hides it may go on behind: one deviation
+/// is all of it.
+/// @param left_share  of the push's peak
+[[nodiscard]] UncertaintySource hidden_push_source(double left_share);
 
 }  // namespace kolsky

@@ -16,6 +16,7 @@ JsonValue describe(const LoopSummary& summary) {
 
 JsonValue describe(const Quotable& part) {
   return JsonObject{{"any", part.any},
+                    {"assumed", part.assumed},
                     {"from_s", part.from_s},
                     {"to_s", part.to_s},
                     {"from_strain", part.from_strain},

@@ -49,6 +49,11 @@ std::string short_name(std::string figure) {
   return figure;
 }
 
+bool files_a_deviation(const Uncertainty& uncertainty) {
+  return std::any_of(uncertainty.sources.begin(), uncertainty.sources.end(),
+                     [](const UncertaintySource& source) { return source.name != kHiddenPush; });
+}
+
 }  // namespace
 
 void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object) {
@@ -67,7 +72,8 @@ void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object) {
                                  {"failed", static_cast<std::uint64_t>(uncertainty.failed)},
                                  {"coverage", 0.95},
                                  {"figures", figures_json(uncertainty)},
-                                 {"sources", std::move(sources)}}});
+                                 {"sources", std::move(sources)},
+                                 {"uncounted", uncertainty.uncounted}}});
   std::vector<std::string> numbers;
   for (const UncertainFigure& figure : uncertainty.figures) {
     numbers.push_back(figure.name);
@@ -94,9 +100,13 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
     heads.push_back(short_name(figure.name));
   }
   text += budget_table(uncertainty.budget, heads);
-  if (uncertainty.sources.empty()) {
+  for (const std::string& name : uncertainty.uncounted) {
     text +=
-        "    only noise counts: neither bench file nor bar model files a deviation\n"
+        "    not counted: " + name + ", for moved by its deviation the shot cannot be reduced\n";
+  }
+  if (!files_a_deviation(uncertainty)) {
+    text +=
+        "    nothing else counts: neither bench file nor bar model files a deviation\n"
         "    (<key>_sd)\n";
   }
   return text;

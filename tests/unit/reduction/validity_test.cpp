@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "processing/reduction/reducer.hpp"
@@ -84,8 +85,74 @@ TEST(Validity, QuotesNothingWhereTheFacesNeverAgree) {
   EXPECT_TRUE(disagreement({}).empty());
 }
 
+Check judged(const char* name, Verdict verdict) {
+  Check check;
+  check.name = name;
+  check.verdict = verdict;
+  check.text = "is not as it should be";
+  return check;
+}
+
+TEST(Validity, QuotesNoStrainThatAnotherCheckPutsInDoubt) {
+  for (const char* name : {"window_overlap", "energy_balance"}) {
+    Reduction r = by_hand();
+    r.quality.checks = {judged(name, Verdict::pass)};
+    EXPECT_TRUE(quotable_part(r).any) << name;
+    r.quality.checks = {judged(name, Verdict::warn)};
+    EXPECT_FALSE(quotable_part(r).any) << name;
+    EXPECT_NE(quotable_part(r).text.find("is not as it should be"), std::string::npos);
+  }
+  // Waves told apart by more than time: what is left of the push is no harm.
+  Reduction r = by_hand();
+  r.separation = Separation::gauges;
+  r.quality.checks = {judged("window_overlap", Verdict::warn)};
+  EXPECT_TRUE(quotable_part(r).any);
+}
+
+TEST(Validity, SaysThatEquilibriumWasAssumed) {
+  Reduction r = by_hand();
+  r.separation = Separation::equilibrium;
+  r.force_front_N = r.force_back_N;
+  r.assumed_from_s = 60e-6;
+  for (const double apart : disagreement(r)) {
+    EXPECT_TRUE(std::isnan(apart)) << "nothing was compared";
+  }
+  const Quotable part = quotable_part(r);
+  ASSERT_TRUE(part.any);
+  EXPECT_TRUE(part.assumed);
+  EXPECT_NEAR(part.from_s, 60e-6, 1e-6);
+  EXPECT_NEAR(part.to_s, 99e-6, 2e-6);
+  EXPECT_NE(part.text.find("assumed, not tested"), std::string::npos) << part.text;
+  EXPECT_EQ(part.text.find("both faces carry the same force and"), std::string::npos);
+  for (const double never : {150e-6, std::numeric_limits<double>::infinity()}) {
+    r.assumed_from_s = never;
+    EXPECT_FALSE(quotable_part(r).any);
+    EXPECT_NE(quotable_part(r).text.find("assumed, not tested"), std::string::npos);
+  }
+  EXPECT_FALSE(quotable_part(by_hand()).assumed);
+}
+
 Shot shot_of(const testing::LinearShpb& model, double noise) {
   return testing::digitise(model.bench(), model.solve(), noise, 16, 0.005, 1);
+}
+
+// The core's relaxed modulus, 1 / (1/E1 + 1/E2), is the least that its waves can travel by, E1 the
+// most.
+TEST(Validity, EquilibriumIsAssumedAfterFourCrossings) {
+  const testing::LinearShpb model;
+  Shot shot = shot_of(model, 4e-6);
+  ReductionOptions options;
+  options.separation = Separation::equilibrium;
+  const Reduction r = Reducer(options).reduce(shot);
+  const auto crossings_s = [&](double modulus_Pa) {
+    return 4.0 * model.specimen_length_m / std::sqrt(modulus_Pa / model.specimen.density_kg_m3);
+  };
+  EXPECT_LT(r.assumed_from_s, crossings_s(1.0 / (1.0 / 121e6 + 1.0 / 143e6)));
+  EXPECT_GT(r.assumed_from_s, crossings_s(121e6));
+  EXPECT_GE(quotable_part(r).from_s, r.assumed_from_s);
+  EXPECT_EQ(Reducer().reduce(shot).assumed_from_s, 0.0);
+  shot.bench.specimen->density_kg_m3.reset();
+  EXPECT_TRUE(std::isinf(Reducer(options).reduce(shot).assumed_from_s));
 }
 
 TEST(Validity, UsefulBandShrinksAsNoiseGrows) {

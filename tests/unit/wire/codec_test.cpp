@@ -166,6 +166,7 @@ TEST(ReductionCodec, ComesBackExact) {
   EXPECT_EQ(back.arrival_s, reduction.arrival_s);
   EXPECT_EQ(back.arrival_sigma_s, reduction.arrival_sigma_s);
   EXPECT_EQ(back.band_limit_Hz, reduction.band_limit_Hz);
+  EXPECT_EQ(back.quiet_samples, reduction.quiet_samples);
   EXPECT_EQ(back.bar_model, reduction.bar_model);
   EXPECT_EQ(back.quality.reducible, true);
   ASSERT_EQ(back.quality.checks.size(), 2U);

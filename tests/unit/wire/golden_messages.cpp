@@ -207,6 +207,12 @@ v1::Result result() {
   return result;
 }
 
+v1::Result result_with_quiet() {
+  v1::Result with_quiet = result();
+  with_quiet.set_quiet_samples(287);
+  return with_quiet;
+}
+
 v1::Measured measured(double value, double sd) {
   v1::Measured number;
   number.set_value(value);
@@ -504,6 +510,7 @@ std::vector<Fixture> fixtures() {
       fixture("shot", shot()),
       fixture("shot_identified", shot_identified()),
       fixture("result", result()),
+      fixture("result_quiet", result_with_quiet()),
       fixture("result_irreducible", irreducible()),
       fixture("result_ball", ball_result()),
       fixture("fault", fault()),

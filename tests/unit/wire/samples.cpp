@@ -76,6 +76,7 @@ Reduction awkward_reduction(std::size_t samples) {
   reduction.arrival_s = 4.1e-4;
   reduction.arrival_sigma_s = 1.0 / 3e7;
   reduction.band_limit_Hz = 123456.7;
+  reduction.quiet_samples = 287;
   reduction.bar_model = "PMMA";
   reduction.quality.reducible = true;
   reduction.quality.checks = {{"equilibrium", 0.06, 0.05, "1", Verdict::warn, "they differ"},
