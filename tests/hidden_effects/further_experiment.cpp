@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace kolsky::scoring {
 
@@ -85,6 +86,27 @@ void add_gauge(Campaign& campaign, bool far) {
   }
 }
 
+// "in 24 shots", "24 shots like these": the shots there are, over again.
+std::size_t shots_asked(const std::string& proposal) {
+  const std::size_t words = proposal.find(" shots");
+  if (words == std::string::npos) {
+    return 0;
+  }
+  const std::size_t before = proposal.rfind(' ', words - 1);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  return static_cast<std::size_t>(std::atoi(proposal.substr(first, words - first).c_str()));
+}
+
+void repeat_shots(Campaign& campaign, std::size_t count) {
+  auto& shots = campaign.world.shots;
+  const std::size_t there = shots.size();
+  for (std::size_t i = there; i < count; ++i) {
+    const TrueShot again = shots[i % there];
+    shots.push_back(again);
+  }
+  campaign.wishes.shots = static_cast<int>(shots.size());
+}
+
 }  // namespace
 
 std::optional<Campaign> changed_as_proposed(const Campaign& campaign, const std::string& proposal) {
@@ -102,6 +124,10 @@ std::optional<Campaign> changed_as_proposed(const Campaign& campaign, const std:
   make("further gauge", [&] { add_gauge(changed, says(proposal, "larger distance")); });
   make("shorter striker", [&] { stretch_pulses(changed, 0.5); });
   make("longer striker", [&] { stretch_pulses(changed, 1.8); });
+  if (const std::size_t asked = shots_asked(proposal); asked > changed.world.shots.size()) {
+    repeat_shots(changed, asked);
+    made = true;
+  }
   return made ? std::optional(changed) : std::nullopt;
 }
 

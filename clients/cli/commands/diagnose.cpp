@@ -21,6 +21,7 @@
 #include "drivers/files/models/model_file.hpp"
 #include "drivers/files/settings/nearest_name.hpp"
 #include "processing/base/error.hpp"
+#include "processing/criticism/experiment/next_experiment.hpp"
 #include "processing/criticism/impact/impact_diagnosis.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "processing/criticism/verdict/examination.hpp"
@@ -68,7 +69,9 @@ JsonObject describe(const Diagnosis& diagnosis) {
   }
   JsonList next;
   for (const NextExperiment& experiment : diagnosis.next_experiment) {
-    next.push_back(JsonObject{{"change", experiment.change}, {"separates", experiment.separates}});
+    next.push_back(JsonObject{{"change", experiment.change},
+                              {"separates", experiment.separates},
+                              {"deviations", experiment.deviations}});
   }
   const HeldOut& held_out = diagnosis.held_out;
   return JsonObject{{"verdict", kolsky::name_of(diagnosis.verdict)},
@@ -178,6 +181,7 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
   const Campaign campaign = read_campaign(shots);
   Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
   Diagnosis diagnosis = diagnose(study, model, options);
+  diagnosis.next_experiment = next_experiments(study, diagnosis);
   if (settings.report) {
     replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",
                                                               study, model, diagnosis)));

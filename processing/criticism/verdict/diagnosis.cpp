@@ -12,7 +12,6 @@
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
-#include "processing/criticism/verdict/next_experiment.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 
 namespace kolsky {
@@ -402,6 +401,12 @@ class Diagnostician {
                          excess > allowed_rest() * std::max(0.0, explained);
     const std::vector<std::string> reasons =
         options_.safeguards.unknown ? why_unknown(current, remains) : std::vector<std::string>{};
+    // What is claimed itself is no rival of what is claimed beside it.
+    for (auto& [id, ties] : diagnosis_.tied_with) {
+      std::erase_if(ties, [&](const std::string& other) {
+        return std::ranges::count(diagnosis_.effects, other) > 0;
+      });
+    }
     const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
                                   [](const auto& own) { return !own.second.empty(); });
     if (!reasons.empty()) {
@@ -422,9 +427,6 @@ class Diagnostician {
     for (const auto& [id, ties] : diagnosis_.tied_with) {
       for (const std::string& other : ties) {
         set_verdict(other, "tied");
-      }
-      if (!ties.empty()) {
-        diagnosis_.next_experiment.push_back(next_experiment(id, ties, study_.campaign().bench));
       }
     }
     if (study_.campaign().shots.size() < 2) {

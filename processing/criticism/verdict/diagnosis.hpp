@@ -24,6 +24,9 @@ struct HeldOut {
 struct NextExperiment {
   std::string change;
   std::vector<std::string> separates;
+  /// At how many the effect would stand with the nearest rival beside it, in as many shots as now;
+  /// 0: not reckoned.
+  double deviations = 0.0;
 };
 
 struct Diagnosis {
@@ -34,7 +37,7 @@ struct Diagnosis {
   Misfit after;
   HeldOut held_out;
   std::vector<CandidateResult> candidates;
-  std::vector<NextExperiment> next_experiment;
+  std::vector<NextExperiment> next_experiment;  ///< of a ball; else see next_experiments()
   std::vector<std::string> notes;  ///< how it was certified and what limits it, for people
   std::optional<Model> model;      ///< with the certified effects, fitted
   double unexplained_log_p = 0.0;  ///< ln probability of what remains in the final residuals
