@@ -15,13 +15,10 @@ JsonValue describe(const LoopSummary& summary) {
 }
 
 JsonValue describe(const Quotable& part) {
-  return JsonObject{{"any", part.any},
-                    {"assumed", part.assumed},
-                    {"from_s", part.from_s},
-                    {"to_s", part.to_s},
-                    {"from_strain", part.from_strain},
-                    {"to_strain", part.to_strain},
-                    {"text", part.text}};
+  return JsonObject{
+      {"any", part.any},   {"assumed", part.assumed},         {"from_s", part.from_s},
+      {"to_s", part.to_s}, {"from_strain", part.from_strain}, {"to_strain", part.to_strain},
+      {"text", part.text}};
 }
 
 JsonValue describe(const SpectralQuality& quality) {

@@ -203,6 +203,11 @@ TEST_P(FiniteElementShots, AreReducedFromTheirTableToWhatTheModelHad) {
   EXPECT_NE(
       result["quality"]["checks"]["equilibrium"]["text"].get<std::string>().find("not tested"),
       std::string::npos);
+  // From when it may be assumed follows from the specimen's density alone.
+  const json& quotable = result["quality"]["quotable"];
+  EXPECT_EQ(quotable["any"], set.density.has_value());
+  EXPECT_EQ(quotable["assumed"], set.density.has_value());
+  EXPECT_NE(quotable["text"].get<std::string>().find("assumed, not tested"), std::string::npos);
 }
 
 // A person who does not ask for it is told that time alone does not part these waves, and what
