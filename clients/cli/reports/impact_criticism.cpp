@@ -159,8 +159,12 @@ std::string impact_words(const ImpactStudy& study, const Studied& studied) {
   std::string text = in_words(studied.misfit);
   if (studied.misfit.repeatable_share > studied.misfit.noise_floor_share) {
     text.pop_back();  // the full stop
-    text += study.within_calculation(studied.fit.residual)
-                ? ", within what the calculation may be off by."
+    // The places below count what is allowed once, a verdict what such an error may mimic.
+    const bool allowed = studied.misfit.repeatable_log_p >= kUnexplained;
+    text += allowed ? ", within what the calculation may be off by."
+            : study.within_calculation(studied.fit.residual)
+                ? ", more than is allowed for the calculation, yet not beyond what an error of its "
+                  "kind may mimic."
                 : ", and more than the calculation may be off by.";
   }
   return text;

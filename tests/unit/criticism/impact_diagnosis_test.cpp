@@ -49,6 +49,9 @@ Diagnosis diagnosed(const std::vector<Shot>& shots) {
 TEST(ImpactDiagnosis, ALinearBallIsAdequate) {
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(two_speeds(11, 3)));
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
+  const double s = diagnosis.model.value().find("finite-strain-law")->values[0].value;
+  EXPECT_GE(s, 0.0);
+  EXPECT_LE(s, 1.0);
 }
 
 /// A core that stiffens.
@@ -107,6 +110,19 @@ TEST(ImpactDiagnosis, ASecondRelaxationIsFound) {
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
   EXPECT_TRUE(holds(diagnosis, "core-second-relaxation")) << told(diagnosis);
   EXPECT_LT(diagnosis.held_out.after, kHeldOutOfNulls) << told(diagnosis);
+}
+
+/// An offset has no slope at none, and is no candidate. What it does may not go into the law's form
+/// and be called adequate: the law would have to leave the way from Kirchhoff's stress to Cauchy's.
+TEST(ImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
+  testing::ImpactWishes own = two_speeds(17, 3);
+  own.offset_m = 0.007;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+  EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
+  EXPECT_TRUE(diagnosis.effects.empty()) << told(diagnosis);
+  EXPECT_TRUE(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
+    return note.find("cannot exclude off-centre-contact") != std::string::npos;
+  })) << told(diagnosis);
 }
 
 /// The second of two effects is too small for a claim and too large for nothing: it is not passed
