@@ -8,6 +8,7 @@
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/departure.hpp"
 #include "processing/criticism/verdict/distortion.hpp"
 #include "processing/criticism/verdict/wander.hpp"
@@ -19,8 +20,12 @@ namespace {
 /// Degrees of freedom by which the quiet before a single pulse tells slow noise.
 constexpr double kOneStretch = 3.0;
 
-/// How much smooth distortions weigh beside all that is left: they are few, and find what is small.
-constexpr double kOfDistortions = 0.8;
+/// What is asked of the residuals, and how much each question weighs. Smooth distortions are few,
+/// and find what is small; what repeats finds what is of no smooth shape.
+constexpr double kOfDistortions = 0.6;
+constexpr double kOfRepeats = 0.2;
+constexpr double kOfOwnNumbers = 0.1;
+constexpr double kOfAll = 0.1;
 
 /// Columns of one kind of distortion at one place, and where they stand among all.
 struct Kind {
@@ -188,6 +193,60 @@ double log_p_of_all(const Misfit& misfit, std::size_t shots) {
                     freedom * (1.0 - 1.0 / static_cast<double>(shots)));
 }
 
+/// What a shot's residuals hold in the directions of the model's numbers, which all shots share.
+struct InOwnDirections {
+  double square = 0.0;
+  double count = 0.0;
+};
+
+InOwnDirections in_own_directions(const Eigen::MatrixXd& jacobian,
+                                  const Eigen::VectorXd& residual) {
+  constexpr double kResolved = 1e-6;
+  Eigen::MatrixXd columns = jacobian;
+  columns.colwise().normalize();
+  const SymmetricEigen solver(columns.transpose() * columns);
+  const Eigen::VectorXd pull = solver.eigenvectors().transpose() * (columns.transpose() * residual);
+  InOwnDirections own;
+  for (Eigen::Index i = 0; i < pull.size(); ++i) {
+    if (solver.eigenvalues()[i] > kResolved) {
+      own.square += pull[i] * pull[i] / solver.eigenvalues()[i];
+      own.count += 1.0;
+    }
+  }
+  return own;
+}
+
+/// ln of the chance that noise makes the shots ask for numbers so far apart. A model that lacks
+/// what grows with a shot's amplitude fits each by moduli of its own, and leaves little of it.
+double log_p_of_own_numbers(const Study& study, const Studied& studied, std::size_t per_shot,
+                            double known) {
+  const auto shots = static_cast<Eigen::Index>(study.campaign().shots.size());
+  const auto size = static_cast<Eigen::Index>(per_shot);
+  std::vector<Eigen::Index> shared;
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    if (studied.composition.numbers()[i].shot < 0) {
+      shared.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  if (shared.empty() || shots < 3) {
+    return 0.0;
+  }
+  InOwnDirections all;
+  double common = 0.0;
+  for (Eigen::Index n = 0; n < shots; ++n) {
+    const InOwnDirections own =
+        in_own_directions(studied.fit.jacobian(Eigen::seqN(n * size, size), shared),
+                          studied.fit.residual.segment(n * size, size));
+    all.square += own.square;
+    all.count += own.count;
+    common = std::max(common, own.count);
+  }
+  const double freedom = all.count - common;
+  const double noise = noise_of(studied.misfit, study.campaign().shots.size());
+  return freedom > 0.0 ? log_f_tail(all.square / freedom / std::max(1.0, noise), freedom, known)
+                       : 0.0;
+}
+
 }  // namespace
 
 Unexplained unexplained(Study& study, const Studied& studied) {
@@ -219,8 +278,11 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     }
   }
   const double log_p = log_f_tail(found / freedom / noise.power, equal, noise.freedom);
-  const std::array log_ps{combined(log_p, by_kind), log_p_of_all(studied.misfit, shots)};
-  const std::array weights{kOfDistortions, 1.0 - kOfDistortions};
+  const double known = belief_in(distortion_effect(), study.residuals().noise(), shots);
+  const std::array log_ps{combined(log_p, by_kind), studied.misfit.repeatable_log_p,
+                          log_p_of_own_numbers(study, studied, per_shot, known),
+                          log_p_of_all(studied.misfit, shots)};
+  constexpr std::array weights{kOfDistortions, kOfRepeats, kOfOwnNumbers, kOfAll};
   return {combined_log_p(log_ps, weights), std::max(0.0, found / noise.power - freedom)};
 }
 
