@@ -5,8 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/criticism/records/ball_gate.hpp"
@@ -58,20 +60,55 @@ std::vector<double> values_of(const std::vector<double>& record, std::size_t mos
   return values;
 }
 
-/// The step between neighbouring codes where the record takes few enough values to show it.
-double step_of(const std::vector<double>& strain) {
+/// From one value that a record takes to the next, in rising order; none where it takes too many to
+/// show its codes.
+std::vector<double> steps_of(const std::vector<double>& strain) {
   constexpr std::size_t kSamplesPerValue = 4;
   const std::vector<double> values = values_of(strain, strain.size() / kSamplesPerValue);
   if (values.size() < 3) {
-    return 0.0;
+    return {};
   }
   std::vector<double> steps;
   for (std::size_t i = 1; i < values.size(); ++i) {
     steps.push_back(values[i] - values[i - 1]);
   }
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4),
-                   steps.end());
-  return steps[steps.size() / 4];
+  std::ranges::sort(steps);
+  return steps;
+}
+
+/// The step between neighbouring codes where the record takes few enough values to show it.
+double step_of(const std::vector<double>& strain) {
+  const std::vector<double> steps = steps_of(strain);
+  return steps.empty() ? 0.0 : steps[steps.size() / 4];
+}
+
+/// Samples in a row, [first, first + count).
+struct Run {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// How far a parabola through the record on either side of a run goes beyond it: of a
+/// smooth top less than a step between codes, of one that was cut off what is missing.
+double beyond_run(const std::vector<double>& readings, const Run& run) {
+  const std::size_t side = std::clamp<std::size_t>(run.count, 8, 16);
+  const std::size_t end = run.first + run.count;
+  if (run.first < side || end + side > readings.size()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double centre = static_cast<double>(run.first) + 0.5 * static_cast<double>(run.count - 1);
+  const auto rows = static_cast<Eigen::Index>(2 * side);
+  Eigen::MatrixXd powers(rows, 3);
+  Eigen::VectorXd values(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const std::size_t at = k < side ? run.first - side + k : end + k - side;
+    const double x = (static_cast<double>(at) - centre) / static_cast<double>(side);
+    powers.row(i) << 1.0, x, x * x;
+    values[i] = readings[at];
+  }
+  const double extreme = readings[run.first];
+  return std::copysign(1.0, extreme) * (least_squares(powers, values)[0] - extreme);
 }
 
 /// A record that stays at its extreme far longer than it stays anywhere else near it has been cut
@@ -82,24 +119,28 @@ std::size_t flat_top(const std::vector<double>& readings) {
   const double extreme = std::abs(*most) >= std::abs(*least) ? *most : *least;
   /// Longest run of one code, of those that are asked for.
   const auto longest_run = [&](const auto& asked) {
-    std::size_t longest = 0;
+    Run longest;
     std::size_t run = 0;
     for (std::size_t n = 0; n < readings.size(); ++n) {
       run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
-      if (run > longest && asked(readings[n])) {
-        longest = run;
+      if (run > longest.count && asked(readings[n])) {
+        longest = {n + 1 - run, run};
       }
     }
     return longest;
   };
   constexpr std::size_t kLongRun = 8;
-  const std::size_t at_extreme = longest_run([&](double value) { return value == extreme; });
-  if (at_extreme < kLongRun) {
+  constexpr double kSteps = 2.0;
+  const Run top = longest_run([&](double value) { return value == extreme; });
+  const std::size_t at_extreme = top.count;
+  const std::vector<double> steps = steps_of(readings);
+  if (at_extreme < kLongRun ||
+      (!steps.empty() && beyond_run(readings, top) < kSteps * steps.front())) {
     return 0;
   }
   const auto cut_off = [&](double from) {
     const std::size_t elsewhere =
-        longest_run([&](double value) { return value != extreme && std::abs(value) > from; });
+        longest_run([&](double value) { return value != extreme && std::abs(value) > from; }).count;
     return at_extreme > 3 * elsewhere ? at_extreme : 0;
   };
   const std::size_t found = cut_off(0.5 * std::abs(extreme));

@@ -349,7 +349,7 @@ std::vector<double> Search::begin_large(const Candidate& candidate, const Compos
                                         std::size_t worker) const {
   std::vector<double> best;
   double least = HUGE_VAL;
-  for (const double typicals : {3.0, 6.0, 12.0}) {
+  for (const double typicals : {3.0, 6.0, 12.0, 24.0}) {
     std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
     for (std::size_t i = 0; i < start.size(); ++i) {
       const FreeNumber& number = composition.numbers()[i];

@@ -11,10 +11,9 @@ class OutputBarLength final : public Effect {
             .id = "output-bar-length",
             .stage = Stage::bench,
             .definition = "true length of the output bar = filed + delta",
-            .reference = "bench file",
+            .reference = "effects.md, bar-length",
             .kinds = {BenchKind::shpb},
             .parameters = {{"delta", "m", 0.0, -0.2, 0.2, 1e-3, {}}},
-            .base = true,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

@@ -549,16 +549,32 @@ TEST(Examination, SaysSoWhereNoSecondGaugeSeesAnything) {
   EXPECT_EQ(verdict->verdict, DiagnosisVerdict::untestable) << verdict->notes.front();
 }
 
+/// A half sine of 200 samples and a height of so many codes in the place of a channel's pulse.
+void put_half_sine(std::vector<std::int32_t>& codes, double height) {
+  for (std::size_t n = 0; n < codes.size(); ++n) {
+    const double phase = std::numbers::pi * (static_cast<double>(n) - 300.0) / 200.0;
+    const double pulse = n >= 300 && n <= 500 ? std::sin(phase) : 0.0;
+    codes[n] = static_cast<std::int32_t>(std::lround(height * pulse));
+  }
+}
+
+// Nine samples of it are at the top, and no more than two in a row anywhere else.
+TEST(BadData, IsNotARoundTopInStepsThatAreNotCoarse) {
+  Made made = make(83, {});
+  Shot& shot = made.shots.front();
+  put_half_sine(shot.channels[1].codes, 400.4);
+  EXPECT_EQ(bad_data(shot), "");
+}
+
+// In steps of a hundredth of its height 17 are.
 TEST(BadData, IsNotARoundTopInCoarseSteps) {
   Made made = make(83, {});
   Shot& shot = made.shots.front();
   auto& codes = shot.channels[1].codes;
   const auto top = *std::max_element(codes.begin(), codes.end());
-  // A half sine of 200 samples in steps of a hundredth of its height: 17 of them are at the top.
-  for (std::size_t n = 0; n < codes.size(); ++n) {
-    const double phase = std::numbers::pi * (static_cast<double>(n) - 300.0) / 200.0;
-    const double pulse = n >= 300 && n <= 500 ? std::sin(phase) : 0.0;
-    codes[n] = static_cast<std::int32_t>(std::round(100.49 * pulse)) * (top / 100);
+  put_half_sine(codes, 100.49);
+  for (std::int32_t& code : codes) {
+    code *= top / 100;
   }
   EXPECT_EQ(bad_data(shot), "");
 }
