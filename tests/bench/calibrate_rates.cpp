@@ -1,7 +1,8 @@
 // How often `kolsky calibrate` passes a bench that is filed within its deviations, how often it
 // names what is off, and how often its intervals hold the truth:
 //   calibrate_rates [--repeats 100] [--seed 7000] [--shots 3] [--samples 2048] [--cases 5]
-// Seeds that nothing was chosen on.
+//   [--silent 0]
+// --silent 1: nothing comes back from the far end. Seeds that nothing was chosen on.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,6 +41,7 @@ struct Wishes {
   int shots = 3;
   int samples = 2048;
   std::size_t cases = kCases.size();
+  bool silent = false;
 };
 
 /// How the truth lies within what was stated.
@@ -64,7 +66,9 @@ testing::Campaign draw(std::uint64_t seed, const Case& wanted, const Wishes& ask
   wishes.rate_Hz = 5e5;
   wishes.tolerances = testing::Tolerances::filed;
   testing::Campaign made = testing::draw_campaign(wishes);
-  testing::hide(made, testing::parse_effect("end-reflection=0"));
+  if (!asked.silent) {
+    testing::hide(made, testing::parse_effect("end-reflection=0"));
+  }
   for (const std::string& effect : wanted.effects) {
     testing::hide(made, testing::parse_effect(effect));
   }
@@ -157,10 +161,12 @@ int main(int argc, char** argv) {
       asked.samples = std::atoi(value);
     } else if (name == "--cases") {
       asked.cases = std::min(kCases.size(), static_cast<std::size_t>(std::atoi(value)));
+    } else if (name == "--silent") {
+      asked.silent = std::atoi(value) != 0;
     } else {
       std::fprintf(stderr,
                    "calibrate_rates [--repeats 100] [--seed 7000] [--shots 3] [--samples 2048] "
-                   "[--cases 5]\n");
+                   "[--cases 5] [--silent 0]\n");
       return 2;
     }
   }

@@ -84,6 +84,8 @@ std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarMo
   for (const Shot& shot : shots) {
     if (bars) {
       require_holds(*bars, shot);
+    } else if (shot.bar_model) {
+      require_bar_model_holds(*shot.bar_model, shot, "the capture's bar model");
     }
   }
   return shots;
@@ -99,11 +101,16 @@ Outcome identify(const Settings& settings) {
     outcome.bars = read_bar_model(*settings.bar_model);
     require_band(*outcome.bars, settings.band_limit_Hz);
   }
-  const SpecimenFitOptions options = fit_options(settings, outcome.bars);
+  SpecimenFitOptions options = fit_options(settings, outcome.bars);
   outcome.shots = read_shots(settings, outcome.bars);
-  const BarPrior prior = outcome.bars
-                             ? outcome.bars->prior
-                             : BarPrior(outcome.shots.front().bar_model.value_or(paper_pmma()));
+  const Shot& first = outcome.shots.front();
+  const BarPrior prior = outcome.bars      ? outcome.bars->prior
+                         : first.bar_model ? BarPrior(*first.bar_model)
+                                           : BarPrior(assumed_bars(first.bench));
+  if (const auto& identified = prior.material.identified; identified && !options.most_band_Hz) {
+    options.most_band_Hz = identified->band_limit_Hz;
+  }
+  require_band_known(prior.material, settings.band_limit_Hz, "the capture's bar model");
   outcome.fit = fit_specimen(outcome.shots, prior, options);
   if (outcome.bars) {
     const std::string unchecked = temperature_unchecked(*outcome.bars, outcome.shots.front());
