@@ -14,7 +14,7 @@ class FiniteStrainLaw final : public Effect {
                           "Cauchy's, from Hencky's strain",
             .reference = "docs/impact.md",
             .kinds = {BenchKind::impact},
-            .parameters = {{"s", "-", 0.0, 0.0, 1.0, 0.1, {}}},
+            .parameters = {{"s", "-", 0.0, -0.25, 1.25, 0.1, {}}},
             .base = true,
         }) {}
 

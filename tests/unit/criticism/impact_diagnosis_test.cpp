@@ -49,9 +49,6 @@ Diagnosis diagnosed(const std::vector<Shot>& shots) {
 TEST(ImpactDiagnosis, ALinearBallIsAdequate) {
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(two_speeds(11, 3)));
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
-  const double s = diagnosis.model.value().find("finite-strain-law")->values[0].value;
-  EXPECT_GE(s, 0.0);
-  EXPECT_LE(s, 1.0);
 }
 
 /// A core that stiffens.
