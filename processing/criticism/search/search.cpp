@@ -118,9 +118,25 @@ std::vector<Refit> Search::refits() {
   return list;
 }
 
+/// A strength that is less than its own deviation is none, whatever fits better with it.
+bool Search::stands_out(const Refit& refit) const {
+  const Candidate& candidate = candidates_[refit.candidate];
+  const EffectUse* use = refit.studied.model.find(candidate.id());
+  const auto& parameters = candidate.use.effect->about().parameters;
+  const bool one_strength = std::ranges::count_if(parameters, [](const EffectParameter& own) {
+                              return !own.auxiliary();
+                            }) == 1;
+  if (use == nullptr || use->per_shot || candidate.frees_prior || !one_strength ||
+      parameters.front().is_switch) {
+    return true;
+  }
+  const ModelValue& own = use->values.front();
+  return std::abs(own.value - parameters.front().null_value) >= own.sd;
+}
+
 bool Search::admissible(const Refit& refit) const {
   return std::isfinite(refit.studied.fit.objective()) && !beyond_the_record(refit.studied, refit) &&
-         fits_the_signal(refit) &&
+         stands_out(refit) && fits_the_signal(refit) &&
          (!safeguards_.own_strengths ||
           own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
                                   study_.campaign(), Claim::fresh));

@@ -84,6 +84,7 @@ class Search {
                                 ModelFit fit, std::size_t worker);
   void refine(std::vector<Refit>& list);
   [[nodiscard]] bool admissible(const Refit& refit) const;
+  [[nodiscard]] bool stands_out(const Refit& refit) const;
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
