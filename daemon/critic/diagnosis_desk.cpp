@@ -15,6 +15,7 @@
 #include "drivers/files/models/diagnosis_step.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "processing/base/error.hpp"
+#include "processing/criticism/experiment/next_experiment.hpp"
 #include "processing/criticism/impact/impact_diagnosis.hpp"
 #include "processing/criticism/verdict/examination.hpp"
 
@@ -222,7 +223,10 @@ void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::str
     return;
   }
   Study study(campaign, 0.0, std::move(one));
-  file(model, diagnose(study, model.file.model, options), captures);
+  Diagnosis diagnosis = diagnose(study, model.file.model, options);
+  step("reckoning what would separate what is tied");
+  diagnosis.next_experiment = next_experiments(study, diagnosis);
+  file(model, diagnosis, captures);
 }
 
 void DiagnosisDesk::file(const ActiveModel& model, const Diagnosis& diagnosis,

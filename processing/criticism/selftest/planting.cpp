@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "processing/algebra/algebra.hpp"
@@ -14,35 +13,10 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kBeyond = 2.0;    ///< smoothing sets in so far above the judged band
-constexpr double kGate_s = 10e-6;  ///< before the foot, over which the wave sets in
-
 std::vector<Complex> spectrum_of(DampedTransform& transform, const std::vector<double>& record) {
   std::vector<Complex> spectrum(transform.bins());
   transform.forward(record, spectrum);
   return spectrum;
-}
-
-/// A Gaussian of frequency, made flat to sixth order: what is planted must be whole in the judged
-/// band. Its transform holds for complex s as it stands.
-Complex smoothing(Complex s) {
-  const Complex x = 0.5 * s * s;
-  return std::exp(x) * (1.0 - x + 0.5 * x * x);
-}
-
-/// What smoothing sends ahead of a record's start comes back at the transform's end, grown by the
-/// damping: it must not be the record's.
-std::size_t padded(std::size_t samples) {
-  return samples + samples / 4;
-}
-
-/// Zero until a little before the foot.
-double gate(double time_s) {
-  if (time_s >= 0.0) {
-    return 1.0;
-  }
-  const double place = 1.0 + time_s / kGate_s;
-  return place <= 0.0 ? 0.0 : 0.5 * (1.0 - std::cos(std::numbers::pi * place));
 }
 
 std::int32_t rounded(const ChannelRecord& channel, double code) {
@@ -68,68 +42,17 @@ Planter::Planter(const std::vector<Shot>& shots, Study& study, const Studied& st
     : shots_(shots),
       campaign_(study.campaign()),
       studied_(studied),
-      smoothing_rad_per_s_(kBeyond * 2.0 * std::numbers::pi * study.residuals().band().limit_Hz) {
-  find_waves();
-}
-
-void Planter::find_waves() {
-  const std::size_t samples = campaign_.shots.front().strain.front().size();
-  DampedTransform transform(padded(samples), campaign_.period_s);
-  for (std::size_t k = 0; k < transform.bins(); ++k) {
-    path_.push_back(transform.s(k));
-  }
-  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-    const CampaignShot& shot = campaign_.shots[n];
-    std::vector<double> record = shot.strain[campaign_.reference];
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      record[i] *= gate(shot.facts.time_s[i]);
-    }
-    auto spectrum = spectrum_of(transform, record);
-    Scene scene(campaign_.bench, shot.facts, path_);
-    shape(studied_.composition.applied(studied_.fit.theta, n), scene);
-    const Transfers transfers = transfers_of(scene, campaign_.reference);
-    for (std::size_t k = 0; k < spectrum.size(); ++k) {
-      const Complex mean = mean_over_length(scene, campaign_.reference, k);
-      spectrum[k] *= smoothing(path_[k] / smoothing_rad_per_s_) /
-                     (transfers.reading[campaign_.reference][k] / mean * invertible(mean));
-    }
-    std::vector<double> wave(samples);
-    transform.inverse(spectrum, wave);
-    waves_.push_back(std::move(wave));
-  }
-}
+      waves_(source_waves(study, studied)) {}
 
 std::vector<Planter::Record> Planter::through(const Composition& composition,
                                               const std::vector<double>& theta,
                                               std::size_t shot) const {
-  const CampaignShot& own = campaign_.shots[shot];
-  DampedTransform transform(padded(waves_[shot].size()), campaign_.period_s);
-  Scene scene(campaign_.bench, own.facts, path_);
-  shape(composition.applied(theta, shot), scene);
-  const Transfers transfers = transfers_of(scene, campaign_.reference);
-  const auto wave = spectrum_of(transform, waves_[shot]);
-  std::vector<Record> readings;
-  std::vector<Complex> spectrum(wave.size());
-  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-    for (std::size_t k = 0; k < wave.size(); ++k) {
-      spectrum[k] = transfers.reading[j][k] * wave[k];
-    }
-    Record reading(waves_[shot].size());
-    transform.inverse(spectrum, reading);
-    const std::vector<double>& addition = scene.record.additions[j];
-    for (std::size_t i = 0; i < reading.size(); ++i) {
-      const double strain = reading[i];
-      reading[i] *= 1.0 + scene.record.bridge_b * strain + scene.record.bridge_c * strain * strain;
-      reading[i] += addition.empty() ? 0.0 : addition[i];
-    }
-    readings.push_back(std::move(reading));
-  }
-  return readings;
+  return readings_of(waves_.by_shot[shot], campaign_, composition, theta, shot);
 }
 
 std::string Planter::impossible_because(const EffectUse& use) const {
   const Composition composition(with_use(studied_.model, use), campaign_);
-  Scene scene(campaign_.bench, campaign_.shots.front().facts, path_);
+  Scene scene(campaign_.bench, campaign_.shots.front().facts, {});
   shape(composition.applied(composition.start(), 0), scene);
   if (scene.specimen && scene.specimen->nonlinear()) {
     return "the specimen's answer is not linear: records cannot be changed by adding to them";

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "processing/base/shot.hpp"
+#include "processing/criticism/fitting/source_waves.hpp"
 #include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky {
@@ -38,15 +39,11 @@ class Planter {
   [[nodiscard]] std::vector<Record> through(const Composition& composition,
                                             const std::vector<double>& theta,
                                             std::size_t shot) const;
-  void find_waves();
 
   const std::vector<Shot>& shots_;
   const Campaign& campaign_;
   const Studied& studied_;
-  double smoothing_rad_per_s_;
-  std::vector<Record>
-      waves_;  ///< by shot: at the reference gauge, smoothed, nothing before the foot
-  std::vector<Complex> path_;
+  SourceWaves waves_;
 };
 
 /// The model with an effect in the place of what it holds of it.
