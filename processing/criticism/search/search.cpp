@@ -118,15 +118,15 @@ std::vector<Refit> Search::refits() {
   return list;
 }
 
-/// A strength that is less than its own deviation is none, whatever fits better with it.
+/// A strength that is less than its own deviation is none, whatever fits better with it. (That of a
+/// relaxation is as uncertain where its time is near the material's own: see beyond_the_record.)
 bool Search::stands_out(const Refit& refit) const {
   const Candidate& candidate = candidates_[refit.candidate];
   const EffectUse* use = refit.studied.model.find(candidate.id());
   const auto& parameters = candidate.use.effect->about().parameters;
-  const bool one_strength = std::ranges::count_if(parameters, [](const EffectParameter& own) {
-                              return !own.auxiliary();
-                            }) == 1;
-  if (use == nullptr || use->per_shot || candidate.frees_prior || !one_strength ||
+  const auto moving =
+      std::ranges::count_if(parameters, [](const EffectParameter& own) { return !own.chosen; });
+  if (use == nullptr || use->per_shot || candidate.frees_prior || moving != 1 ||
       parameters.front().is_switch) {
     return true;
   }
