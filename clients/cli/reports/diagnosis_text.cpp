@@ -121,6 +121,17 @@ std::string candidates_text(const Diagnosis& diagnosis) {
   return text + legend_text(list) + untestable_text(diagnosis);
 }
 
+std::string separates_text(const NextExperiment& next) {
+  if (next.separates.size() < 2) {
+    return "";
+  }
+  std::string text = "        to tell " + next.separates.front() + " from ";
+  for (std::size_t i = 1; i < next.separates.size(); ++i) {
+    text += (i == 1 ? "" : ", ") + next.separates[i];
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string strength_text(double value, double sd, const std::string& unit) {
@@ -152,7 +163,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
                       held_out.after, held_out.floor);
   text += notes_text(diagnosis) + candidates_text(diagnosis);
   for (const NextExperiment& next : diagnosis.next_experiment) {
-    text += "\n  next: " + next.change + "\n";
+    text += "\n  next: " + next.change + "\n" + separates_text(next);
   }
   return text;
 }
