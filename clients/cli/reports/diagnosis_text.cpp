@@ -146,8 +146,10 @@ std::string strength_text(double value, double sd, const std::string& unit) {
       sd > 0.0
           ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sd * scale))), 0, kMostDecimals)
           : 3;
+  const double tick = std::pow(10.0, -decimals);
+  const double shown = std::round(value * scale / tick) * tick + 0.0;  // never "-0.0"
   const std::string numbers =
-      fmt::format("{:.{}f} ± {:.{}f}", value * scale, decimals, sd * scale, decimals);
+      fmt::format("{:.{}f} ± {:.{}f}", shown, decimals, sd * scale, decimals);
   const std::string scaled = power == 0 ? numbers : fmt::format("({})e{}", numbers, power);
   return unit == "-" ? scaled : scaled + " " + unit;
 }
