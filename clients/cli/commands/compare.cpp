@@ -139,8 +139,7 @@ int run(const Settings& settings, Context& context) {
                 << "\n";
     return kDone;
   }
-  const std::string strengths =
-      fails_anywhere(comparison) ? strengths_table(groups, campaign) : "";
+  const std::string strengths = fails_anywhere(comparison) ? strengths_table(groups, campaign) : "";
   context.out << settings.model << ": " << note << "\n"
               << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
               << strained_text(studied.model) << "\n"

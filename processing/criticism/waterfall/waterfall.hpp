@@ -64,13 +64,13 @@ struct WaterfallStep {
 /// From a first model's misfit through what each effect takes off it to what is left.
 struct Waterfall {
   std::vector<WaterfallStep> steps;
-  double floor = 1.0;              ///< chi2 per residual that noise leaves
-  double repeats = 0.0;            ///< chi2 per residual that still repeats from shot to shot
-  double signal = 0.0;             ///< chi2 per residual of the records themselves
+  double floor = 1.0;    ///< chi2 per residual that noise leaves
+  double repeats = 0.0;  ///< chi2 per residual that still repeats from shot to shot
+  double signal = 0.0;   ///< chi2 per residual of the records themselves
   /// What else the model may be off by that held_out and floor count as they do noise; repeats and
   /// signal are by the noise alone.
   std::string allowance;
-  bool within_allowance = false;  ///< what still repeats
+  bool within_allowance = false;   ///< what still repeats
   double strain_rate_per_s = 0.0;  ///< of the curves
   std::size_t shots = 0;
   std::string fold = "shots";  ///< held out one at a time: shots, speeds, or "parts" of one record
