@@ -32,7 +32,7 @@ void put_places(const std::vector<AnyTile>& tiles, const BandOf& band_of, const 
   for (const AnyTile* tile : worst) {
     v1::MisfitPlace& place = *message.add_places();
     const auto [low_Hz, high_Hz] = band_of(*tile);
-    place.set_gauge(bench.gauges[tile->gauge].name);
+    place.set_gauge(tile->window == kRebound ? "" : bench.gauges[tile->gauge].name);
     place.set_window(tile->window);
     place.set_low_hz(low_Hz);
     place.set_high_hz(high_Hz);
@@ -41,27 +41,40 @@ void put_places(const std::vector<AnyTile>& tiles, const BandOf& band_of, const 
   }
 }
 
-Misfit compare_impact(const Campaign& campaign, const Model& model, v1::Comparison& message) {
+void put_misfit(const Misfit& misfit, v1::Comparison& message) {
+  v1::Misfit& own = *message.mutable_misfit();
+  own.set_chi2_reduced(misfit.chi2_reduced);
+  own.set_repeatable_share(misfit.repeatable_share);
+  own.set_noise_floor_share(misfit.noise_floor_share);
+}
+
+v1::Comparison::Light light_of(Allowance allowance) {
+  switch (allowance) {
+    case Allowance::kept:
+      return v1::Comparison::GREEN;
+    case Allowance::mimicked:
+      return v1::Comparison::AMBER;
+    case Allowance::exceeded:
+      return v1::Comparison::RED;
+  }
+  return v1::Comparison::LIGHT_UNSPECIFIED;
+}
+
+/// No share of the energy bounds what a calculation may be off by: the light is by what is allowed
+/// for it.
+void compare_impact(const Campaign& campaign, const Model& model, v1::Comparison& message) {
   ImpactStudy study(campaign, judges_whole(model), 0.0, Workers{});
   const Studied studied = study.as_it_is(model);
   const ImpactComparison comparison = study.compare(studied);
   put_places(
       comparison.tiles, [](const ImpactTile& tile) { return std::pair(tile.low_Hz, tile.high_Hz); },
       campaign.bench, message);
-  return studied.misfit;
-}
-
-Misfit compare_bars(const Campaign& campaign, const Model& model, v1::Comparison& message) {
-  Study study(campaign, 0.0, Workers{});
-  const Studied studied = study.as_it_is(model);
-  const Comparison comparison = compare(study, studied);
-  put_places(
-      comparison.tiles,
-      [&](const Tile& tile) {
-        return std::pair(comparison.bands[tile.band].low_Hz, comparison.bands[tile.band].high_Hz);
-      },
-      campaign.bench, message);
-  return studied.misfit;
+  put_misfit(studied.misfit, message);
+  message.set_excess_share(studied.misfit.repeatable_share);
+  message.set_rule(
+      "green: within noise and what is allowed for the calculation; amber: within what an error of "
+      "its kind may mimic; else red");
+  message.set_light(light_of(study.allowance(studied)));
 }
 
 void put_light(const Misfit& misfit, const LightRule& rule, v1::Comparison& message) {
@@ -76,6 +89,20 @@ void put_light(const Misfit& misfit, const LightRule& rule, v1::Comparison& mess
                                                            : v1::Comparison::RED);
 }
 
+void compare_bars(const Campaign& campaign, const ActiveModel& model, v1::Comparison& message) {
+  Study study(campaign, 0.0, Workers{});
+  const Studied studied = study.as_it_is(model.file.model);
+  const Comparison comparison = compare(study, studied);
+  put_places(
+      comparison.tiles,
+      [&](const Tile& tile) {
+        return std::pair(comparison.bands[tile.band].low_Hz, comparison.bands[tile.band].high_Hz);
+      },
+      campaign.bench, message);
+  put_misfit(studied.misfit, message);
+  put_light(studied.misfit, model.rule, message);
+}
+
 }  // namespace
 
 void compare_with_model(const Shot& shot, const ActiveModel& model, v1::Comparison& message) {
@@ -85,14 +112,11 @@ void compare_with_model(const Shot& shot, const ActiveModel& model, v1::Comparis
   message.set_model_sha256(model.sha256);
   try {
     const Campaign campaign = read_campaign({shot});
-    const Misfit found = campaign.bench.kind == BenchKind::impact
-                             ? compare_impact(campaign, model.file.model, message)
-                             : compare_bars(campaign, model.file.model, message);
-    v1::Misfit& misfit = *message.mutable_misfit();
-    misfit.set_chi2_reduced(found.chi2_reduced);
-    misfit.set_repeatable_share(found.repeatable_share);
-    misfit.set_noise_floor_share(found.noise_floor_share);
-    put_light(found, model.rule, message);
+    if (campaign.bench.kind == BenchKind::impact) {
+      compare_impact(campaign, model.file.model, message);
+    } else {
+      compare_bars(campaign, model, message);
+    }
     message.set_comparable(true);
   } catch (const InputError& error) {
     message.set_reason(error.what());

@@ -73,11 +73,12 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
   if (settings.report) {
     replace_file(*settings.report,
                  render_html(impact_page(settings.model + " against the measurements", note,
-                                         comparison, study, studied.model)));
+                                         comparison, study, studied)));
   }
   if (context.json) {
     context.out << to_text(JsonObject{{"model", settings.model},
                                       {"misfit", describe(studied.misfit)},
+                                      {"calculation_allowance", name_of(study.allowance(studied))},
                                       {"where", describe_tiles(comparison, campaign)},
                                       {"speeds", describe_speeds(comparison)},
                                       {"fitted_first", fit_first},

@@ -146,9 +146,12 @@ std::string comparison_line(const v1::Comparison& comparison, bool colour) {
   }
   if (comparison.places_size() > 0) {
     const v1::MisfitPlace& worst = comparison.places(0);
-    text +=
-        fmt::format(", most at {} {} {:.3g}-{:.3g} kHz ({:.2g} sigma)", worst.gauge(),
-                    worst.window(), worst.low_hz() * 1e-3, worst.high_hz() * 1e-3, worst.sigma());
+    const std::string place =
+        worst.gauge().empty()
+            ? worst.window()
+            : fmt::format("{} {} {:.3g}-{:.3g} kHz", worst.gauge(), worst.window(),
+                          worst.low_hz() * 1e-3, worst.high_hz() * 1e-3);
+    text += fmt::format(", most at {} ({:.2g} sigma)", place, worst.sigma());
   }
   return text;
 }

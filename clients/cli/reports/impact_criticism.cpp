@@ -107,6 +107,20 @@ PageSection model_section(const std::string& title, const Model& model) {
   return {title, {}, {}, {}, {std::move(table)}};
 }
 
+/// The end of a sentence on what repeats.
+const char* within(Allowance allowance) {
+  switch (allowance) {
+    case Allowance::kept:
+      return ", within what the calculation may be off by.";
+    case Allowance::mimicked:
+      return ", more than is allowed for the calculation, yet not beyond what an error of its kind "
+             "may mimic.";
+    case Allowance::exceeded:
+      return ", and more than the calculation may be off by.";
+  }
+  return ".";
+}
+
 }  // namespace
 
 void require_kind(const Model& model, const Campaign& campaign) {
@@ -160,12 +174,7 @@ std::string impact_words(const ImpactStudy& study, const Studied& studied) {
   if (studied.misfit.repeatable_share > studied.misfit.noise_floor_share) {
     text.pop_back();  // the full stop
     // The places below count what is allowed once, a verdict what such an error may mimic.
-    const bool allowed = studied.misfit.repeatable_log_p >= kUnexplained;
-    text += allowed ? ", within what the calculation may be off by."
-            : study.within_calculation(studied.fit.residual)
-                ? ", more than is allowed for the calculation, yet not beyond what an error of its "
-                  "kind may mimic."
-                : ", and more than the calculation may be off by.";
+    text += within(study.allowance(studied));
   }
   return text;
 }
@@ -215,19 +224,18 @@ std::string worst_plot(const ImpactComparison& comparison, const std::vector<dou
 }
 
 Page impact_page(const std::string& title, const std::string& note,
-                 const ImpactComparison& comparison, ImpactStudy& study, const Model& model) {
+                 const ImpactComparison& comparison, ImpactStudy& study, const Studied& studied) {
   Page page;
   page.title = title;
-  page.good = std::none_of(comparison.tiles.begin(), comparison.tiles.end(),
-                           [](const ImpactTile& tile) { return tile.significant; });
-  page.headline = page.good
-                      ? "The model foretells every impact to within noise and the solver's bounds."
-                      : "The model fails; below is at which speeds and when.";
+  page.good = study.allowance(studied) != Allowance::exceeded;
+  page.headline = page.good ? "What the model foretells differs from the impacts" +
+                                  std::string(within(study.allowance(studied)))
+                            : "The model fails; below is at which speeds and when.";
   page.notes = {note};
   page.sections.push_back(
       speeds_section("Speed by speed", comparison, study.residuals().times_s()));
   page.sections.push_back(places_section(comparison, study.campaign()));
-  page.sections.push_back(model_section("The model", model));
+  page.sections.push_back(model_section("The model", studied.model));
   return page;
 }
 

@@ -35,7 +35,7 @@ void require_kind(const Model& model, const Campaign& campaign);
 /// What `kolsky compare --report` writes of impacts.
 [[nodiscard]] Page impact_page(const std::string& title, const std::string& note,
                                const ImpactComparison& comparison, ImpactStudy& study,
-                               const Model& model);
+                               const Studied& studied);
 /// What `kolsky diagnose --report` writes of impacts.
 /// @param times_s  of the judged samples, ImpactResiduals::times_s()
 [[nodiscard]] Page impact_diagnosis_page(const std::string& title,

@@ -57,6 +57,18 @@ Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFi
   return {std::move(after), std::move(composition), std::move(fit), misfit};
 }
 
+std::string name_of(Allowance allowance) {
+  switch (allowance) {
+    case Allowance::kept:
+      return "kept";
+    case Allowance::mimicked:
+      return "mimicked";
+    case Allowance::exceeded:
+      return "exceeded";
+  }
+  return {};
+}
+
 bool judges_whole(const Model& model) {
   return model.find("end-reflection") != nullptr;
 }
@@ -188,6 +200,12 @@ double ImpactStudy::unexplained_log_p(const Eigen::VectorXd& white) const {
 
 bool ImpactStudy::within_calculation(const Eigen::VectorXd& white) const {
   return !(unexplained_log_p(white) < kUnexplained);
+}
+
+Allowance ImpactStudy::allowance(const Studied& studied) const {
+  return studied.misfit.repeatable_log_p >= kUnexplained ? Allowance::kept
+         : within_calculation(studied.fit.residual)      ? Allowance::mimicked
+                                                         : Allowance::exceeded;
 }
 
 Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {

@@ -55,6 +55,17 @@ struct ImpactComparison {
   std::vector<SpeedSummary> speeds;
 };
 
+/// Where the part of a misfit that repeats stands to what the calculation may be off by. `compare`,
+/// the daemon's light and a diagnosis go by this.
+enum class Allowance {
+  kept,      ///< noise and what is allowed for the calculation leave as much
+  mimicked,  ///< an error of its kind may still look like that (kSolverDoubt)
+  exceeded,  ///< the model fails
+};
+
+/// "kept", "mimicked", "exceeded"
+[[nodiscard]] std::string name_of(Allowance allowance);
+
 /// Whether the model asks for more of the records than what precedes the far end's reflection.
 [[nodiscard]] bool judges_whole(const Model& model);
 
@@ -106,6 +117,7 @@ class ImpactStudy {
   [[nodiscard]] double unexplained_log_p(const Eigen::VectorXd& white) const;
   /// Whether they may.
   [[nodiscard]] bool within_calculation(const Eigen::VectorXd& white) const;
+  [[nodiscard]] Allowance allowance(const Studied& studied) const;
 
   [[nodiscard]] const std::optional<SecondMinimum>& second_minimum() const {
     return second_minimum_;

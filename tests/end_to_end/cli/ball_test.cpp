@@ -233,6 +233,7 @@ TEST(BallLive, AModelOfTheBallIsFittedDiagnosedAndComparedAsShotsComeIn) {
   EXPECT_EQ(live["light"], "green") << live;
   const json file = json_of(kolsky({"compare", lab.capture_of(id), "--model", model, "--json"}));
   EXPECT_EQ(live["misfit"]["chi2_reduced"], file["misfit"]["chi2_reduced"]);
+  EXPECT_EQ(file["calculation_allowance"], "kept") << "what the light went by";
   ASSERT_EQ(file["speeds"].size(), 1U);
   const json& speed = file["speeds"][0];
   const BallHistory& truth = lab.truth();
