@@ -49,6 +49,14 @@ ModelFile model_named(const std::string& name) {
   return file.at(std::stoul(step));
 }
 
+std::vector<std::string> gauges_of(const Bench& bench) {
+  std::vector<std::string> names;
+  for (const Gauge& gauge : bench.gauges) {
+    names.push_back(gauge.name);
+  }
+  return names;
+}
+
 void require_model_of(const Bench& bench, const Model& model, const std::string& name) {
   if (model.kind != bench.kind) {
     throw InputError(name,
@@ -56,17 +64,13 @@ void require_model_of(const Bench& bench, const Model& model, const std::string&
                          ", and the captures are of one of kind " + name_of(bench.kind),
                      "make one with `kolsky model new --kind " + name_of(bench.kind) + "`");
   }
-  std::string gauges;
-  for (const Gauge& gauge : bench.gauges) {
-    gauges += (gauges.empty() ? "" : ", ") + gauge.name;
-  }
+  const std::vector<std::string> gauges = gauges_of(bench);
   for (const EffectUse& use : model.effects) {
-    if (!use.gauge.empty() &&
-        std::none_of(bench.gauges.begin(), bench.gauges.end(),
-                     [&](const Gauge& own) { return own.name == use.gauge; })) {
+    if (!use.gauge.empty() && std::ranges::find(gauges, use.gauge) == gauges.end()) {
       throw InputError(
           name + ": effect " + use.id(),
-          "names a gauge that the captures' bench does not have: its gauges are " + gauges,
+          "names a gauge that the captures' bench does not have: its gauges are " +
+              fmt::format("{}", fmt::join(gauges, ", ")),
           "take the effect out with `kolsky model remove`, or compare with captures of "
           "the bench that the model is of");
     }

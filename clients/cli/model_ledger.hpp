@@ -11,6 +11,9 @@ namespace kolsky::cli {
 /// @throws InputError
 [[nodiscard]] ModelFile model_named(const std::string& name);
 
+/// Their names, in the bench's order.
+[[nodiscard]] std::vector<std::string> gauges_of(const Bench& bench);
+
 /// @param name  of the model's file, for people
 /// @throws InputError where captures of this bench are not what the model is of: its kind, and the
 /// gauges that its effects name

@@ -50,6 +50,7 @@ int run(const Settings& settings, Context& context) {
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());
   file.history.back().note = settings.note.value_or("");
   file.model = studied.model;
+  file.gauges = gauges_of(campaign.bench);
   replace_file(settings.output, format_model(file));
   if (context.json) {
     context.out << to_text(JsonObject{{"model", settings.output},

@@ -126,6 +126,9 @@ int make_new(const NewSettings& settings, Context& context) {
               (!bench.output || bench.output->youngs_modulus_Pa.has_value());
   }
   file.model = paper_model(kind, elastic);
+  if (filed) {
+    file.gauges = gauges_of(*filed);
+  }
   if (kind == BenchKind::impact) {
     if (settings.bar_model) {
       throw InputError("--bar-model", "belongs to viscoelastic bars; a ball strikes an elastic one",
@@ -153,9 +156,23 @@ struct EditSettings {
   std::optional<std::uint64_t> to;  ///< of a reversion: a step
 };
 
+void require_its_gauge(const EffectUse& use, const ModelFile& file) {
+  if (use.gauge.empty() || file.gauges.empty() ||
+      std::ranges::find(file.gauges, use.gauge) != file.gauges.end()) {
+    return;
+  }
+  throw InputError("effect " + use.id(),
+                   "names a gauge that the model's bench does not have: its gauges are " +
+                       fmt::format("{}", fmt::join(file.gauges, ", ")),
+                   "give one of these, as in " + use.effect->about().id + ":" +
+                       file.gauges.front() +
+                       ", or fit the model to captures of the bench that has it");
+}
+
 int add(const EditSettings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   EffectUse use = use_named(settings.effect, file.model);
+  require_its_gauge(use, file);
   const auto& kinds = use.effect->about().kinds;
   if (std::find(kinds.begin(), kinds.end(), file.model.kind) == kinds.end()) {
     throw InputError("effect " + use.id(),
@@ -296,6 +313,7 @@ int revert(const EditSettings& settings, Context& context) {
   begin_step(file, fmt::format("revert to step {}", target));
   file.history.back().note = settings.note.value_or("");
   file.model = before.model;
+  file.gauges = before.gauges;
   const std::string output = settings.output.value_or(settings.model);
   replace_file(output, format_model(file));
   print(file, output, context);

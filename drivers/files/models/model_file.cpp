@@ -123,7 +123,8 @@ void require_a_model(const TomlTable& table);
 
 ModelFile read(const TomlTable& table) {
   require_a_model(table);
-  table.expect({"kolsky_model", "kind", "bar_source", "expressions", "effects", "history"});
+  table.expect(
+      {"kolsky_model", "kind", "bar_source", "gauges", "expressions", "effects", "history"});
   if (table.integer("kolsky_model") != kFormat) {
     throw table.error("kolsky_model", "is a format that this version does not know",
                       "make the model anew with `kolsky model new`");
@@ -132,6 +133,7 @@ ModelFile read(const TomlTable& table) {
   constexpr std::array kKinds{BenchKind::bar, BenchKind::shpb, BenchKind::impact};
   file.model.kind = kKinds.at(table.choice("kind", {"bar", "shpb", "impact"}));
   file.bar_source = table.optional_text("bar_source").value_or("");
+  file.gauges = table.optional_texts("gauges").value_or(std::vector<std::string>{});
   const std::vector<TomlTable> expressions = table.tables("expressions");
   for (const TomlTable& own : expressions) {
     file.model.expressions.push_back(read_expression(own, file.model));
@@ -236,6 +238,10 @@ std::string format_model(const ModelFile& file, bool with_history) {
   if (!file.bar_source.empty()) {
     text += "bar_source = " + toml_quoted(file.bar_source) + "\n";
   }
+  for (std::size_t i = 0; i < file.gauges.size(); ++i) {
+    text += (i == 0 ? "gauges = [" : ", ") + toml_quoted(file.gauges[i]);
+  }
+  text += file.gauges.empty() ? "" : "]\n";
   for (const auto& expression : file.model.expressions) {
     text += format_expression(expression->text());
   }

@@ -13,6 +13,8 @@ namespace kolsky {
 struct ModelFile {
   Model model;
   std::string bar_source;  ///< where the bars' moduli come from, for people; may be empty
+  /// Names of the gauges of the bench that it was made for or fitted on last; empty: not known.
+  std::vector<std::string> gauges;
   std::vector<ModelStep> history;
 
   [[nodiscard]] std::string parent() const {

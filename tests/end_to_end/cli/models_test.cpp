@@ -257,6 +257,22 @@ TEST_F(SimulatedBar, RefusesAPlaceForItsResultBeforeTheWork) {
   EXPECT_EQ(content(bench), "kind = \"bar\"\n");
 }
 
+TEST_F(SimulatedBar, TakesNoEffectOfAGaugeThatItsBenchDoesNotHave) {
+  const std::string before = content(file("m.toml"));
+  EXPECT_TRUE(refused(kolsky({"model", "add", file("m.toml"), "gauge-position:g9"}),
+                      {"gauge-position:g9", "its gauges are g1, g2, g3", "gauge-position:g1"}));
+  EXPECT_EQ(content(file("m.toml")), before);
+  // Of a model whose bench was not said nothing is known, until it is fitted.
+  ASSERT_EQ(kolsky({"model", "new", "--kind", "bar", "-o", file("any.toml")}).code, 0);
+  EXPECT_EQ(
+      kolsky({"model", "add", file("any.toml"), "gauge-position:g9", "-o", file("far.toml")}).code,
+      0);
+  ASSERT_EQ(
+      kolsky({"fit", file("shots"), "--model", file("any.toml"), "-o", file("any.toml")}).code, 0);
+  EXPECT_TRUE(refused(kolsky({"model", "add", file("any.toml"), "gauge-position:g9"}),
+                      {"gauge-position:g9", "its gauges are"}));
+}
+
 TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
   EXPECT_TRUE(refused(kolsky({"model", "diff", file("m.toml") + "@3", file("m.toml")}),
                       {"names no step", "from 0 to 0"}));
