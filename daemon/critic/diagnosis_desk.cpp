@@ -104,7 +104,7 @@ void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Di
     if (stopped_) {
       throw InputError("diagnose", "kolskyd is ending", "ask again once it runs");
     }
-    if (under_way_) {
+    if (under_way()) {
       throw InputError("diagnose", "one is under way: " + last_->summary().id(),
                        "wait for it, or cancel it");
     }
@@ -116,7 +116,6 @@ void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Di
   {
     const std::lock_guard lock(mutex_);
     cancel_.store(stopped_);
-    under_way_ = true;
     last_ = std::make_unique<v1::Diagnosis>();
     last_->mutable_summary()->set_id(fmt::format("{}-{:04x}-{}",
                                                  format_utc_compact(clock_ns(CLOCK_REALTIME)),
@@ -133,10 +132,15 @@ void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Di
 
 void DiagnosisDesk::cancel() {
   const std::lock_guard lock(mutex_);
-  if (!under_way_) {
+  if (!under_way()) {
     throw InputError("cancel", "no diagnosis is under way", "nothing needs to be done");
   }
   cancel_.store(true);
+}
+
+/// What has been seen to end is not under way, however long its thread takes to leave.
+bool DiagnosisDesk::under_way() const {
+  return last_ && last_->summary().state() == v1::DiagnosisSummary::RUNNING;
 }
 
 bool DiagnosisDesk::last(v1::Diagnosis& diagnosis) const {
@@ -190,8 +194,6 @@ void DiagnosisDesk::work(const std::shared_ptr<const ActiveModel>& model,
   } catch (const std::exception& error) {
     end(v1::DiagnosisSummary::FAILED, error.what());
   }
-  const std::lock_guard lock(mutex_);
-  under_way_ = false;
 }
 
 void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::string>& ids) {

@@ -52,6 +52,8 @@ class DiagnosisDesk {
   /// Publishes the diagnosis at a step. @throws Cancelled where that was asked for
   void step(const std::string& what);
   void heed_cancel() const;
+  /// @pre mutex_ is held
+  [[nodiscard]] bool under_way() const;
   void publish(const std::function<void(v1::Diagnosis&)>& change);
 
   Publisher& publisher_;
@@ -60,7 +62,6 @@ class DiagnosisDesk {
   mutable std::mutex mutex_;
   std::unique_ptr<v1::Diagnosis> last_;
   std::uint64_t count_ = 0;
-  bool under_way_ = false;
   bool stopped_ = false;
   std::atomic<bool> cancel_{false};
   std::thread thread_;
