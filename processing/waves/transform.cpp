@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 #include <numbers>
+#include <utility>
 
 namespace kolsky {
 
@@ -125,7 +126,7 @@ struct DampedTransform::State {
   std::vector<double> undamping;  // exp(+eta t) / length
 
   State(std::size_t samples, double period_s, double wrap_damping)
-      : length(good_transform_length(samples)),
+      : length(samples),
         bin_width_Hz(1.0 / (static_cast<double>(length) * period_s)),
         eta_per_s(-std::log(wrap_damping) * bin_width_Hz),
         time(fftw_alloc_real(length)),
@@ -161,7 +162,13 @@ struct DampedTransform::State {
 };
 
 DampedTransform::DampedTransform(std::size_t samples, double period_s, double wrap_damping)
-    : state_(std::make_unique<State>(samples, period_s, wrap_damping)) {}
+    : state_(std::make_unique<State>(good_transform_length(samples), period_s, wrap_damping)) {}
+DampedTransform::DampedTransform(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+DampedTransform DampedTransform::of_window(std::size_t samples, double period_s) {
+  return DampedTransform(std::make_unique<State>(samples, period_s, 1.0));
+}
+
 DampedTransform::~DampedTransform() = default;
 DampedTransform::DampedTransform(DampedTransform&&) noexcept = default;
 DampedTransform& DampedTransform::operator=(DampedTransform&&) noexcept = default;

@@ -30,6 +30,9 @@ class DampedTransform {
   /// @param period_s  time from sample to sample
   /// @param wrap_damping  exp(-eta T) over the transform's length T
   DampedTransform(std::size_t samples, double period_s, double wrap_damping = 1e-8);
+  /// Undamped, of a window whose length is given by what it holds.
+  /// @pre samples is even
+  [[nodiscard]] static DampedTransform of_window(std::size_t samples, double period_s);
   ~DampedTransform();
   DampedTransform(DampedTransform&&) noexcept;
   DampedTransform& operator=(DampedTransform&&) noexcept;
@@ -50,6 +53,8 @@ class DampedTransform {
 
  private:
   struct State;
+  explicit DampedTransform(std::unique_ptr<State> state);
+
   std::unique_ptr<State> state_;
 };
 

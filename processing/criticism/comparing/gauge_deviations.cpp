@@ -24,7 +24,8 @@ constexpr double kBlind = 0.1;
 GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& composition,
                                  const std::vector<double>& theta)
     : residuals_(residuals),
-      transform_(2 * residuals.band().judged, residuals.judged_period_s(), 1.0) {
+      transform_(
+          DampedTransform::of_window(2 * residuals.band().judged, residuals.judged_period_s())) {
   const JudgedBand& band = residuals.band();
   const PlainResiduals plain = residuals.plain(composition, theta);
   std::vector<double> filter;
