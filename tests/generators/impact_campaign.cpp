@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
+#include "tests/generators/beam.hpp"
 #include "tests/generators/digitise.hpp"
 
 namespace kolsky::testing {
@@ -48,6 +50,42 @@ double at(const BallForce& force, double time_s) {
   return (1.0 - u) * force.force_N[n] + u * force.force_N[n + 1];
 }
 
+/// What a gauge reads of the bar's bending for a force that acts a metre off its axis, from the
+/// force's beginning on: a beam in spectral elements, under the force as a sum of splines.
+class Bending {
+ public:
+  explicit Bending(const Bench& bench) : area_m2_(bench.input.area_m2()) {
+    BeamProblem beam;
+    beam.material = elastic(*bench.input.youngs_modulus_Pa);
+    beam.density_kg_m3 = bench.input.density_kg_m3;
+    beam.poisson_ratio = bench.input.poisson_ratio;
+    beam.radius_m = bench.input.diameter_m / 2.0;
+    beam.stations_m = {bench.gauges[0].position_m};
+    unit_ = beam_response(beam, {kKnot_s});
+  }
+
+  /// @param force  [N] over time from the first touch
+  template <typename Force>
+  [[nodiscard]] std::vector<double> strain_per_m(const Force& force, double lag_s) const {
+    // Splines of 24 us in a pulse of 400: the force in its middle is a spline's coefficient.
+    std::vector<double> coefficients;
+    constexpr double kLongest_s = 0.8e-3;
+    for (double t = -0.5 * UnitSource::kKnots * kKnot_s; t < kLongest_s; t += kKnot_s) {
+      coefficients.push_back(force(t + 0.5 * UnitSource::kKnots * kKnot_s) / area_m2_);
+    }
+    return superpose(unit_.strain[0], unit_.step_s, coefficients, kPeriodsPerKnot, kPeriod_s,
+                     lag_s - 0.5 * UnitSource::kKnots * kKnot_s, kSamples);
+  }
+
+ private:
+  static constexpr double kPeriod_s = 1e-6;
+  static constexpr std::size_t kPeriodsPerKnot = 4;
+  static constexpr double kKnot_s = kPeriodsPerKnot * kPeriod_s;
+
+  double area_m2_;
+  Responses unit_;
+};
+
 void file(const std::string& key, double speed, double relative_sd, std::mt19937_64& random,
           std::map<std::string, std::string>& meta) {
   const double error = relative_sd * std::normal_distribution<double>()(random);
@@ -83,6 +121,8 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   std::vector<Shot> shots;
+  const std::optional<Bending> bending =
+      wishes.bending_m != 0.0 ? std::optional<Bending>(bench) : std::nullopt;
   for (const double nominal : wishes.speeds_m_per_s) {
     // Two impacts to either side; a shot between them. Over 4 % a straight line is good to 1e-4.
     std::vector<BallForce> ends;
@@ -100,11 +140,14 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
         return (1.0 - share) * at(ends[0], time_s) + share * at(ends[1], time_s);
       };
       std::vector<double> reading(kSamples);
+      const std::vector<double> bent =
+          bending ? bending->strain_per_m(force, touch_s) : std::vector<double>(kSamples, 0.0);
       for (std::size_t i = 0; i < kSamples; ++i) {
         const double t = static_cast<double>(i) / bench.sampling_frequency_Hz - touch_s;
         const double x = bench.gauges[0].position_m;
         const double e =
-            (force(t - x / c0) - force(t - (2.0 * bar.length_m - x) / c0)) / stiffness_N;
+            (force(t - x / c0) - force(t - (2.0 * bar.length_m - x) / c0)) / stiffness_N +
+            wishes.bending_m * bent[i];
         reading[i] = (1.0 + wishes.gauge_factor) * e * (1.0 + wishes.bridge_b * e);
       }
       Digitiser digitiser;

@@ -30,7 +30,9 @@ struct ImpactWishes {
   /// E1, E2, eta2 of the core, then the cover, over the paper's.
   std::array<double, 6> moduli{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double friction = 0.3;
-  double offset_m = 0.0;   ///< of the ball's axis from the bar's
+  double offset_m = 0.0;  ///< of the ball's axis from the bar's
+  double bending_m =
+      0.0;  ///< of the push's line from where gauges read no bending, times imbalance
   std::size_t across = 8;  ///< cells, see BallImpact
   bool rebound = true;
 };

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   app.add_option("--cover-relaxation", wishes.cover_D_per_Pa, "D, 1/Pa");
   app.add_option("--cover-relaxation-time", wishes.cover_tau_s, "s");
   app.add_option("--offset", wishes.offset_m, "m, of the ball's axis from the bar's");
+  app.add_option("--bending", wishes.bending_m, "m, eccentricity of the push times imbalance");
   app.add_option("--moduli", wishes.moduli, "E1 E2 eta2 of core and cover over the paper's");
   app.add_option("--rebound-error", wishes.rebound_error,
                  "relative deviation of the rebound speeds filed");

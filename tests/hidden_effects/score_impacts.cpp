@@ -66,7 +66,8 @@ const std::vector<Kind>& kinds() {
       {{"bridge-nonlinearity", "", 240.0, {}}, [](double b, ImpactWishes& w) { w.bridge_b = b; }},
       {{"off-centre-contact", "", 4e-3, {}},
        [](double d, ImpactWishes& w) { w.offset_m = d; },
-       false}};
+       false},
+      {{"bending", "", 1e-4, {}}, [](double chi, ImpactWishes& w) { w.bending_m = chi; }}};
   return all;
 }
 

@@ -98,8 +98,11 @@ std::string untestable_text(const Diagnosis& diagnosis) {
       text += (text.empty() ? "" : ", ") + c.effect;
     }
   }
-  return text.empty() ? ""
-                      : "  untestable here, for what is fitted takes up all of it: " + text + ".\n";
+  return text.empty()
+             ? ""
+             : "  untestable here, for what is fitted takes up all of it or no strength within\n"
+               "  reach shows in what is judged: " +
+                   text + ".\n";
 }
 
 std::string candidates_text(const Diagnosis& diagnosis) {

@@ -22,9 +22,4 @@ struct ImpactsSeen {
                                          const DiagnosisOptions& options,
                                          ImpactsSeen* seen = nullptr);
 
-/// What the records hold of each material's three numbers, in a line each: how many combinations
-/// are known to a tenth, and the one that is known least.
-[[nodiscard]] std::vector<std::string> what_records_hold(ImpactStudy& study,
-                                                         const Studied& studied);
-
 }  // namespace kolsky

@@ -28,6 +28,11 @@ bool beyond_reach(const Candidate& candidate, const Direction& direction) {
   return !(information > 0.0) || scale / std::sqrt(information) > p.upper - p.lower;
 }
 
+Direction untestable(Direction direction) {
+  direction.freedom = direction.gain = 0.0;
+  return direction;
+}
+
 /// Where first order says the strengths are.
 std::vector<double> begin_near(const Candidate& candidate, const Direction& direction,
                                const Studied& base, const Composition& composition) {
@@ -111,19 +116,32 @@ ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
       base_(base),
       candidates_(candidates_for(base, study.campaign())),
       directions_(candidates_.size()),
+      flat_(candidates_.size()),
       evidence_(candidates_.size(), 0.0) {
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     const Candidate& own = candidates_[i];
     Direction& direction = directions_[i];
     direction = direction_of(own, base, study.campaign(), study.residuals(), worker);
     if (beyond_reach(own, direction)) {
-      direction.freedom = direction.gain = 0.0;
-    } else {
+      flat_[i] = flat_effect(study, base, own, kStandsBefore * kSolverDoubt, worker);
+      direction = flat_[i] ? flat_[i]->secant : untestable(std::move(direction));
+    }
+    if (direction.freedom > 0.0) {
       evidence_[i] =
           equivalent_square(log_gain_tail(direction.gain, direction.freedom, own.one_sided));
     }
   });
   trials_ = independent_trials(base, candidates_, directions_);
+}
+
+std::vector<FlatEffect> ImpactSearch::flat() const {
+  std::vector<FlatEffect> list;
+  for (const auto& own : flat_) {
+    if (own) {
+      list.push_back(*own);
+    }
+  }
+  return list;
 }
 
 double ImpactSearch::log_trials() const {

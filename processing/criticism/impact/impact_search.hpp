@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "processing/criticism/impact/flat_effects.hpp"
 #include "processing/criticism/impact/impact_study.hpp"
 #include "processing/criticism/search/candidates.hpp"
 
@@ -30,12 +31,14 @@ class ImpactSearch {
   ImpactSearch(ImpactStudy& study, const Studied& base);
 
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
-  /// Of the candidates, one each; without freedom where every strength within reach is lost in the
-  /// noise.
+  /// Of the candidates, one each; a secant where one has no slope at none; without freedom where
+  /// every strength within reach is lost in the noise.
   [[nodiscard]] const std::vector<Direction>& directions() const { return directions_; }
   [[nodiscard]] const Candidate& candidate(const ImpactRefit& refit) const {
     return candidates_[refit.candidate];
   }
+  /// Of the candidates that have no slope at none and were tried at finite strengths.
+  [[nodiscard]] std::vector<FlatEffect> flat() const;
   [[nodiscard]] double log_trials() const;
   /// ln of the chance that the best of all candidates does as well on noise.
   [[nodiscard]] double with_search(double log_p) const;
@@ -60,7 +63,8 @@ class ImpactSearch {
   const Studied& base_;
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
-  std::vector<double> evidence_;  ///< at first order, as ImpactRefit's
+  std::vector<std::optional<FlatEffect>> flat_;  ///< by candidate
+  std::vector<double> evidence_;                 ///< at first order, as ImpactRefit's
   double trials_ = 1.0;
   double scale_ = kSolverDoubt;
 };

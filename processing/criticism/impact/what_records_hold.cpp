@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "processing/criticism/impact/impact_diagnosis.hpp"
+#include "processing/criticism/impact/impact_notes.hpp"
 
 #include "processing/algebra/algebra.hpp"
 

@@ -18,7 +18,6 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kDetected = 6.0;   ///< sigma
 constexpr double kToldApart = 5.0;  ///< sigma beside a rival
 
 /// The strength that stands at 5 sigma beside whichever other effect resembles it most.

@@ -8,6 +8,9 @@
 
 namespace kolsky {
 
+/// Deviations at which a strength is detectable.
+inline constexpr double kDetected = 6.0;
+
 /// What became of one effect of the library. Of its variants the one that noise makes least likely
 /// stands for it.
 struct CandidateResult {

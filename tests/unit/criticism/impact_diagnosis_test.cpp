@@ -109,8 +109,13 @@ TEST(ImpactDiagnosis, ASecondRelaxationIsFound) {
   EXPECT_LT(diagnosis.held_out.after, kHeldOutOfNulls) << told(diagnosis);
 }
 
-/// An offset has no slope at none, and is no candidate. What it does may not go into the law's form
-/// and be called adequate: the law would have to leave the way from Kirchhoff's stress to Cauchy's.
+const CandidateResult& row_of(const Diagnosis& diagnosis, const std::string& id) {
+  return *std::ranges::find(diagnosis.candidates, id, &CandidateResult::effect);
+}
+
+/// An offset has no slope at none, and is tried at finite strengths. What it does may not go into
+/// the law's form and be called adequate: the law would have to leave the way from Kirchhoff's
+/// stress to Cauchy's.
 TEST(ImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
   testing::ImpactWishes own = two_speeds(17, 3);
   own.offset_m = 0.007;
@@ -120,6 +125,25 @@ TEST(ImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
   EXPECT_TRUE(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
     return note.find("cannot exclude off-centre-contact") != std::string::npos;
   })) << told(diagnosis);
+  const CandidateResult& offset = row_of(diagnosis, "off-centre-contact");
+  EXPECT_NE(offset.verdict, "untestable") << told(diagnosis);
+  EXPECT_GT(offset.strength, 0.003);
+  EXPECT_GT(offset.detectable, 0.004) << "less of it stays on the bar's face";
+  EXPECT_LT(offset.detectable, 0.010);
+  EXPECT_GE(offset.identifiable, offset.detectable);
+}
+
+/// A gauge off the neutral fibre reads the bar bend, by an equation that is solved another way
+/// here: what an offset of the push does that the contact itself hardly shows.
+TEST(ImpactDiagnosis, TheBarsBendingIsNamed) {
+  testing::ImpactWishes own = two_speeds(18, 3);
+  own.bending_m = 2e-4;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::named) << told(diagnosis);
+  EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"bending"}) << told(diagnosis);
+  const ModelValue& chi = diagnosis.model.value().find("bending")->values[0];
+  EXPECT_NEAR(chi.value, own.bending_m, 3.0 * chi.sd) << told(diagnosis);
+  EXPECT_LT(chi.sd, 5e-5);
 }
 
 /// The second of two effects is too small for a claim and too large for nothing: it is not passed

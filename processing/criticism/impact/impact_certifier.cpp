@@ -1,0 +1,104 @@
+#include "processing/criticism/impact/impact_certifier.hpp"
+
+#include <numeric>
+
+#include "processing/criticism/fitting/held_out.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr double kSpeedsDiffer = -9.2;  ///< ln of the chance of strengths so different
+constexpr double kPart = 0.02;  ///< of what an effect explains: no matter where speeds differ
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
+
+std::size_t ImpactCertifier::speeds() const {
+  return study_.residuals().records().groups.size();
+}
+
+/// chi2 that strengths of their own at every speed would gain over the common one.
+double ImpactCertifier::disagreement(const Studied& studied, const std::string& id) const {
+  const ShotStrengths shots = shot_strengths(studied, id, study_.residuals().per_shot());
+  double q = 0.0;
+  for (const SpeedGroup& group : study_.residuals().records().groups) {
+    double information = 0.0;
+    double pull = 0.0;
+    for (std::size_t i = 0; i < group.shots.size() && !shots.weight.empty(); ++i) {
+      const std::size_t n = group.shots[i];
+      information += shots.weight[n];
+      pull += shots.weight[n] * (1.0 - shots.over_common[n]);
+    }
+    q += information > 0.0 ? pull * pull / information : 0.0;
+  }
+  return q;
+}
+
+double ImpactCertifier::gain_on_shots(const Studied& before, const Studied& after) const {
+  const std::size_t per_shot = study_.residuals().per_shot();
+  return sum(held_out_squares(before, per_shot)) - sum(held_out_squares(after, per_shot));
+}
+
+double ImpactCertifier::gain_on_speeds(const Studied& before, const Studied& after) const {
+  const ImpactResiduals& residuals = study_.residuals();
+  return sum(held_out_speeds(before, residuals.records(), residuals.per_shot())) -
+         sum(held_out_speeds(after, residuals.records(), residuals.per_shot()));
+}
+
+double ImpactCertifier::held_out_gain(const Studied& before, const Studied& after) const {
+  return speeds() > 1 ? gain_on_speeds(before, after) : gain_on_shots(before, after);
+}
+
+double ImpactCertifier::held_out_misfit(const Studied& studied) const {
+  const ImpactResiduals& residuals = study_.residuals();
+  return (speeds() > 1 ? sum(held_out_speeds(studied, residuals.records(), residuals.per_shot()))
+                       : sum(held_out_squares(studied, residuals.per_shot()))) /
+         static_cast<double>(studied.fit.residual.size());
+}
+
+bool ImpactCertifier::certified(const ImpactSearch& search, const ImpactRefit& refit,
+                                const Studied& current) const {
+  const double q = disagreement(refit.studied, search.candidate(refit).id());
+  const auto count = static_cast<double>(speeds());
+  const bool agrees = count < 2.0 || q < kPart * refit.gain ||
+                      log_chi2_tail(q / search.scale(), count - 1.0) > kSpeedsDiffer;
+  return search.with_search(refit.log_p) <= log_alpha_ && agrees &&
+         gain_on_shots(current, refit.studied) > 0.0 &&
+         (count < 2.0 || gain_on_speeds(current, refit.studied) > 0.0);
+}
+
+const ImpactRefit* ImpactCertifier::first_certified(const ImpactSearch& search,
+                                                    const std::vector<ImpactRefit>& refits,
+                                                    const Studied& current,
+                                                    std::vector<std::string>& rejected) const {
+  for (const ImpactRefit& refit : refits) {
+    if (refit.evidence < refits.front().evidence - kStandsBefore) {
+      break;
+    }
+    if (certified(search, refit, current)) {
+      return &refit;
+    }
+    rejected.push_back(search.candidate(refit).id());
+  }
+  return nullptr;
+}
+
+std::vector<std::string> beside(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
+                                const ImpactRefit& own) {
+  std::vector<std::string> ties;
+  for (const ImpactRefit& rival : refits) {
+    const std::string other = search.candidate(rival).id();
+    if (other != search.candidate(own).id() && rival.evidence > own.evidence - kStandsBefore) {
+      ties.push_back(other);
+    }
+  }
+  return ties;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "processing/criticism/impact/impact_study.hpp"
+#include "processing/criticism/search/candidate_table.hpp"
+
+namespace kolsky {
+
+/// By how many of its deviations the finite-strain law would leave its bounds if it might: to first
+/// order, from the slope that is left at the bound.
+[[nodiscard]] double law_beyond_bounds(const Studied& studied);
+/// From so many deviations on something is missing that what is fitted took up.
+inline constexpr double kPressed = 2.0;
+
+/// What limits a diagnosis of impacts, in sentences: repeats, the judged band, what is allowed for
+/// the calculation, rebounds, the law's form, friction, scatter of the speeds.
+/// @param candidates  of the first search
+/// @param scale       what a square of a normal deviate counts over
+/// @param flat        effects without a slope at none that are to be tried at finite strengths
+[[nodiscard]] std::vector<std::string> impact_notes(ImpactStudy& study, const Studied& current,
+                                                    const std::vector<CandidateResult>& candidates,
+                                                    double scale,
+                                                    const std::vector<std::string>& flat);
+
+/// Restitution, foretold and measured, at each speed.
+[[nodiscard]] std::vector<std::string> restitution_notes(const ImpactComparison& comparison);
+
+/// What the records hold of each material's three numbers, in a line each: how many combinations
+/// are known to a tenth, and the one that is known least.
+[[nodiscard]] std::vector<std::string> what_records_hold(ImpactStudy& study,
+                                                         const Studied& studied);
+
+}  // namespace kolsky

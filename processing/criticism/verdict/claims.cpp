@@ -1,0 +1,72 @@
+#include "processing/criticism/verdict/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace kolsky {
+
+void set_verdict(Diagnosis& diagnosis, const std::string& id, const std::string& verdict) {
+  for (CandidateResult& result : diagnosis.candidates) {
+    if (result.effect == id) {
+      result.verdict = verdict;
+    }
+  }
+}
+
+void drop_claim(Diagnosis& diagnosis, const std::string& id, const std::string& verdict) {
+  std::erase(diagnosis.effects, id);
+  diagnosis.tied_with.erase(id);
+  set_verdict(diagnosis, id, verdict);
+}
+
+std::vector<std::string> drop_claims(Diagnosis& diagnosis) {
+  std::vector<std::string> claimed = std::exchange(diagnosis.effects, {});
+  diagnosis.tied_with.clear();
+  for (const std::string& id : claimed) {
+    set_verdict(diagnosis, id, "rejected");
+  }
+  return claimed;
+}
+
+void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, const Model& before) {
+  diagnosis.verdict = DiagnosisVerdict::unknown;
+  diagnosis.notes.insert(diagnosis.notes.end(), reasons.begin(), reasons.end());
+  std::string nearest;
+  for (const std::string& id : drop_claims(diagnosis)) {
+    nearest += (nearest.empty() ? "" : " with ") + id;
+  }
+  if (!nearest.empty()) {
+    diagnosis.notes.push_back(fmt::format(
+        "nearest came {}: held-out misfit {:.3g} -> {:.3g}, noise alone {:.3g}", nearest,
+        diagnosis.held_out.before, diagnosis.held_out.after, diagnosis.held_out.floor));
+  }
+  diagnosis.model = before;
+  diagnosis.after = diagnosis.before;
+  diagnosis.held_out.after = diagnosis.held_out.before;
+}
+
+void settle_claims(Diagnosis& diagnosis,
+                   const std::function<void(CandidateResult&)>& set_strength) {
+  diagnosis.verdict =
+      diagnosis.effects.empty() ? DiagnosisVerdict::adequate : DiagnosisVerdict::named;
+  for (const std::string& id : diagnosis.effects) {
+    std::vector<std::string>& ties = diagnosis.tied_with[id];
+    std::erase_if(ties, [&](const std::string& other) {
+      return std::ranges::count(diagnosis.effects, other) > 0;
+    });
+    set_verdict(diagnosis, id, ties.empty() ? "named" : "tied");
+    for (const std::string& other : ties) {
+      set_verdict(diagnosis, other, "tied");
+      diagnosis.verdict = DiagnosisVerdict::tied;
+    }
+  }
+  for (CandidateResult& result : diagnosis.candidates) {
+    if (std::ranges::count(diagnosis.effects, result.effect) > 0) {
+      set_strength(result);
+    }
+  }
+}
+
+}  // namespace kolsky
