@@ -129,6 +129,11 @@ KelvinChain TrueSpecimen::chain() const {
   return made;
 }
 
+bool TrueSpecimen::asks_for_equilibrium() const {
+  return nonlinearity != 0.0 || radial_inertia != 0.0 || friction != 0.0 || gap_m != 0.0 ||
+         punching != 0.0 || permanent_strain != 0.0 || face_layer_m_per_N != 0.0;
+}
+
 void plant(ShpbWorld& world, const HiddenEffect& effect) {
   static const std::map<std::string, double TrueSpecimen::*> members{
       {"specimen-second-relaxation", &TrueSpecimen::relaxation_per_Pa},
@@ -143,6 +148,10 @@ void plant(ShpbWorld& world, const HiddenEffect& effect) {
   if (const auto found = members.find(effect.id); found != members.end()) {
     world.specimen.*(found->second) = effect.strength;
     world.specimen.relaxation_time_s = effect.detail("tau", world.specimen.relaxation_time_s);
+    if (world.specimen.inertia > 0.0 && world.specimen.asks_for_equilibrium()) {
+      throw InputError("--effect " + effect.id, "is not made beside specimen-inertia",
+                       "hide one of them");
+    }
     return;
   }
   if (effect.id == "specimen-dimensions") {

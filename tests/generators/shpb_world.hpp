@@ -30,6 +30,9 @@ struct TrueSpecimen {
 
   [[nodiscard]] double area_m2() const;
   [[nodiscard]] KelvinChain chain() const;
+  /// Whether it has what is made only where it deforms alike throughout: waves cross a specimen of
+  /// its own mass as they cross a rod.
+  [[nodiscard]] bool asks_for_equilibrium() const;
 };
 
 /// Two bars and a specimen. `base` holds the input bar, the gauges of both bars, sensors, shots and
