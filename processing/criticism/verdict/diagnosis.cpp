@@ -317,17 +317,37 @@ class Diagnostician {
     return changed;
   }
 
-  Studied without(const Studied& current, const std::string& id) {
+  static Model model_without(const Studied& current, const std::string& id) {
     Model model = current.model;
     std::erase_if(model.effects, [&](const EffectUse& use) { return use.id() == id; });
-    return changed(current, model);
+    return model;
+  }
+
+  Studied without(const Studied& current, const std::string& id) {
+    return changed(current, model_without(current, id));
+  }
+
+  /// The same begun from the moduli that the model started with: what goes may have stood in for
+  /// one of them, which has moved to where it does nothing and does not find back.
+  Studied without_from_start(const Studied& current, const std::string& id) {
+    Model model = model_without(current, id);
+    for (EffectUse& use : model.effects) {
+      const EffectUse* start = start_.find(use.id());
+      use = use.effect->about().base && start != nullptr ? *start : use;
+    }
+    start_moduli(model, study_.campaign(), study_.residuals());
+    return begun_at(model, Composition(model, study_.campaign()).start());
   }
 
   /// Another model, begun from where one stands.
   Studied changed(const Studied& current, const Model& model) {
+    const Composition composition(model, study_.campaign());
+    return begun_at(model, carry(current.composition, current.fit.theta, composition));
+  }
+
+  Studied begun_at(const Model& model, std::vector<double> theta) {
     Composition composition(model, study_.campaign());
-    ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(),
-                             carry(current.composition, current.fit.theta, composition));
+    ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(), std::move(theta));
     const Misfit misfit =
         misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
     Model after = fitted(model, composition, fit);
@@ -361,16 +381,26 @@ class Diagnostician {
     for (std::size_t i = 0; i + spared < diagnosis_.effects.size();) {
       const std::string id = diagnosis_.effects[i];
       Studied left = without(current, id);
-      const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-      const double loss = (left.fit.objective() - current.fit.objective()) / noise;
-      if (equivalent_square(log_gain_tail(loss, 1.0, false)) < 16.0 ||
-          (options_.safeguards.own_strengths &&
-           !own_strengths_confirmed(current, id, study_.campaign(), Claim::standing))) {
+      const bool confirmed =
+          !options_.safeguards.own_strengths ||
+          own_strengths_confirmed(current, id, study_.campaign(), Claim::standing);
+      if (confirmed && missed_in(left, current)) {
+        left = without_from_start(current, id);
+      }
+      if (!confirmed || !missed_in(left, current)) {
         drop(i, "not needed", std::move(left), current);
       } else {
         ++i;
       }
     }
+  }
+
+  /// Whether a fit is worse for want of what went.
+  [[nodiscard]] bool missed_in(const Studied& left, const Studied& current) const {
+    constexpr double kMissed = 16.0;  // as a square of a normal deviate
+    const double noise = noise_of(current.misfit, study_.campaign().shots.size());
+    const double loss = (left.fit.objective() - current.fit.objective()) / noise;
+    return equivalent_square(log_gain_tail(loss, 1.0, false)) >= kMissed;
   }
 
   /// @param left  the fit without it
