@@ -23,7 +23,8 @@ namespace {
 constexpr double kTie = 7.5;
 /// A rival may be so much likelier to be chance than what may be named.
 constexpr double kRivalChance = 10.0;
-constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
+constexpr std::size_t kMostBelieved = 2;  ///< effects that are missing at once
+constexpr double kAllowedRest = 0.01;     ///< of a misfit that one certified effect explains
 
 std::string chance_text(double log_p) {
   constexpr double kLeast = -27.6;  // 1e-12: below, normal noise is no longer what one knows it as
@@ -111,7 +112,8 @@ class Diagnostician {
       drop(0, "rejected", without(current, diagnosis_.effects[0]), current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
-      drop_unneeded(current, 1);  // the last was certified beside all others
+      // The last was certified beside all others, unless these take its part from another start.
+      drop_unneeded(current, diagnosis_.effects.size() > kMostBelieved ? 0 : 1);
       if (reconsider(current)) {
         drop_unneeded(current, 0);
       }
@@ -546,7 +548,7 @@ class Diagnostician {
 
   /// Anything can be expanded in three effects: that one is missing which the library does not have
   /// is likelier than that three are at once.
-  [[nodiscard]] bool more_than_two() const { return diagnosis_.effects.size() > 2; }
+  [[nodiscard]] bool more_than_two() const { return diagnosis_.effects.size() > kMostBelieved; }
 
   void set_verdict(const std::string& id, const std::string& verdict) {
     for (CandidateResult& result : diagnosis_.candidates) {

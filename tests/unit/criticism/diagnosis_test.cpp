@@ -241,6 +241,23 @@ TEST(Diagnosis, NamesTwoEffectsThatAreThereTogether) {
   }
 }
 
+// While one of the two is missing, the specimen's spring makes up for it by turning rigid: from
+// there no fit finds back, and what stood in for it seems to be needed.
+class BesideASpecimen : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(BesideASpecimen, TwoEffectsAreNamedThoughOneHasMovedItsSpring) {
+  testing::CampaignWishes wishes = split_wishes(GetParam(), 6, 2048);
+  wishes.noise_strain = 4e-6;
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("second-relaxation=9e-13,tau=8e-5"));
+  testing::hide(truth, testing::parse_effect("radial-inertia=8"));
+  Diagnosis diagnosis = diagnosed_split(truth);
+  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"radial-inertia", "second-relaxation"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, BesideASpecimen, ::testing::Values(202, 223));
+
 // While a gauge's length is missing the shots differ on the dashpot, without which the length does
 // not show: neither passes by itself.
 TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
