@@ -1,36 +1,23 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
-#include "processing/criticism/search/shot_strengths.hpp"
+#include "processing/criticism/verdict/choice.hpp"
+#include "processing/criticism/verdict/claims.hpp"
+#include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 
 namespace kolsky {
 
 namespace {
 
-/// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
-/// the true one stays in the set in 99.7 of 100 cases.
-constexpr double kTie = 7.5;
-/// A rival may be so much likelier to be chance than what may be named.
-constexpr double kRivalChance = 10.0;
-constexpr std::size_t kMostBelieved = 2;  ///< effects that are missing at once
-constexpr double kAllowedRest = 0.01;     ///< of a misfit that one certified effect explains
-
-std::string chance_text(double log_p) {
-  constexpr double kLeast = -27.6;  // 1e-12: below, normal noise is no longer what one knows it as
-  return log_p < kLeast ? "less than once in 10^12 campaigns"
-                        : fmt::format("once in {:.2g} campaigns", std::exp(-log_p));
-}
+constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
 HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
   const auto mean = [&](const Studied& studied) {
@@ -39,37 +26,6 @@ HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
   };
   return {mean(before), mean(after),
           study.campaign().shots.size() > 1 ? after.misfit.noise_scale : 1.0};
-}
-
-/// Whether an effect is so strong that nothing is built so: then noise was fitted with it.
-/// @param slack  while effects beside it are still missing, it stands for a part of these, too
-bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,
-                   double slack) {
-  const EffectUse* use = studied.model.find(id);
-  if (use == nullptr) {
-    return false;
-  }
-  double peak = 0.0;
-  for (const CampaignShot& shot : campaign.shots) {
-    peak = std::max(peak, shot.facts.peak_strain);
-  }
-  const auto& parameters = use->effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    // What is as strong as anything built comes out stronger every other time.
-    constexpr double kDeviations = 3.0;
-    constexpr double kExcused = 0.02;
-    constexpr double kMostExcused = 0.1;
-    const auto beyond = [&](double unit, double most) {
-      const double size = unit * std::abs(use->values[p].value);
-      const double excused =
-          std::clamp(kDeviations * unit * use->values[p].sd, kExcused * most, kMostExcused * most);
-      return most > 0.0 && size - excused > slack * most;
-    };
-    if (beyond(1.0, parameters[p].most) || beyond(peak, parameters[p].most_times_peak)) {
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -120,10 +76,7 @@ class Diagnostician {
     }
     if (on_trial_ && std::ranges::count(diagnosis_.effects, *on_trial_) > 0) {
       // Nothing found beside it makes the shots agree on it.
-      for (const std::string& id : std::exchange(diagnosis_.effects, {})) {
-        set_verdict(id, "rejected");
-      }
-      diagnosis_.tied_with.clear();
+      drop_claims(diagnosis_);
       current = study_.refit(first);
     }
     make_alike(current);
@@ -143,7 +96,7 @@ class Diagnostician {
           first_order_table({search.candidates(), search.directions(), current, search.log_trials(),
                              1.0, search.known(), study_.residuals().per_shot()});
     }
-    std::optional<Choice> choice = choose(search, current, first);
+    std::optional<Choice> choice = chooser_.choose(search, current, first);
     if (!choice) {
       return false;
     }
@@ -154,120 +107,6 @@ class Diagnostician {
     start_ = with(start_, search.candidates()[choice->candidate], true);
     take(*choice, current);
     return true;
-  }
-
-  /// What one search certifies: the best, and what cannot be told from it.
-  struct Choice {
-    std::string id;
-    std::size_t candidate = 0;
-    Studied studied;
-    std::vector<std::string> ties;
-    /// The shots do not agree on it, as they may not while another is missing.
-    bool on_trial = false;
-  };
-
-  std::optional<Choice> choose(Search& search, const Studied& base, bool note) {
-    std::vector<Refit> refits = search.refits();
-    const std::vector<Certification> held_out = certify(search, refits, base);
-    const std::size_t per_shot = study_.residuals().per_shot();
-    if (note) {
-      std::vector<std::size_t> all(refits.size());
-      std::iota(all.begin(), all.end(), std::size_t{0});
-      note_refits(search, refits, held_out, all, per_shot, diagnosis_.candidates);
-      for (const auto& [id, verdict] : search.dismissed()) {
-        if (std::ranges::none_of(refits, [&](const Refit& refit) {
-              return search.candidates()[refit.candidate].id() == id;
-            })) {
-          set_verdict(id, verdict);
-        }
-      }
-    }
-    std::optional<std::size_t> best;
-    std::optional<std::size_t> leading;
-    std::optional<std::size_t> nearest;
-    std::vector<std::size_t> confirmed;
-    for (std::size_t i = 0; i < refits.size(); ++i) {
-      const Refit& refit = refits[i];
-      // What slow noise does by itself is no rival.
-      if (!plausible(search, refit)) {
-        continue;
-      }
-      const bool may_be_named = claimable(search, refit);
-      leading = may_be_named && !leading ? i : leading;
-      if (leading && lead(refits[best.value_or(*leading)], refit) > kTie) {
-        continue;
-      }
-      const std::string id = search.candidates()[refit.candidate].id();
-      // Products of what each shot and each gauge has of its own are foretold by each other.
-      const bool foretold = refit.products || (held_out[i].gain > 0.0 && held_out[i].share > 0.5);
-      const Safeguards& safeguards = options_.safeguards;
-      constexpr double kSlack = 1.5;
-      const bool sound = (!safeguards.held_out || foretold) &&
-                         !beyond_belief(refit.studied, id, study_.campaign(), kSlack);
-      if (!sound || (safeguards.shot_agreement &&
-                     !shots_agree(refit.studied, refit.gain, id, study_.campaign(), per_shot))) {
-        set_verdict(id, "rejected");
-        nearest = sound && may_be_named && !nearest ? i : nearest;
-        continue;
-      }
-      confirmed.push_back(i);
-      best = may_be_named && !best ? i : best;
-    }
-    if (!best) {
-      return note && nearest ? std::optional(on_trial(search, refits[*nearest])) : std::nullopt;
-    }
-    std::vector<std::string> ties;
-    Refit& refit = refits[*best];
-    const std::string id = search.candidates()[refit.candidate].id();
-    for (const std::size_t i : confirmed) {
-      const std::string other = search.candidates()[refits[i].candidate].id();
-      // One and the same may stand there twice, with its strengths alike or each shot's own.
-      if (other != id && lead(refits[i], refits[*best]) < kTie) {
-        ties.push_back(other);
-      }
-    }
-    // An effect's variant that is confirmed stands for it, wherever it stands among them.
-    std::ranges::stable_partition(confirmed, [&](std::size_t i) { return i == *best; });
-    note_refits(search, refits, held_out, confirmed, per_shot, diagnosis_.candidates);
-    return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
-  }
-
-  /// What comes nearest: shots may differ by what is missing beside it.
-  static Choice on_trial(const Search& search, Refit& refit) {
-    return Choice{search.candidates()[refit.candidate].id(),
-                  refit.candidate,
-                  std::move(refit.studied),
-                  {},
-                  true};
-  }
-
-  [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const {
-    return search.with_search(refit.log_p) <= options_.log_alpha;
-  }
-
-  /// Too little to be named by itself, enough not to be told from what is named with hardly more.
-  [[nodiscard]] bool plausible(const Search& search, const Refit& refit) const {
-    return search.with_search(refit.log_p) <= options_.log_alpha + std::log(kRivalChance);
-  }
-
-  /// Exact for those that may be named; of the others first order tells enough.
-  std::vector<Certification> certify(const Search& search, const std::vector<Refit>& refits,
-                                     const Studied& base) {
-    const auto leading = std::find_if(refits.begin(), refits.end(),
-                                      [&](const Refit& refit) { return claimable(search, refit); });
-    std::vector<Certification> held_out;
-    const std::size_t per_shot = study_.residuals().per_shot();
-    const std::vector<double> before = held_out_squares(base, study_);
-    for (const Refit& refit : refits) {
-      const bool near =
-          leading != refits.end() && plausible(search, refit) && lead(*leading, refit) < 2.0 * kTie;
-      const Studied& own = refit.studied;
-      held_out.push_back(certification(
-          before, near ? held_out_squares(own, study_) : foretold_squares(own, study_),
-          base.fit.penalty - own.fit.penalty,
-          shot_strengths(own, search.candidates()[refit.candidate].id(), per_shot).weight));
-    }
-    return held_out;
   }
 
   /// The model goes on with it.
@@ -293,7 +132,7 @@ class Diagnostician {
       Model start = start_;
       std::erase_if(start.effects, [&](const EffectUse& use) { return use.id() == id; });
       Search search(study_, base, start, options_.safeguards);
-      std::optional<Choice> choice = choose(search, base, false);
+      std::optional<Choice> choice = chooser_.choose(search, base, false);
       if (!choice || std::count(diagnosis_.effects.begin(), diagnosis_.effects.end(), choice->id) >
                          (choice->id == id ? 1 : 0)) {
         continue;
@@ -308,7 +147,7 @@ class Diagnostician {
         continue;
       }
       if (choice->id != id) {
-        set_verdict(id, "not needed");
+        set_verdict(diagnosis_, id, "not needed");
         diagnosis_.tied_with.erase(id);
         diagnosis_.effects[i] = choice->id;
         changed = true;
@@ -410,9 +249,7 @@ class Diagnostician {
     const std::string id = diagnosis_.effects[i];
     current = std::move(left);
     std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });
-    diagnosis_.tied_with.erase(id);
-    diagnosis_.effects.erase(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(i));
-    set_verdict(id, verdict);
+    drop_claim(diagnosis_, id, verdict);
   }
 
   void conclude(const Studied& first, const Studied& current) {
@@ -432,87 +269,19 @@ class Diagnostician {
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
     const std::vector<std::string> reasons =
-        options_.safeguards.unknown ? why_unknown(current, remains) : std::vector<std::string>{};
-    // What is claimed itself is no rival of what is claimed beside it.
-    for (auto& [id, ties] : diagnosis_.tied_with) {
-      std::erase_if(ties, [&](const std::string& other) {
-        return std::ranges::count(diagnosis_.effects, other) > 0;
+        options_.safeguards.unknown ? why_unknown(diagnosis_, current, study_.campaign(), remains)
+                                    : std::vector<std::string>{};
+    if (reasons.empty()) {
+      settle_claims(diagnosis_, [&](CandidateResult& result) {
+        set_strength(current, result.effect, study_.residuals().per_shot(), result);
       });
-    }
-    const bool tied = std::any_of(diagnosis_.tied_with.begin(), diagnosis_.tied_with.end(),
-                                  [](const auto& own) { return !own.second.empty(); });
-    if (!reasons.empty()) {
-      give_up(reasons, before);
-    } else if (diagnosis_.effects.empty()) {
-      diagnosis_.verdict = DiagnosisVerdict::adequate;
     } else {
-      diagnosis_.verdict = tied ? DiagnosisVerdict::tied : DiagnosisVerdict::named;
-    }
-    for (const std::string& id : diagnosis_.effects) {
-      set_verdict(id, diagnosis_.tied_with[id].empty() ? "named" : "tied");
-      for (CandidateResult& result : diagnosis_.candidates) {
-        if (result.effect == id) {
-          set_strength(current, id, study_.residuals().per_shot(), result);
-        }
-      }
-    }
-    for (const auto& [id, ties] : diagnosis_.tied_with) {
-      for (const std::string& other : ties) {
-        set_verdict(other, "tied");
-      }
+      give_up(diagnosis_, reasons, before.model);
     }
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
           "one shot: held out were parts of its record, not shots; repeat the shot to certify");
     }
-  }
-
-  /// Nothing is named, and the model stays as it was.
-  void give_up(const std::vector<std::string>& reasons, const Studied& before) {
-    diagnosis_.verdict = DiagnosisVerdict::unknown;
-    diagnosis_.notes.insert(diagnosis_.notes.end(), reasons.begin(), reasons.end());
-    if (!diagnosis_.effects.empty()) {
-      std::string nearest;
-      for (const std::string& id : diagnosis_.effects) {
-        set_verdict(id, "rejected");
-        nearest += (nearest.empty() ? "" : " with ") + id;
-      }
-      diagnosis_.notes.push_back(fmt::format(
-          "nearest came {}: held-out misfit {:.3g} -> {:.3g}, noise alone {:.3g}", nearest,
-          diagnosis_.held_out.before, diagnosis_.held_out.after, diagnosis_.held_out.floor));
-    }
-    diagnosis_.effects.clear();
-    diagnosis_.tied_with.clear();
-    diagnosis_.model = before.model;
-    diagnosis_.after = diagnosis_.before;
-    diagnosis_.held_out.after = diagnosis_.held_out.before;
-  }
-
-  /// Why what was found is not what is missing, in sentences; empty: it may be.
-  /// @param remains  misfit that nothing explains
-  [[nodiscard]] std::vector<std::string> why_unknown(const Studied& current, bool remains) const {
-    std::vector<std::string> reasons;
-    if (remains) {
-      reasons.push_back(fmt::format(
-          "misfit repeats that no effect of the library explains: noise leaves as much {}",
-          chance_text(diagnosis_.unexplained_log_p)));
-    }
-    if (at_all_gauges_but_one()) {
-      reasons.emplace_back(
-          "the records ask for one effect at every gauge but one: it stands for something of that "
-          "one which the library lacks");
-    }
-    if (more_than_two()) {
-      reasons.emplace_back(
-          "it takes three effects of the library: likelier than that three are missing is that one "
-          "is which the library lacks");
-    }
-    for (const std::string& id : diagnosis_.effects) {
-      if (beyond_belief(current, id, study_.campaign(), 1.0)) {
-        reasons.push_back(id + " would have to be stronger than anything is built");
-      }
-    }
-    return reasons;
   }
 
   /// Beside what was found later, what was found first may have grown out of all bounds.
@@ -533,36 +302,12 @@ class Diagnostician {
     return kAllowedRest / (effects * effects);
   }
 
-  /// What all gauges but one need alike is something of that one which the library does not have.
-  [[nodiscard]] bool at_all_gauges_but_one() const {
-    std::map<std::string, std::size_t> gauges;
-    for (const std::string& id : diagnosis_.effects) {
-      if (const auto colon = id.find(':'); colon != std::string::npos) {
-        ++gauges[id.substr(0, colon)];
-      }
-    }
-    const std::size_t most = study_.campaign().gauges() - 1;
-    return most > 1 && std::any_of(gauges.begin(), gauges.end(),
-                                   [&](const auto& own) { return own.second >= most; });
-  }
-
-  /// Anything can be expanded in three effects: that one is missing which the library does not have
-  /// is likelier than that three are at once.
-  [[nodiscard]] bool more_than_two() const { return diagnosis_.effects.size() > kMostBelieved; }
-
-  void set_verdict(const std::string& id, const std::string& verdict) {
-    for (CandidateResult& result : diagnosis_.candidates) {
-      if (result.effect == id) {
-        result.verdict = verdict;
-      }
-    }
-  }
-
   Study& study_;
   const DiagnosisOptions& options_;
   Model start_;                          ///< unfitted, with the effects found so far
   std::optional<std::string> on_trial_;  ///< of these, what is to be certified beside others yet
   Diagnosis diagnosis_;
+  Chooser chooser_{study_, options_, diagnosis_};
 };
 
 }  // namespace

@@ -1,0 +1,149 @@
+#include "processing/criticism/verdict/choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "processing/criticism/search/shot_strengths.hpp"
+#include "processing/criticism/verdict/claims.hpp"
+#include "processing/criticism/verdict/disbelief.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
+/// the true one stays in the set in 99.7 of 100 cases.
+constexpr double kTie = 7.5;
+/// A rival may be so much likelier to be chance than what may be named.
+constexpr double kRivalChance = 10.0;
+
+std::string id_of(const Search& search, const Refit& refit) {
+  return search.candidates()[refit.candidate].id();
+}
+
+}  // namespace
+
+std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool first) {
+  Found found{search, search.refits(), {}};
+  found.held_out = certify(search, found.refits, base);
+  if (first) {
+    note_all(found);
+  }
+  Places places = places_of(found);
+  if (!places.best) {
+    if (!first || !places.nearest) {
+      return std::nullopt;
+    }
+    // Shots may differ by what is missing beside it.
+    Refit& nearest = found.refits[*places.nearest];
+    return Choice{id_of(search, nearest), nearest.candidate, std::move(nearest.studied), {}, true};
+  }
+  return chosen(found, std::move(places));
+}
+
+void Chooser::note_all(const Found& found) {
+  std::vector<std::size_t> all(found.refits.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  note_refits(found.search, found.refits, found.held_out, all, study_.residuals().per_shot(),
+              diagnosis_.candidates);
+  for (const auto& [id, verdict] : found.search.dismissed()) {
+    if (std::ranges::none_of(found.refits,
+                             [&](const Refit& own) { return id_of(found.search, own) == id; })) {
+      set_verdict(diagnosis_, id, verdict);
+    }
+  }
+}
+
+Chooser::Places Chooser::places_of(const Found& found) {
+  Places places;
+  std::optional<std::size_t> leading;
+  for (std::size_t i = 0; i < found.refits.size(); ++i) {
+    const Refit& refit = found.refits[i];
+    // What slow noise does by itself is no rival.
+    if (!plausible(found.search, refit)) {
+      continue;
+    }
+    const bool may_be_named = claimable(found.search, refit);
+    leading = may_be_named && !leading ? i : leading;
+    if (leading && lead(found.refits[places.best.value_or(*leading)], refit) > kTie) {
+      continue;
+    }
+    const bool is_sound = sound(found, i);
+    if (!is_sound || !agreed(found, i)) {
+      set_verdict(diagnosis_, id_of(found.search, refit), "rejected");
+      places.nearest = is_sound && may_be_named && !places.nearest ? i : places.nearest;
+      continue;
+    }
+    places.confirmed.push_back(i);
+    places.best = may_be_named && !places.best ? i : places.best;
+  }
+  return places;
+}
+
+bool Chooser::sound(const Found& found, std::size_t i) const {
+  const Refit& refit = found.refits[i];
+  const Certification& own = found.held_out[i];
+  // Products of what each shot and each gauge has of its own are foretold by each other.
+  const bool foretold = refit.products || (own.gain > 0.0 && own.share > 0.5);
+  constexpr double kSlack = 1.5;
+  return (!options_.safeguards.held_out || foretold) &&
+         !beyond_belief(refit.studied, id_of(found.search, refit), study_.campaign(), kSlack);
+}
+
+bool Chooser::agreed(const Found& found, std::size_t i) const {
+  const Refit& refit = found.refits[i];
+  return !options_.safeguards.shot_agreement ||
+         shots_agree(refit.studied, refit.gain, id_of(found.search, refit), study_.campaign(),
+                     study_.residuals().per_shot());
+}
+
+Choice Chooser::chosen(Found& found, Places places) {
+  const std::size_t best = *places.best;
+  const std::string id = id_of(found.search, found.refits[best]);
+  std::vector<std::string> ties;
+  for (const std::size_t i : places.confirmed) {
+    const std::string other = id_of(found.search, found.refits[i]);
+    // One and the same may stand there twice, with its strengths alike or each shot's own.
+    if (other != id && lead(found.refits[i], found.refits[best]) < kTie) {
+      ties.push_back(other);
+    }
+  }
+  // An effect's variant that is confirmed stands for it, wherever it stands among them.
+  std::ranges::stable_partition(places.confirmed, [&](std::size_t i) { return i == best; });
+  note_refits(found.search, found.refits, found.held_out, places.confirmed,
+              study_.residuals().per_shot(), diagnosis_.candidates);
+  Refit& refit = found.refits[best];
+  return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
+}
+
+bool Chooser::claimable(const Search& search, const Refit& refit) const {
+  return search.with_search(refit.log_p) <= options_.log_alpha;
+}
+
+/// Too little to be named by itself, enough not to be told from what is named with hardly more.
+bool Chooser::plausible(const Search& search, const Refit& refit) const {
+  return search.with_search(refit.log_p) <= options_.log_alpha + std::log(kRivalChance);
+}
+
+/// Exact for those that may be named; of the others first order tells enough.
+std::vector<Certification> Chooser::certify(const Search& search, const std::vector<Refit>& refits,
+                                            const Studied& base) const {
+  const auto leading =
+      std::ranges::find_if(refits, [&](const Refit& refit) { return claimable(search, refit); });
+  std::vector<Certification> held_out;
+  const std::vector<double> before = held_out_squares(base, study_);
+  for (const Refit& refit : refits) {
+    const bool near =
+        leading != refits.end() && plausible(search, refit) && lead(*leading, refit) < 2.0 * kTie;
+    const Studied& own = refit.studied;
+    held_out.push_back(certification(
+        before, near ? held_out_squares(own, study_) : foretold_squares(own, study_),
+        base.fit.penalty - own.fit.penalty,
+        shot_strengths(own, id_of(search, refit), study_.residuals().per_shot()).weight));
+  }
+  return held_out;
+}
+
+}  // namespace kolsky

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/search/search.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
+
+namespace kolsky {
+
+/// What one search certifies: the best, and what cannot be told from it.
+struct Choice {
+  std::string id;
+  std::size_t candidate = 0;
+  Studied studied;
+  std::vector<std::string> ties;
+  /// The shots do not agree on it, as they may not while another is missing.
+  bool on_trial = false;
+};
+
+/// Chooses what is claimed of what searches find, on chance, on shots that were held out, on what
+/// is built at all and on whether the shots agree.
+class Chooser {
+ public:
+  /// @param diagnosis  takes what becomes of the candidates; outlives this
+  Chooser(Study& study, const DiagnosisOptions& options, Diagnosis& diagnosis)
+      : study_(study), options_(options), diagnosis_(diagnosis) {}
+
+  /// @param base   the model that was searched
+  /// @param first  nothing is claimed yet: the candidates' rows take what the refits found, and
+  /// what the shots do not agree on is chosen on trial where nothing else is
+  [[nodiscard]] std::optional<Choice> choose(Search& search, const Studied& base, bool first);
+
+ private:
+  /// What a search refitted, and how it fares on shots that were held out.
+  struct Found {
+    Search& search;
+    std::vector<Refit> refits;
+    std::vector<Certification> held_out;
+  };
+  /// Places among the refits.
+  struct Places {
+    std::optional<std::size_t> best;     ///< that may be named
+    std::optional<std::size_t> nearest;  ///< to that, but for the shots' agreement
+    std::vector<std::size_t> confirmed;
+  };
+
+  void note_all(const Found& found);
+  [[nodiscard]] Places places_of(const Found& found);
+  [[nodiscard]] bool sound(const Found& found, std::size_t i) const;
+  [[nodiscard]] bool agreed(const Found& found, std::size_t i) const;
+  [[nodiscard]] Choice chosen(Found& found, Places places);
+  [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const;
+  [[nodiscard]] bool plausible(const Search& search, const Refit& refit) const;
+  [[nodiscard]] std::vector<Certification> certify(const Search& search,
+                                                   const std::vector<Refit>& refits,
+                                                   const Studied& base) const;
+
+  Study& study_;
+  const DiagnosisOptions& options_;
+  Diagnosis& diagnosis_;
+};
+
+}  // namespace kolsky

@@ -1,0 +1,89 @@
+#include "processing/criticism/verdict/disbelief.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace kolsky {
+
+namespace {
+
+std::string chance_text(double log_p) {
+  constexpr double kLeast = -27.6;  // 1e-12: below, normal noise is no longer what one knows it as
+  return log_p < kLeast ? "less than once in 10^12 campaigns"
+                        : fmt::format("once in {:.2g} campaigns", std::exp(-log_p));
+}
+
+/// What all gauges but one need alike is something of that one which the library does not have.
+bool at_all_gauges_but_one(const Diagnosis& diagnosis, const Campaign& campaign) {
+  std::map<std::string, std::size_t> gauges;
+  for (const std::string& id : diagnosis.effects) {
+    if (const auto colon = id.find(':'); colon != std::string::npos) {
+      ++gauges[id.substr(0, colon)];
+    }
+  }
+  const std::size_t most = campaign.gauges() - 1;
+  return most > 1 && std::any_of(gauges.begin(), gauges.end(),
+                                 [&](const auto& own) { return own.second >= most; });
+}
+
+}  // namespace
+
+bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,
+                   double slack) {
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr) {
+    return false;
+  }
+  double peak = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    peak = std::max(peak, shot.facts.peak_strain);
+  }
+  const auto& parameters = use->effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    // What is as strong as anything built comes out stronger every other time.
+    constexpr double kDeviations = 3.0;
+    constexpr double kExcused = 0.02;
+    constexpr double kMostExcused = 0.1;
+    const auto beyond = [&](double unit, double most) {
+      const double size = unit * std::abs(use->values[p].value);
+      const double excused =
+          std::clamp(kDeviations * unit * use->values[p].sd, kExcused * most, kMostExcused * most);
+      return most > 0.0 && size - excused > slack * most;
+    };
+    if (beyond(1.0, parameters[p].most) || beyond(peak, parameters[p].most_times_peak)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& current,
+                                     const Campaign& campaign, bool remains) {
+  std::vector<std::string> reasons;
+  if (remains) {
+    reasons.push_back(fmt::format(
+        "misfit repeats that no effect of the library explains: noise leaves as much {}",
+        chance_text(diagnosis.unexplained_log_p)));
+  }
+  if (at_all_gauges_but_one(diagnosis, campaign)) {
+    reasons.emplace_back(
+        "the records ask for one effect at every gauge but one: it stands for something of that "
+        "one which the library lacks");
+  }
+  if (diagnosis.effects.size() > kMostBelieved) {
+    reasons.emplace_back(
+        "it takes three effects of the library: likelier than that three are missing is that one "
+        "is which the library lacks");
+  }
+  for (const std::string& id : diagnosis.effects) {
+    if (beyond_belief(current, id, campaign, 1.0)) {
+      reasons.push_back(id + " would have to be stronger than anything is built");
+    }
+  }
+  return reasons;
+}
+
+}  // namespace kolsky
