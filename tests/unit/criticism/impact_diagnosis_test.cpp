@@ -64,8 +64,27 @@ class StiffeningCore : public ::testing::Test {
   inline static std::vector<Shot> shots_;
 };
 
+/// What a report shows is what the verdict stands on: the model as it was fitted, before and after,
+/// with the forces of each.
+void expect_shown_as_judged(const std::vector<Shot>& shots, const Diagnosis& diagnosis,
+                            const ImpactsSeen& seen) {
+  EXPECT_EQ(seen.before.misfit.chi2_reduced, diagnosis.before.chi2_reduced);
+  EXPECT_EQ(seen.after.misfit.chi2_reduced, diagnosis.after.chi2_reduced);
+  ThrownBalls again(shots);
+  const auto expected = again.study.compare(again.study.fit(paper_with({}))).speeds;
+  for (std::size_t g = 0; g < expected.size(); ++g) {
+    const SpeedSummary& shown = seen.before.speeds[g];
+    EXPECT_NEAR(shown.rms_percent, expected[g].rms_percent, 0.02 * expected[g].rms_percent);
+    EXPECT_NEAR(shown.restitution_foretold, expected[g].restitution_foretold, 1e-4);
+  }
+  EXPECT_LT(2.0 * seen.after.speeds.back().rms_percent, seen.before.speeds.back().rms_percent);
+}
+
 TEST_F(StiffeningCore, IsFound) {
-  const Diagnosis diagnosis = diagnosed(shots_);
+  ThrownBalls balls(shots_);
+  ImpactsSeen seen;
+  const Diagnosis diagnosis = diagnose_impacts(balls.study, paper_with({}), {}, &seen);
+  expect_shown_as_judged(shots_, diagnosis, seen);
   EXPECT_TRUE(holds(diagnosis, "core-nonlinearity")) << told(diagnosis);
   EXPECT_LT(diagnosis.held_out.after, 1.5 * diagnosis.held_out.floor) << told(diagnosis);
   EXPECT_GT(diagnosis.held_out.before, 2.0 * diagnosis.held_out.after);
