@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "processing/criticism/impact/impact_certifier.hpp"
@@ -293,10 +294,12 @@ class Diagnostician {
       flat_.push_back(flat.id);
     }
     set_limits(search.flat(), search.scale(), diagnosis_.candidates);
+    std::set<std::string> noted;
     for (const ImpactRefit& refit : refits) {
       const std::string id = search.candidate(refit).id();
+      const bool best = noted.insert(id).second;
       for (CandidateResult& result : diagnosis_.candidates) {
-        if (result.effect == id) {
+        if (best && result.effect == id) {
           result.gain = refit.gain;
           result.log_p = search.with_search(refit.log_p);
           result.own_log_p = refit.log_p;

@@ -184,7 +184,27 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
       chosen.push_back(i);
     }
   }
+  add_variants_as_likely(chosen);
   return chosen;
+}
+
+/// What is one of a few (bending as the section's turn or as the deflection's curvature) first
+/// order does not tell where much is missing: the others of them are refitted, too.
+void ImpactSearch::add_variants_as_likely(std::vector<std::size_t>& chosen) const {
+  constexpr double kAsLikely = 0.9;
+  constexpr double kMuch = kStandsBefore * kSolverDoubt;
+  for (const std::size_t best : std::vector<std::size_t>(chosen)) {
+    const Candidate& own = candidates_[best];
+    const bool one_of_few =
+        std::ranges::any_of(own.use.effect->about().parameters, &EffectParameter::chosen);
+    for (std::size_t i = 0; one_of_few && evidence_[best] > kMuch && i < candidates_.size(); ++i) {
+      const Candidate& other = candidates_[i];
+      if (i != best && other.id() == own.id() && other.use.per_shot == own.use.per_shot &&
+          evidence_[i] > kAsLikely * evidence_[best]) {
+        chosen.push_back(i);
+      }
+    }
+  }
 }
 
 std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor) {

@@ -42,7 +42,7 @@ class ImpactSearch {
   [[nodiscard]] double log_trials() const;
   /// ln of the chance that the best of all candidates does as well on noise.
   [[nodiscard]] double with_search(double log_p) const;
-  /// The candidates worth it, refitted; the best first.
+  /// The candidates worth it, refitted; the best first. An effect may be there in several variants.
   [[nodiscard]] std::vector<ImpactRefit> refits();
   /// Of what is allowed for the calculation's error, what the records leave open
   /// (solver_share.hpp).
@@ -52,6 +52,7 @@ class ImpactSearch {
 
  private:
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
+  void add_variants_as_likely(std::vector<std::size_t>& chosen) const;
   [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor);
   [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
                                                      Composition composition, ModelFit fit) const;

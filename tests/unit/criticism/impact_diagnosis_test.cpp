@@ -163,6 +163,8 @@ TEST(ImpactDiagnosis, TheBarsBendingIsNamed) {
   const ModelValue& chi = diagnosis.model.value().find("bending")->values[0];
   EXPECT_NEAR(chi.value, own.bending_m, 3.0 * chi.sd) << told(diagnosis);
   EXPECT_LT(chi.sd, 5e-5);
+  EXPECT_EQ(diagnosis.model.value().find("bending")->values[1].value, 0.0)
+      << "read as the section's turn, and not as the deflection's curvature";
 }
 
 /// The second of two effects is too small for a claim and too large for nothing: it is not passed
