@@ -73,6 +73,7 @@ struct CalibrationOptions {
   /// Moduli of viscoelastic bars as filed; none: they are found, those of a split bench as of one
   /// material.
   std::optional<BarPrior> bars;
+  /// 0: what the noise allows, at most what the bars were identified in.
   double band_limit_Hz = 0.0;
   std::vector<std::string> trusted;  ///< gauges whose gain, place and time count as right
   Workers workers;

@@ -12,6 +12,7 @@
 #include "processing/calibration/null_directions.hpp"
 #include "processing/calibration/part_model.hpp"
 #include "processing/criticism/fitting/study.hpp"
+#include "processing/criticism/records/judged_band.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/identification/known_unknowns.hpp"
 #include "processing/waves/bar_modes.hpp"
@@ -31,6 +32,16 @@ constexpr std::size_t kMostRefits = 8;
 /// Shots that are enough to tell waves and far end.
 constexpr std::size_t kShotsToChoose = 2;
 constexpr double kSpeedAt_Hz = 1e4;
+
+/// The highest frequency to judge: where none is asked for, what the noise leaves of that in which
+/// the bars' moduli are known.
+double band_Hz(const Campaign& campaign, const CalibrationOptions& options) {
+  const auto& identified = options.bars ? options.bars->material.identified : std::nullopt;
+  if (options.band_limit_Hz > 0.0 || !identified || !identified->band_limit_Hz) {
+    return options.band_limit_Hz;
+  }
+  return std::min(judged_band(campaign, 0.0).limit_Hz, *identified->band_limit_Hz);
+}
 
 /// Deviations that the worst of so many numbers exceeds by chance as rarely as one number does
 /// three.
@@ -82,7 +93,7 @@ class PartFit {
     Study study;
     Studied studied;
     Fitted(const Campaign& campaign, const CalibrationOptions& options, const Model& model)
-        : study(campaign, options.band_limit_Hz, options.workers), studied(study.fit(model)) {}
+        : study(campaign, band_Hz(campaign, options), options.workers), studied(study.fit(model)) {}
     [[nodiscard]] double widening() const { return std::max(1.0, studied.misfit.chi2_reduced); }
   };
 

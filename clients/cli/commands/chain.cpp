@@ -18,6 +18,7 @@
 #include "clients/report/svg.hpp"
 #include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
@@ -97,6 +98,7 @@ PredictionOptions options_of(const Settings& settings) {
 struct Bars {
   BarPrior prior{paper_pmma()};
   std::optional<double> band_limit_Hz;
+  std::string name;  ///< of what they were given by; empty: by the captures
 };
 
 Bars bars_of(const Settings& settings, ChainRun& run) {
@@ -107,7 +109,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   if (settings.bar_model) {
     const BarModelFile file = read_bar_model(*settings.bar_model);
     run.bars = file.name;
-    return {file.prior, file.band_limit_Hz};
+    return {file.prior, file.band_limit_Hz, file.name};
   }
   if (settings.bar_shots.empty()) {
     run.bars =
@@ -127,8 +129,8 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
   run.bars = fmt::format("identified from {} shots", shots.size());
   material.source = "kolsky chain, " + run.bars;
-  Bars bars{BarPrior(material), fit.band_limit_Hz};
-  bars.prior.from_waves = true;
+  material.identified = Material::Identified{fit.band_limit_Hz, run.bar->temperature_K};
+  Bars bars{BarPrior(material), fit.band_limit_Hz, std::string(kPlace) + "--bar-shots"};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       bars.prior.covariance[i][j] = fit.covariance[i][j];
@@ -137,10 +139,18 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   return bars;
 }
 
-SpecimenFit fit_of(const std::vector<Shot>& shots, const Settings& settings, const Bars& bars,
-                   const char* part) {
+SpecimenFit fit_of(const std::vector<Shot>& shots, const Bars& bars, const char* part) {
   say_to_a_person(fmt::format("identifying the {} from {} shots", part, shots.size()));
-  const bool own = settings.bar_shots.empty() && !settings.bar_model;
+  const bool own = bars.name.empty();
+  for (const Shot& shot : shots) {
+    if (!own) {
+      require_bar_model_holds(bars.prior.material, shot, bars.name);
+    }
+  }
+  if (const std::string unknown = own ? "" : temperature_unchecked(bars.prior.material, shots[0]);
+      !unknown.empty()) {
+    say_to_a_person("bars " + unknown);
+  }
   const BarPrior prior =
       own && shots.front().bar_model ? BarPrior(*shots.front().bar_model) : bars.prior;
   SpecimenFitOptions options;
@@ -410,8 +420,8 @@ int run_command(const Settings& settings, Context& context) {
   static_cast<void>(impact::check_mass(*bench.ball, core_filed, cover_filed));
   const std::vector<ForetoldSpeed> speeds = measure(settings, balls, run);
   const Bars bars = bars_of(settings, run);
-  run.core = fit_of(core, settings, bars, "core");
-  run.cover = fit_of(cover, settings, bars, "cover");
+  run.core = fit_of(core, bars, "core");
+  run.cover = fit_of(cover, bars, "cover");
   run.between = between(run.core, run.cover, same_bars(core, cover, settings),
                         same_bench(core.front().bench, cover.front().bench));
   SlowWork progress("kolsky chain");

@@ -106,7 +106,7 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
   }
   if (!files_a_deviation(uncertainty)) {
     text +=
-        "    nothing else counts: neither bench file nor bar model files a deviation\n"
+        "    nothing else counts: no deviation is filed of what this curve depends on\n"
         "    (<key>_sd)\n";
   }
   return text;

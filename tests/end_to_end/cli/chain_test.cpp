@@ -273,6 +273,12 @@ TEST_F(Chain, RefusesWhatIsNoChain) {
   EXPECT_TRUE(refused(
       kolsky(with(with(specimens, "--bar-shots", files_->core), "--ball-shots", files_->ball)),
       {"--bar-shots", "bar"}));
+  files_->folder.write("others.toml",
+                       "density_kg_m3 = 1400\npoisson_ratio = 0.36\nE1_Pa = 5.7e9\nE2_Pa = 37e9\n"
+                       "eta2_Pa_s = 1.8e6\n");
+  EXPECT_TRUE(refused(kolsky(with(with(specimens, "--bar-model", {files_->folder / "others.toml"}),
+                                  "--ball-shots", files_->ball)),
+                      {"others.toml", "1400 kg/m3"}));
   std::vector<std::string> few = with(specimens, "--ball-shots", files_->ball);
   few.insert(few.end(), {"--draws", "2"});
   EXPECT_TRUE(refused(kolsky(few), {"--draws"}));

@@ -188,6 +188,26 @@ TEST(BarCalibration, MaterialFiledOffIsNamed) {
   EXPECT_NEAR(found.measured.value, made.world.material.E1_Pa, 3.0 * found.measured.sd);
 }
 
+TEST(BarCalibration, JudgesNoFurtherThanItsBarsAreKnown) {
+  constexpr double kKnown_Hz = 8e3;
+  const testing::Campaign made = campaign(8, testing::Tolerances::filed, 2);
+  const std::vector<Shot> shots = testing::shots_of(made);
+  Material material = paper_pmma();
+  material.density_kg_m3 = {made.world.material.density_kg_m3};
+  material.E1_Pa = {made.world.material.E1_Pa, made.world.material.E1_Pa * 1e-2};
+  material.E2_Pa = {made.world.material.E2_Pa, made.world.material.E2_Pa * 0.1};
+  material.eta2_Pa_s = {made.world.material.eta2_Pa_s, made.world.material.eta2_Pa_s * 0.1};
+  material.identified = Material::Identified{kKnown_Hz, std::nullopt};
+  CalibrationOptions known;
+  known.bars = BarPrior(material);
+  CalibrationOptions asked = known;
+  asked.band_limit_Hz = kKnown_Hz;
+  const CalibratedNumber by_bars = number(calibrate(shots, known).parts.front(), "E1_Pa");
+  const CalibratedNumber by_hand = number(calibrate(shots, asked).parts.front(), "E1_Pa");
+  EXPECT_EQ(by_bars.measured.value, by_hand.measured.value);
+  EXPECT_EQ(by_bars.measured.sd, by_hand.measured.sd);
+}
+
 /// How often the truth lies within 1.96 stated deviations.
 TEST(BarCalibration, StatedIntervalsHoldTheTruth) {
   constexpr int kRepeats = 3;
