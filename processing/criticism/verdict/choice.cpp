@@ -82,30 +82,31 @@ Chooser::Places Chooser::places_of(const Found& found) {
   return places;
 }
 
-/// What shots foretell of each other is nearly all that a true effect gains (0.77 of it and more in
-/// 110 claims), and next to nothing of what one shot's noise alone asks for. Of two shots or parts
-/// of one record each is half of all that is known.
-double Chooser::least_foretold(const Refit& refit) const {
-  constexpr double kShare = 0.3;
-  constexpr std::size_t kFewestShots = 3;
-  return study_.campaign().shots.size() < kFewestShots ? 0.0 : kShare * refit.gain;
-}
-
 bool Chooser::sound(const Found& found, std::size_t i) const {
   const Refit& refit = found.refits[i];
   const Certification& own = found.held_out[i];
   // Products of what each shot and each gauge has of its own are foretold by each other.
-  const bool foretold = refit.products || (own.gain > least_foretold(refit) && own.share > 0.5);
+  const bool foretold = refit.products || (own.gain > 0.0 && own.share > 0.5);
   constexpr double kSlack = 1.5;
   return (!options_.safeguards.held_out || foretold) &&
          !beyond_belief(refit.studied, id_of(found.search, refit), study_.campaign(), kSlack);
 }
 
+/// What shots foretell of each other is nearly all that a true effect gains (0.77 of it and more in
+/// 110 claims), and next to nothing of what noise of one of them asks for.
+bool Chooser::foretold(const Found& found, std::size_t i) const {
+  constexpr double kShare = 0.3;
+  const Refit& refit = found.refits[i];
+  // Of two shots, or parts of one, each is half of all that is known.
+  return !options_.safeguards.held_out || refit.products || study_.campaign().shots.size() < 3 ||
+         found.held_out[i].gain > kShare * refit.gain;
+}
+
 bool Chooser::agreed(const Found& found, std::size_t i) const {
   const Refit& refit = found.refits[i];
-  return !options_.safeguards.shot_agreement ||
-         shots_agree(refit.studied, refit.gain, id_of(found.search, refit), study_.campaign(),
-                     study_.residuals().per_shot());
+  return foretold(found, i) && (!options_.safeguards.shot_agreement ||
+                                shots_agree(refit.studied, refit.gain, id_of(found.search, refit),
+                                            study_.campaign(), study_.residuals().per_shot()));
 }
 
 Choice Chooser::chosen(Found& found, Places places) {

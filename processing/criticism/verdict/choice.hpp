@@ -48,8 +48,8 @@ class Chooser {
 
   void note_all(const Found& found);
   [[nodiscard]] Places places_of(const Found& found);
-  [[nodiscard]] double least_foretold(const Refit& refit) const;
   [[nodiscard]] bool sound(const Found& found, std::size_t i) const;
+  [[nodiscard]] bool foretold(const Found& found, std::size_t i) const;
   [[nodiscard]] bool agreed(const Found& found, std::size_t i) const;
   [[nodiscard]] Choice chosen(Found& found, Places places);
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const;
