@@ -66,10 +66,13 @@ std::vector<double> values_at(std::span<const double> values, double interval_s,
   return result;
 }
 
+double low_pass_sigma_s(double cutoff_Hz) {
+  return std::sqrt(std::numbers::ln2) / (2.0 * std::numbers::pi * cutoff_Hz);
+}
+
 std::vector<double> low_passed(std::span<const double> values, double interval_s,
                                double cutoff_Hz) {
-  const double sigma =
-      std::sqrt(std::numbers::ln2) / (2.0 * std::numbers::pi * cutoff_Hz) / interval_s;
+  const double sigma = low_pass_sigma_s(cutoff_Hz) / interval_s;
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(4.0 * sigma));
   const auto count = static_cast<std::ptrdiff_t>(values.size());
   std::vector<double> weight(static_cast<std::size_t>(reach) + 1);

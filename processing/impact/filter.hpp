@@ -5,6 +5,8 @@
 
 namespace kolsky::impact {
 
+/// Deviation in time of the Gaussian weights that have -3 dB at `cutoff_Hz`.
+[[nodiscard]] double low_pass_sigma_s(double cutoff_Hz);
 /// Low-pass without delay: Gaussian weights, -3 dB at `cutoff_Hz`, renormalised at the ends.
 [[nodiscard]] std::vector<double> low_passed(std::span<const double> values, double interval_s,
                                              double cutoff_Hz);

@@ -1,5 +1,6 @@
 #include "processing/criticism/impact/impact_certifier.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 #include "processing/criticism/fitting/held_out.hpp"
@@ -94,7 +95,10 @@ std::vector<std::string> beside(const ImpactSearch& search, const std::vector<Im
   std::vector<std::string> ties;
   for (const ImpactRefit& rival : refits) {
     const std::string other = search.candidate(rival).id();
-    if (other != search.candidate(own).id() && rival.evidence > own.evidence - kStandsBefore) {
+    const bool as_good = rival.evidence > own.evidence - kStandsBefore;
+    // An effect may be there in several variants.
+    if (other != search.candidate(own).id() && as_good &&
+        std::ranges::find(ties, other) == ties.end()) {
       ties.push_back(other);
     }
   }

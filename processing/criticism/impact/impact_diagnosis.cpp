@@ -69,6 +69,7 @@ class Diagnostician {
     options_.progress("refitting rivals");
     const std::vector<ImpactRefit> refits = search.refits();
     scale_ = search.scale();
+    note_not_in_quiet(search);
     if (diagnosis_.candidates.empty()) {
       begin_table(search, refits, current);
     }
@@ -119,6 +120,17 @@ class Diagnostician {
       set_verdict(diagnosis_, id, "rejected");
     }
     return claimed;
+  }
+
+  /// What would explain much but for the quiet before the pulse, which does not hold it.
+  void note_not_in_quiet(const ImpactSearch& search) {
+    for (const std::string& id : search.not_in_quiet()) {
+      if (not_in_quiet_.insert(id).second) {
+        diagnosis_.notes.push_back(id +
+                                   " is not claimed: what it would add to the records is not in "
+                                   "them before the pulse");
+      }
+    }
   }
 
   void take(const Studied& refit, Studied& current) {
@@ -319,7 +331,8 @@ class Diagnostician {
   std::vector<double> first_anchor_;
   std::optional<AnchoredAt> anchor_;  ///< where the fine forces were taken for what was added last
   bool overruled_ = false;            ///< by another reading of the law
-  std::vector<std::string> flat_;     ///< without a slope at none
+  std::set<std::string> not_in_quiet_;
+  std::vector<std::string> flat_;  ///< without a slope at none
   struct Rest {
     std::string id;
     Studied studied;  ///< with it beside all that was found

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/impact/quiet_before.hpp"
 #include "processing/criticism/impact/solver_share.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
 #include "processing/criticism/search/search_trials.hpp"
@@ -306,6 +307,21 @@ void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
   rate(list);
 }
 
+void ImpactSearch::leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list) {
+  not_in_quiet_.clear();
+  std::erase_if(list, [&](const ImpactRefit& own) {
+    const std::string id = candidate(own).id();
+    const bool lacks = !stands_before_pulse(own.studied, id, study_.residuals());
+    if (lacks) {
+      not_in_quiet_.insert(id);
+    }
+    return lacks;
+  });
+  for (const ImpactRefit& own : list) {
+    not_in_quiet_.erase(candidate(own).id());  // in another variant it is there
+  }
+}
+
 std::vector<ImpactRefit> ImpactSearch::refits() {
   std::vector<std::size_t> chosen = worth_refitting();
   const auto from_afar_too =
@@ -324,6 +340,7 @@ std::vector<ImpactRefit> ImpactSearch::refits() {
       list.push_back(std::move(*own));
     }
   }
+  leave_out_what_quiet_lacks(list);
   if (!list.empty()) {
     rate(list);
     refine(list);

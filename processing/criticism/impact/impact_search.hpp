@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "processing/criticism/impact/flat_effects.hpp"
@@ -43,7 +45,11 @@ class ImpactSearch {
   /// ln of the chance that the best of all candidates does as well on noise.
   [[nodiscard]] double with_search(double log_p) const;
   /// The candidates worth it, refitted; the best first. An effect may be there in several variants.
+  /// What would be added to the records (hum, drift) is left out where it is not in the quiet
+  /// before the pulse.
   [[nodiscard]] std::vector<ImpactRefit> refits();
+  /// Ids of what the last refits left out so.
+  [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
   /// Of what is allowed for the calculation's error, what the records leave open
   /// (solver_share.hpp).
   [[nodiscard]] double solver_share() const;
@@ -56,6 +62,7 @@ class ImpactSearch {
   [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor);
   [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
                                                      Composition composition, ModelFit fit) const;
+  void leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list);
   void share_out(std::size_t count, const std::function<void(std::size_t, const Workers&)>& work);
   void refine(std::vector<ImpactRefit>& list);
   void rate(std::vector<ImpactRefit>& list);
@@ -66,6 +73,7 @@ class ImpactSearch {
   std::vector<Direction> directions_;
   std::vector<std::optional<FlatEffect>> flat_;  ///< by candidate
   std::vector<double> evidence_;                 ///< at first order, as ImpactRefit's
+  std::set<std::string> not_in_quiet_;
   double trials_ = 1.0;
   double scale_ = kSolverDoubt;
 };
