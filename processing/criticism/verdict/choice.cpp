@@ -86,9 +86,9 @@ bool Chooser::sound(const Found& found, std::size_t i) const {
   const Refit& refit = found.refits[i];
   const Certification& own = found.held_out[i];
   // Products of what each shot and each gauge has of its own are foretold by each other.
-  const bool foretold = refit.products || (own.gain > 0.0 && own.share > 0.5);
+  const bool foretells_most = refit.products || (own.gain > 0.0 && own.share > 0.5);
   constexpr double kSlack = 1.5;
-  return (!options_.safeguards.held_out || foretold) &&
+  return (!options_.safeguards.held_out || foretells_most) &&
          !beyond_belief(refit.studied, id_of(found.search, refit), study_.campaign(), kSlack);
 }
 
