@@ -3,6 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
+#include <utility>
+
 #include "tests/unit/tables/table_bench.hpp"
 
 namespace kolsky {
@@ -225,12 +228,22 @@ TEST(Requests, WithMoreThanAGibibyteAreRefused) {
   EXPECT_NE(line.find("is larger than 1073741824 bytes"), std::string::npos) << line;
 }
 
+/// A table with one fact beside it.
+TableImport with_fact(const TableBench& bench, const std::string& key, const std::string& value) {
+  TableImport request = bench.request({{"a.csv", "time_s,g1\n0,0\n1e-6,0\n"}});
+  request.meta = {{key, value}};
+  return request;
+}
+
+std::string refused_fact(const TableBench& bench, const std::string& key,
+                         const std::string& value) {
+  return testing::refusal_of([&] { (void)import_tables(with_fact(bench, key, value)); });
+}
+
 TEST(Requests, MetaIsChecked) {
   const TableBench bench(1);
   const auto refusal = [&](const std::string& key, const std::string& value) {
-    TableImport request = bench.request({{"a.csv", "time_s,g1\n0,0\n1e-6,0\n"}});
-    request.meta = {{key, value}};
-    return testing::refusal_of([&] { (void)import_tables(request); });
+    return refused_fact(bench, key, value);
   };
   EXPECT_TRUE(refusal("", "x").starts_with("meta : ")) << refusal("", "x");
   EXPECT_TRUE(refusal("note", "two\nlines").starts_with("meta note: "));
@@ -239,6 +252,41 @@ TEST(Requests, MetaIsChecked) {
       refusal("incident_speed_m_per_s", "fast").starts_with("meta incident_speed_m_per_s: "));
   EXPECT_TRUE(refusal("rebound_speed_m_per_s", "nan").starts_with("meta rebound_speed_m_per_s: "));
   EXPECT_NE(refusal("temperature_K", "20").find("20 C is 293.15"), std::string::npos);
+}
+
+TEST(Requests, WhatCameToTheBarCameWithASpeed) {
+  const TableBench bench(1);
+  for (const auto& [key, value, said] :
+       {std::array{"incident_speed_m_per_s", "-40.3", "-40.3 does not move towards the bar"},
+        std::array{"incident_speed_m_per_s", "0", "0 does not move towards the bar"},
+        std::array{"striker_speed_m_per_s", "0", "0 does not move towards the bar"},
+        std::array{"rebound_speed_m_per_s", "0", "0 is no rebound"},
+        std::array{"rebound_speed_m_per_s_sd", "-1", "-1 is no deviation"}}) {
+    const std::string line = refused_fact(bench, key, value);
+    EXPECT_TRUE(line.starts_with(std::string("meta ") + key + ": " + said)) << line;
+  }
+  EXPECT_NO_THROW((void)import_tables(with_fact(bench, "rebound_speed_m_per_s", "-30")));
+  EXPECT_NO_THROW((void)import_tables(with_fact(bench, "incident_speed_m_per_s_sd", "0")));
+}
+
+TEST(Requests, AFactWhoseNameIsNearlyOneThatIsReadIsRefused) {
+  const TableBench bench(1);
+  for (const auto& [written, meant] :
+       {std::pair{"incident_speed", "incident_speed_m_per_s"},
+        std::pair{"incident_speed_sd", "incident_speed_m_per_s_sd"},
+        std::pair{"incidentspeed_m_per_s", "incident_speed_m_per_s"},
+        std::pair{"incident_speed_km_per_h", "incident_speed_m_per_s"},
+        std::pair{"rebound_speed_m_s", "rebound_speed_m_per_s"},
+        std::pair{"Striker_speed_m_per_s", "striker_speed_m_per_s"},
+        std::pair{"temperature_C", "temperature_K"}}) {
+    const std::string line = refused_fact(bench, written, "300");
+    EXPECT_TRUE(line.starts_with(std::string("meta ") + written + ": ")) << line;
+    EXPECT_NE(line.find(std::string("did you mean ") + meant + "?"), std::string::npos) << line;
+  }
+  for (const char* free : {"specimen", "speed_of_feed_m_per_s", "temperature_of_room_K",
+                           "temperature_2_K", "incident_speed_m_per_s"}) {
+    EXPECT_NO_THROW((void)import_tables(with_fact(bench, free, "300"))) << free;
+  }
 }
 
 }  // namespace
