@@ -1,12 +1,26 @@
 #include "processing/criticism/records/ball_gate.hpp"
 
+#include "processing/base/error.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
 #include "processing/reduction/formatted.hpp"
 
 namespace kolsky {
 
+namespace {
+
+/// Of many captures, the one whose facts are refused is named.
+Reduction reduced(const Shot& shot) {
+  try {
+    return BallReducer().reduce(shot, {});
+  } catch (const InputError& error) {
+    throw error.inside("capture " + shot.id);
+  }
+}
+
+}  // namespace
+
 std::string no_ball_does(const Shot& shot) {
-  const Reduction reduction = BallReducer().reduce(shot, {});
+  const Reduction reduction = reduced(shot);
   if (!reduction.quality.reducible) {
     return reduction.quality.reason;
   }

@@ -262,9 +262,12 @@ std::optional<Measured> speed_fact(const Shot& shot, const std::string& key) {
   if (!value) {
     return std::nullopt;
   }
-  if (*value == 0.0 || sd.value_or(0.0) < 0.0) {
-    throw InputError("meta " + key, "is no speed with a deviation",
-                     "give metres per second and, as " + key + "_sd, a deviation from 0 up");
+  if (*value == 0.0) {
+    throw InputError("meta " + key, "0 is no speed", "give metres per second, as 31.1");
+  }
+  if (sd.value_or(0.0) < 0.0) {
+    throw InputError("meta " + key + "_sd", formatted("%.4g", *sd) + " is no deviation",
+                     "give metres per second, from 0 up");
   }
   return Measured{std::abs(*value), sd.value_or(0.0)};
 }

@@ -392,6 +392,14 @@ TEST(ImpactCampaign, WithoutASpeedNothingIsForetold) {
   EXPECT_THROW(static_cast<void>(read_campaign(shots)), InputError);
   shots[1].meta["incident_speed_m_per_s"] = "-31.1";
   EXPECT_THROW(static_cast<void>(read_campaign(shots)), InputError);
+  shots[1].meta["incident_speed_m_per_s"] = "0";
+  try {
+    static_cast<void>(read_campaign(shots));
+    FAIL() << "a ball at rest was taken";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(error.place().starts_with("capture " + shots[1].id)) << error.what();
+    EXPECT_EQ(error.problem(), "0 is no speed");
+  }
 }
 
 }  // namespace

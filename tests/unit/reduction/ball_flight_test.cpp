@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "processing/base/error.hpp"
 #include "tests/unit/reduction/ball_bench.hpp"
 
 namespace kolsky {
@@ -149,6 +150,14 @@ TEST(BallFlight, FactsAreMagnitudesWithTheirDeviations) {
   EXPECT_EQ(found.problem, "");
   EXPECT_EQ(found.incident_m_per_s->sd, 0.2);
   EXPECT_EQ(found.rebound_m_per_s->value, 25.0);
+  shot.meta["rebound_speed_m_per_s_sd"] = "-0.1";
+  try {
+    static_cast<void>(ball_flight(shot, 0.0));
+    FAIL() << "a deviation below 0 was taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "meta rebound_speed_m_per_s_sd");
+    EXPECT_EQ(error.problem(), "-0.1 is no deviation");
+  }
 }
 
 }  // namespace
