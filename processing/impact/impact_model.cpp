@@ -129,9 +129,15 @@ void check(const ImpactModel& model) {
   require(not_negative(model.duration_s) && model.duration_s <= 0.1, "duration_s",
           "is out of range", "give seconds, at most 0.1, 0 until the ball has left");
   const double radius_m = 0.5 * model.layers.back().outer_diameter_m;
-  for (const Probe& probe : model.probes) {
-    require(probe.radial_m >= 0.0 && std::hypot(probe.radial_m, probe.axial_m) < radius_m, "probes",
-            "lie outside the ball", "give places inside it, from its centre");
+  for (std::size_t i = 0; i < model.probes.size(); ++i) {
+    const Probe& probe = model.probes[i];
+    const std::string place = "probes[" + std::to_string(i) + "]";
+    require(not_negative(probe.radial_m), place,
+            in_words(probe.radial_m, "m") + " is no distance from the axis", "give one from 0 up");
+    require(std::hypot(probe.radial_m, probe.axial_m) < radius_m, place,
+            in_words(probe.radial_m, "m") + " from the axis and " + in_words(probe.axial_m, "m") +
+                " from the centre is outside of the ball",
+            "stay within " + in_words(radius_m, "m") + " of its centre");
   }
   for (const double time_s : model.field_times_s) {
     require(not_negative(time_s), "field_times_s", in_words(time_s, "s") + " is before the touch",

@@ -75,6 +75,10 @@ impact::KelvinUnit kelvin_unit(const std::optional<std::string>& text,
   }
   const auto [compliance_per_Pa, time_s] =
       two_numbers_in(*text, option_name, "give compliance and time, as 1e-9,1e-4");
+  if (!(compliance_per_Pa >= 0.0) || !(time_s > 0.0)) {
+    throw InputError(kPlace + option_name, "\"" + *text + "\" is not a passive solid's",
+                     "give a compliance in 1/Pa from 0 up and a time above 0 s, as 1e-9,1e-4");
+  }
   return {compliance_per_Pa, time_s};
 }
 
@@ -148,12 +152,14 @@ std::string option_for(const std::string& member) {
       {"time_step_s", "--time-step"},
       {"layers[0].solid.nonlinearity", "--core-nonlinearity"},
       {"layers[1].solid.nonlinearity", "--cover-nonlinearity"},
-      {"probes", "--probe"},
       {"field_times_s", "--field"}};
   for (const auto& [name, option_name] : options) {
     if (member == name) {
       return option_name;
     }
+  }
+  if (member.starts_with("probes[")) {
+    return "--probe";  // its numbers are in the line
   }
   return member;
 }

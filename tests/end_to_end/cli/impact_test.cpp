@@ -151,7 +151,9 @@ TEST(Impact, JsonHoldsTheFieldsAndPointsAskedFor) {
   EXPECT_EQ(json["probes"][0]["radial_m"], 0.005);
   EXPECT_EQ(json["probes"][0]["axial_m"], 0.010);
   EXPECT_TRUE(
-      refused(scene::kolsky(impact({"--speed", "40.3", "--probe", "0.03,0"})), {"--probe"}));
+      refused(scene::kolsky(impact({"--speed", "40.3", "--probe", "0.005,0", "--probe", "0.03,0"})),
+              {"--probe: 0.03 m from the axis and 0 m from the centre is outside of the ball",
+               "0.02135 m"}));
   EXPECT_TRUE(refused(scene::kolsky(impact({"--speed", "40.3", "--probe", "0.003"})), {"--probe"}));
 }
 
@@ -253,7 +255,10 @@ TEST(Impact, RefusesWhatCannotBe) {
   refuses(impact({"--speed", "nan"}), {"--speed", "give a finite number"});
   refuses(impact({"--speed", "40", "--time-step", "1e-5"}), {"--time-step", "stability"});
   refuses(impact({"--speed", "40", "--core-relaxation", "1e-9"}), {"--core-relaxation", "comma"});
-  refuses(impact({"--speed", "40", "--core-relaxation", "-1e-9,1e-4"}), {"compliance"});
+  refuses(impact({"--speed", "40", "--core-relaxation", "-1e-9,1e-4"}),
+          {"--core-relaxation: ", "-1e-9,1e-4", "compliance"});
+  refuses(impact({"--speed", "40", "--cover-relaxation", "1e-9,0"}),
+          {"--cover-relaxation: ", "time"});
   refuses(impact({"--speed", "40", "--offset", "0.02"}), {"--offset", "edge"});
   refuses(impact({"--speed", "51", "--core-nonlinearity", "-2"}),
           {"element", "turned inside out", "soften the solid less"});
