@@ -206,7 +206,7 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
   const auto singles = drawn_families(found.effects(), false, random);
   for (std::size_t i = 0;
        i < singles.size() && i < static_cast<std::size_t>(plan.singles_per_bench); ++i) {
-    const double multiple = kMultiples[random() % kMultiples.size()];
+    const double multiple = std::max(plan.least_multiple, kMultiples[random() % kMultiples.size()]);
     cases.push_back(with(id(CaseKind::single), CaseKind::single, anew(campaign, random),
                          {sized(*singles[i], multiple, random)}));
   }

@@ -14,8 +14,9 @@ struct Plan {
   int doubles_per_bench = 1;
   int absorbed_per_bench = 1;
   int withheld_per_bench = 1;
-  bool split = false;  ///< split bars
-  bool quick = false;  ///< short records on few gauges, white noise
+  bool split = false;           ///< split bars
+  bool quick = false;           ///< short records on few gauges, white noise
+  double least_multiple = 1.0;  ///< of its smallest identifiable size, that a single is planted at
   std::vector<double> measured_noise{};
 };
 

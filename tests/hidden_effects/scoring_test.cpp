@@ -16,6 +16,7 @@
 #include "tests/hidden_effects/failing_places.hpp"
 #include "tests/hidden_effects/further_experiment.hpp"
 #include "tests/hidden_effects/identifiability.hpp"
+#include "tests/hidden_effects/plain_faults.hpp"
 #include "tests/hidden_effects/score_table.hpp"
 #include "tests/hidden_effects/source_freedom.hpp"
 #include "tests/hidden_effects/whitening.hpp"
@@ -358,6 +359,34 @@ TEST(Verdict, TwoEffectsNeedASetEach) {
       R"({"verdict": "named", "effects": ["temperature", "gauge-factor:g1"], "tied_with": {}})");
   EXPECT_EQ(judge(two, answer).found, 2);
   EXPECT_TRUE(judge(two, answer).exact);
+}
+
+Verdict verdict_on(CaseKind kind, double multiple, std::vector<std::string> named, int found) {
+  Verdict made;
+  made.id = "b0";
+  made.kind = kind;
+  made.answered = named.empty() ? "unknown" : "named";
+  made.multiples = {multiple};
+  made.named = std::move(named);
+  made.found = found;
+  return made;
+}
+
+TEST(PlainFaults, AreFalseClaimsAndClearEffectsMissed) {
+  const auto faults = [](const Verdict& verdict) { return plain_faults({verdict}).size(); };
+  EXPECT_EQ(faults(verdict_on(CaseKind::null, 0.0, {}, 0)), 0U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::null, 0.0, {"bending"}, 0)), 1U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::withheld, 2.0, {}, 0)), 0U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::withheld, 2.0, {"bending"}, 0)), 1U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::absorbed, 0.1, {"bending"}, 0)), 1U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::single, 4.0, {"bending"}, 1)), 0U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::single, 4.0, {}, 0)), 1U);
+  // At its smallest identifiable size chance may hide it, but not name another.
+  EXPECT_EQ(faults(verdict_on(CaseKind::single, 1.0, {}, 0)), 0U);
+  EXPECT_EQ(faults(verdict_on(CaseKind::single, 1.0, {"crosstalk:g2"}, 0)), 1U);
+  Verdict late = verdict_on(CaseKind::null, 0.0, {}, 0);
+  late.answered = "timeout";
+  EXPECT_EQ(faults(late), 1U);
 }
 
 TEST(ScoreTable, MarksWhatFallsShort) {
