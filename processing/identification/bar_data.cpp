@@ -76,7 +76,10 @@ BarData::BarData(const std::vector<Shot>& shots, double band_limit_Hz, const Fir
   choose_band(band_limit_Hz);
   choose_judged_part();
   choose_judged_bins();
-  prepare_noise();
+  for (std::size_t j = 0; j < gauges(); ++j) {
+    noise_.spectra.emplace_back(quiet_of(j));
+  }
+  weigh(noise_);
   prepare_spectra();
 }
 
@@ -172,38 +175,50 @@ double BarData::quiet_to_skip(double edge) const {
   return skip;
 }
 
-/// Each gauge's noise from the quiet part of all shots together; never less than that of its codes.
-void BarData::prepare_noise() {
-  const double period_s = records_.front().period_s;
-  const double rate_share =
-      static_cast<double>(places_.samples) / static_cast<double>(transform_.length());
+double BarData::least_noise(std::size_t gauge) const {
+  double step = 0.0;
+  for (const BarRecords& records : records_) {
+    step = std::max(step, records.step[gauge]);
+  }
+  return step * step / 12.0;
+}
+
+std::vector<std::span<const double>> BarData::quiet_of(std::size_t gauge) const {
+  std::vector<std::span<const double>> quiet;
+  for (const BarRecords& records : records_) {
+    quiet.push_back(records.quiet(gauge));
+  }
+  return quiet;
+}
+
+BarNoise BarData::noise_with(const std::vector<NoiseSpectrum::Seen>& seen) const {
+  std::vector<std::vector<std::span<const double>>> quiet;
   for (std::size_t j = 0; j < gauges(); ++j) {
-    std::vector<std::span<const double>> quiet;
-    double floor = 0.0;
-    for (const BarRecords& records : records_) {
-      quiet.push_back(records.quiet(j));
-      floor = std::max(floor, records.step[j] * records.step[j] / 12.0);
-    }
-    const NoiseSpectrum noise(quiet);
-    std::vector<double> power;
+    quiet.push_back(quiet_of(j));
+  }
+  BarNoise noise;
+  noise.spectra = NoiseSpectrum::of_gauges(quiet, seen);
+  weigh(noise);
+  return noise;
+}
+
+void BarData::weigh(BarNoise& noise) const {
+  const double period_s = records_.front().period_s;
+  for (std::size_t j = 0; j < gauges(); ++j) {
+    const NoiseSpectrum& spectrum = noise.spectra[j];
+    const double floor = least_noise(j);
+    auto& power = noise.power.emplace_back();
     for (const Complex s : judged_path_) {
       const double cycles = s.imag() / (2.0 * std::numbers::pi) * period_s;
-      power.push_back(std::max(noise.power(cycles), floor) * static_cast<double>(places_.judged()) *
-                      rate_share);
+      power.push_back(std::max(spectrum.power(cycles), floor) * power_of_unit());
     }
-    noise_power_.push_back(std::move(power));
-    slow_noise_.push_back(noise.slow_parts());
-    auto& of_mean = variance_of_baseline_.emplace_back();
+    auto& of_mean = noise.variance_of_baseline.emplace_back();
     for (const BarRecords& records : records_) {
       const auto quiet_samples = static_cast<double>(records.quiet_samples);
       of_mean.push_back(
-          std::max(noise.variance_of_mean(records.quiet_samples), floor / quiet_samples));
+          std::max(spectrum.variance_of_mean(records.quiet_samples), floor / quiet_samples));
     }
   }
-}
-
-double BarData::baseline_sd(std::size_t shot, std::size_t gauge) const {
-  return std::sqrt(variance_of_baseline_[gauge][shot]);
 }
 
 void BarData::prepare_spectra() {
@@ -246,7 +261,7 @@ void BarData::combine_shots() {
         sum += (judged_[static_cast<std::size_t>(a)][0][k] *
                 std::conj(judged_[static_cast<std::size_t>(b)][0][k]))
                    .real() /
-               noise_power_[0][k];
+               noise_.power[0][k];
       }
       common(a, b) = common(b, a) = sum;
     }
@@ -265,6 +280,19 @@ void BarData::combine_shots() {
   };
   spectra_.push_back(combined(spectra_));
   judged_.push_back(combined(judged_));
+}
+
+std::vector<Complex> BarData::along_waves(std::size_t bin) const {
+  std::vector<Complex> along;
+  double squares = 0.0;
+  for (std::size_t shot = 0; shot < shots(); ++shot) {
+    along.push_back(std::conj(judged_[shot][0][bin]));
+    squares += std::norm(along.back());
+  }
+  for (Complex& share : along) {
+    share /= std::sqrt(squares);
+  }
+  return along;
 }
 
 }  // namespace kolsky

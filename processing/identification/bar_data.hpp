@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +12,22 @@
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
+
+/// Noise of a bar's gauges as it weighs on what is judged.
+struct BarNoise {
+  std::vector<NoiseSpectrum> spectra;                     ///< by gauge
+  std::vector<std::vector<double>> power;                 ///< by gauge and judged bin
+  std::vector<std::vector<double>> variance_of_baseline;  ///< by gauge and shot
+
+  /// The parts of a gauge's noise that are slower than a sample, in its samples.
+  [[nodiscard]] const std::vector<NoiseSpectrum::SlowPart>& slow(std::size_t gauge) const {
+    return spectra[gauge].slow_parts();
+  }
+  /// Standard deviation of a shot's baseline at a gauge.
+  [[nodiscard]] double baseline_sd(std::size_t shot, std::size_t gauge) const {
+    return std::sqrt(variance_of_baseline[gauge][shot]);
+  }
+};
 
 /// Records of one bar's shots as a fit needs them: damped spectra, low-passed and cut off where the
 /// low-pass has left nothing, and the way back to the part of the record that is judged.
@@ -70,29 +87,35 @@ class BarData {
     [[nodiscard]] std::size_t judged() const { return judged_end - judged_begin; }
   };
   [[nodiscard]] const Places& places() const { return places_; }
-  /// Standard deviation of a shot's baseline at a gauge.
-  [[nodiscard]] double baseline_sd(std::size_t shot, std::size_t gauge) const;
-
   [[nodiscard]] const Spectrum& judged(std::size_t shot, std::size_t gauge) const {
     return judged_[shot][gauge];
   }
   /// What judging multiplies a bin of the transform by.
   [[nodiscard]] double undo_filter(std::size_t bin) const { return undo_filter_[bin]; }
-  /// The parts of a gauge's noise that are slower than a sample, in its samples.
-  [[nodiscard]] const std::vector<NoiseSpectrum::SlowPart>& slow_noise(std::size_t gauge) const {
-    return slow_noise_[gauge];
+  /// Each gauge's noise by the quiet part of all shots together; never less than that of its codes.
+  [[nodiscard]] const BarNoise& noise() const { return noise_; }
+  /// The same, by what else there is to see of it, gauges that are alike taken together.
+  /// @param seen  by gauge
+  [[nodiscard]] BarNoise noise_with(const std::vector<NoiseSpectrum::Seen>& seen) const;
+  /// Power per sample of a gauge's noise below which it cannot be: that of its codes.
+  [[nodiscard]] double least_noise(std::size_t gauge) const;
+  /// Power in a judged bin of noise of unit power per sample.
+  [[nodiscard]] double power_of_unit() const {
+    return static_cast<double>(places_.judged()) / places_.samples_per_place;
   }
-  /// Power of a gauge's noise in each judged bin.
-  [[nodiscard]] const std::vector<double>& noise_power(std::size_t gauge) const {
-    return noise_power_[gauge];
-  }
+  /// What turns the shots' residuals in a judged bin into what a wrong model of the bar leaves of
+  /// all of them: it leaves its own share of each shot's wave, whatever that wave's shape.
+  /// @return by shot, of squares that add up to 1
+  [[nodiscard]] std::vector<Complex> along_waves(std::size_t bin) const;
 
  private:
   void choose_band(double asked_Hz);
   void choose_judged_part();
   void choose_judged_bins();
   [[nodiscard]] double quiet_to_skip(double edge) const;
-  void prepare_noise();
+  [[nodiscard]] std::vector<std::span<const double>> quiet_of(std::size_t gauge) const;
+  /// Fills in the powers and baselines that follow from the spectra.
+  void weigh(BarNoise& noise) const;
   void prepare_spectra();
   void combine_shots();
 
@@ -110,9 +133,7 @@ class BarData {
   std::vector<std::vector<Spectrum>> judged_;   ///< likewise
   Spectrum unit_offset_;
   Spectrum unit_impulse_;
-  std::vector<std::vector<double>> noise_power_;
-  std::vector<std::vector<double>> variance_of_baseline_;  ///< by gauge and shot
-  std::vector<std::vector<NoiseSpectrum::SlowPart>> slow_noise_;
+  BarNoise noise_;
 };
 
 }  // namespace kolsky

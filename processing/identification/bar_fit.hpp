@@ -6,6 +6,7 @@
 
 #include "processing/base/shot.hpp"
 #include "processing/identification/bar_data.hpp"
+#include "processing/identification/bar_misfit.hpp"
 #include "processing/identification/bar_model.hpp"
 
 namespace kolsky {
@@ -47,6 +48,9 @@ struct BarFit {
   std::vector<std::vector<double>> by_bench;
   std::vector<ShotEstimate> shots;
   double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
+  /// Where the model does not fit: deviations are widened for it, which is no more than a guess at
+  /// what they then are.
+  std::optional<CommonMisfit> misfit;
   std::size_t degrees_of_freedom = 0;
   double log_evidence =
       0.0;  ///< -(chi2 + parameters log data) / 2: families and theories compare by it
@@ -58,7 +62,8 @@ struct BarFit {
 };
 
 /// Fits one bar's material to any number of shots at once. The deviations include those of the
-/// bench's known unknowns; where chi2_reduced exceeds 1 they are widened by its square root. The
+/// bench's known unknowns; where the fit leaves more than noise they are widened for it, as if what
+/// it leaves were chance. The
 /// solid's parameters have a prior of five natural logarithms' deviation about values typical of
 /// the wave's speed: it matters only to those that the data leave open.
 /// @throws InputError as BarData, and where the search does not converge

@@ -119,11 +119,19 @@ std::string rounded(double value) {
 
 void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warnings) {
   const BarFit& three = result.three_element;
-  if (three.chi2_reduced > kMoreThanNoise) {
+  if (three.misfit) {
+    warnings.push_back(
+        "the model does not fit (three elements, " + name_of(three.theory) +
+        " waves): what all shots leave alike is " + rounded(three.misfit->power) +
+        " times the noise from " + in_words(three.misfit->low_Hz, "Hz") + " to " +
+        in_words(three.misfit->high_Hz, "Hz") + ", " + rounded(three.misfit->deviations) +
+        " deviations from chance; deviations are widened as if it were noise, but do "
+        "not count on them to hold the truth");
+  } else if (three.chi2_reduced > kMoreThanNoise) {
     warnings.push_back("the three-element solid leaves more than noise: reduced chi2 " +
                        rounded(three.chi2_reduced) +
-                       "; deviations are widened by its root, which does not cover what the model "
-                       "lacks");
+                       "; deviations are widened for what is left, which does not cover what the "
+                       "model lacks");
   }
   const FittedNumber& E2 = three.parameters[1];
   if (three.lossless || E2.sd > 0.3 * E2.value) {

@@ -20,7 +20,11 @@ constexpr std::size_t kLowestBins = 60;
 /// twice as many are taken then, without which eta2's intervals are 4 % small.
 constexpr std::size_t kLowestBinsUnderFallingNoise = 120;
 /// Bins of the lowest octave, over which residuals are averaged.
-constexpr Eigen::Index kFirstOctave = 2;
+constexpr std::size_t kFirstOctave = 2;
+/// In which the noise's powers come to within a few per cent of where they go.
+constexpr int kRoundsOfNoise = 3;
+/// In the logarithm of its power; deviations move by half of it.
+constexpr double kNoiseThatMatters = 0.05;
 /// Noise counts as slow where neighbouring samples are correlated by more than this.
 constexpr double kSlow = 0.8;
 /// Places at which noise enters, per bin: what moves faster is not in them. With six times as many
@@ -77,10 +81,10 @@ void take_off_quiet_mean(Eigen::Index quiet, EightColumns& shown) {
 
 /// Slow noise jumps from the end of what is judged to its beginning, which every bin sees alike: a
 /// ramp's spectrum. That of gauge 0 shows at the others.
-std::vector<BarData::Spectrum> jumps(const BarData& data) {
+std::vector<BarData::Spectrum> jumps(const BarData& data, const BarNoise& noise) {
   const auto variance_of = [&](std::size_t gauge) {
     double variance = 0.0;
-    for (const auto& part : data.slow_noise(gauge)) {
+    for (const auto& part : noise.slow(gauge)) {
       variance += part.keep > kSlow ? 2.0 * part.variance : 0.0;
     }
     return variance;
@@ -99,12 +103,12 @@ std::vector<BarData::Spectrum> jumps(const BarData& data) {
 }
 
 /// Whether slow noise begins to fall in the upper half of the lowest bins or just beyond them.
-bool noise_falls_across_lowest_bins(const BarData& data) {
+bool noise_falls_across_lowest_bins(const BarData& data, const BarNoise& noise) {
   const double top_cycles =
       static_cast<double>(kLowestBins) /
       (data.places().samples_per_place * static_cast<double>(data.places().judged()));
   for (std::size_t gauge = 0; gauge < data.gauges(); ++gauge) {
-    for (const auto& part : data.slow_noise(gauge)) {
+    for (const auto& part : noise.slow(gauge)) {
       const double knee_cycles = -std::log(part.keep) / (2.0 * std::numbers::pi);
       if (part.keep > kSlow && knee_cycles > 0.5 * top_cycles) {
         return true;
@@ -114,10 +118,46 @@ bool noise_falls_across_lowest_bins(const BarData& data) {
   return false;
 }
 
-std::size_t bins_taken_together(const BarData& data) {
+std::size_t bins_taken_together(const BarData& data, const BarNoise& noise) {
   const std::size_t wanted =
-      noise_falls_across_lowest_bins(data) ? kLowestBinsUnderFallingNoise : kLowestBins;
+      noise_falls_across_lowest_bins(data, noise) ? kLowestBinsUnderFallingNoise : kLowestBins;
   return std::min(wanted, data.judged_path().size());
+}
+
+/// What gauges' powers are to be expected to have been in a bin, gauge 0's first, where the others'
+/// residuals scatter so.
+/// @param echoes  mean square of what gauge 0's noise shows at the others
+Eigen::VectorXd expected_powers(const Eigen::VectorXd& power, const Eigen::MatrixXcd& echoes,
+                                const Eigen::MatrixXcd& scatter) {
+  const Eigen::Index others = echoes.rows();
+  Eigen::MatrixXcd covariance = power[0] * echoes;
+  covariance.diagonal() += power.tail(others);
+  const Eigen::LLT<Eigen::MatrixXcd> factor(covariance);
+  const Eigen::MatrixXcd inverse = factor.solve(Eigen::MatrixXcd::Identity(others, others));
+  const Eigen::MatrixXcd asked = inverse * scatter * inverse;
+  const double first_given = (inverse * echoes).trace().real();
+  const double first_asked = (asked * echoes).trace().real();
+  Eigen::VectorXd expected(power.size());
+  // The other end's answers make several of gauge 0's noise, and would have it overshoot.
+  expected[0] = power[0] + power[0] * power[0] * (first_asked - first_given) /
+                               std::max(1.0, power[0] * first_given);
+  for (Eigen::Index j = 0; j < others; ++j) {
+    const double own = power[j + 1];
+    expected[j + 1] = own + own * own * (asked(j, j).real() - inverse(j, j).real());
+  }
+  return expected;
+}
+
+/// By so much that weights and deviations would follow.
+bool moved(const BarNoise& before, const BarNoise& after) {
+  for (std::size_t j = 0; j < before.power.size(); ++j) {
+    for (std::size_t k = 0; k < before.power[j].size(); ++k) {
+      if (std::abs(std::log(after.power[j][k] / before.power[j][k])) > kNoiseThatMatters) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
@@ -138,7 +178,7 @@ std::size_t BarLikelihood::residuals() const {
 
 /// g after n returns is its first passage times
 ///   sum_{i <= n} (-R q_0)^i + R q_j sum_{i < n} (-R q_0)^i.
-BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
+std::vector<BarLikelihood::Echoes> BarLikelihood::echoes(std::span<const double> at) {
   const auto passages = model_.first_passages(at, data_.judged_path(), false);
   const Eigen::Index others = this->others();
   const double R = model_.reflection(at);
@@ -146,13 +186,12 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
       R != 0.0 ? model_.returns(at, data_.judged_path()) : std::vector<BarModel::Spectrum>{};
   const double turn_s = travel_there_and_back_s(data_, model_.moved(at), *model_.solid(at));
   const double turns = data_.judged_s() / turn_s;
-  Whitening whitening;
-  Eigen::MatrixXcd covariance(others, others);
+  std::vector<Echoes> list;
   Eigen::VectorXcd g(others);
-  Eigen::VectorXcd mean_g(others);
   for (std::size_t k = 0; k < data_.judged_path().size(); ++k) {
-    covariance.setZero();
-    mean_g.setZero();
+    Echoes& echoes = list.emplace_back();
+    echoes.mean_square = Eigen::MatrixXcd::Zero(others, others);
+    echoes.mean = Eigen::VectorXcd::Zero(others);
     Complex series = 1.0;
     Complex series_before = 0.0;
     Complex power = 1.0;
@@ -164,8 +203,8 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
             R != 0.0 ? series + R * returns[i + 1][k] * series_before : Complex(1.0);
         g[j] = passages.g[i][k] * echo;
       }
-      covariance += share * data_.noise_power(0)[k] * g * g.adjoint();
-      mean_g += share * g;
+      echoes.mean_square += share * g * g.adjoint();
+      echoes.mean += share * g;
       if (R == 0.0) {
         continue;
       }
@@ -173,14 +212,25 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
       series_before = series;
       series += power;
     }
+  }
+  return list;
+}
+
+BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at, BarNoise noise) {
+  const Eigen::Index others = this->others();
+  const std::vector<Echoes> echoes = this->echoes(at);
+  Whitening whitening;
+  for (std::size_t k = 0; k < echoes.size(); ++k) {
+    const double power_of_first = noise.power[0][k];
+    Eigen::MatrixXcd covariance = power_of_first * echoes[k].mean_square;
     for (Eigen::Index j = 0; j < others; ++j) {
-      covariance(j, j) += data_.noise_power(static_cast<std::size_t>(j) + 1)[k];
+      covariance(j, j) += noise.power[static_cast<std::size_t>(j) + 1][k];
     }
     const Eigen::LLT<Eigen::MatrixXcd> factor(covariance);
     // Real and imaginary part of a bin carry half of its power each.
     const Eigen::MatrixXcd inverse = factor.matrixL().solve(
         Eigen::MatrixXcd(Eigen::MatrixXcd::Identity(others, others) * std::numbers::sqrt2));
-    const Eigen::RowVectorXcd of_first = data_.noise_power(0)[k] * factor.solve(mean_g).adjoint();
+    const Eigen::RowVectorXcd of_first = power_of_first * factor.solve(echoes[k].mean).adjoint();
     for (Eigen::Index j = 0; j < others; ++j) {
       whitening.noise_of_first.push_back(of_first[j]);
       for (Eigen::Index l = 0; l <= j; ++l) {
@@ -188,7 +238,77 @@ BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at) {
       }
     }
   }
+  whitening.noise = std::move(noise);
   return whitening;
+}
+
+/// By expectation and maximisation: what the gauges' own noise is to be expected to have been, the
+/// residuals given, is fitted beside the quiet samples.
+std::optional<BarNoise> BarLikelihood::noise_by_residuals() {
+  if (data_.shots() < 2) {
+    return std::nullopt;
+  }
+  const std::vector<Echoes> echoes = this->echoes(place_.at);
+  const std::vector<Eigen::MatrixXcd> scatter = scatter_of_residuals();
+  BarNoise noise = data_.noise_with(expected_noise(weights_->noise, echoes, scatter));
+  if (!moved(weights_->noise, noise)) {
+    return std::nullopt;
+  }
+  for (int round = 1; round < kRoundsOfNoise; ++round) {
+    noise = data_.noise_with(expected_noise(noise, echoes, scatter));
+  }
+  return noise;
+}
+
+/// By gauge.
+std::vector<NoiseSpectrum::Seen> BarLikelihood::expected_noise(
+    const BarNoise& noise, const std::vector<Echoes>& echoes,
+    const std::vector<Eigen::MatrixXcd>& scatter) const {
+  const auto gauges = static_cast<Eigen::Index>(data_.gauges());
+  std::vector<NoiseSpectrum::Seen> seen(data_.gauges());
+  for (NoiseSpectrum::Seen& own : seen) {
+    own.samples = static_cast<double>(data_.places().judged()) * data_.places().samples_per_place;
+    own.stretches = static_cast<double>(data_.shots()) - 1.0;
+  }
+  Eigen::VectorXd power(gauges);
+  for (std::size_t k = 0; k < echoes.size(); ++k) {
+    const double cycles = static_cast<double>(k + 1) / seen[0].samples;
+    for (Eigen::Index j = 0; j < gauges; ++j) {
+      const auto gauge = static_cast<std::size_t>(j);
+      power[j] = std::max(noise.spectra[gauge].power_within(cycles, seen[0].samples),
+                          data_.least_noise(gauge));
+    }
+    const Eigen::VectorXd expected =
+        expected_powers(power, echoes[k].mean_square, scatter[k] / data_.power_of_unit());
+    for (std::size_t j = 0; j < data_.gauges(); ++j) {
+      seen[j].cycles.push_back(cycles);
+      seen[j].power.push_back(expected[static_cast<Eigen::Index>(j)]);
+    }
+  }
+  return seen;
+}
+
+/// Mean over what is not along the shots' waves: what a model lacks leaves next to nothing there.
+std::vector<Eigen::MatrixXcd> BarLikelihood::scatter_of_residuals() const {
+  const Eigen::Index others = this->others();
+  const std::size_t shots = data_.shots();
+  std::vector<Eigen::MatrixXcd> list;
+  Eigen::MatrixXcd residuals(others, static_cast<Eigen::Index>(shots));
+  for (std::size_t k = 0; k < data_.judged_path().size(); ++k) {
+    for (std::size_t shot = 0; shot < shots; ++shot) {
+      for (Eigen::Index j = 0; j < others; ++j) {
+        residuals(j, static_cast<Eigen::Index>(shot)) =
+            place_.residuals[shot][static_cast<std::size_t>(j)][k];
+      }
+    }
+    Eigen::MatrixXcd& scatter = list.emplace_back(residuals * residuals.adjoint());
+    const std::vector<Complex> along = data_.along_waves(k);
+    const Eigen::VectorXcd common =
+        residuals * Eigen::Map<const Eigen::VectorXcd>(along.data(), residuals.cols());
+    scatter -= common * common.adjoint();
+    scatter /= static_cast<double>(shots) - 1.0;
+  }
+  return list;
 }
 
 /// What a unit of gauge 0's reading over one stride shows at the others in the lowest bins. Columns
@@ -262,6 +382,7 @@ EightColumns BarLikelihood::shown_by_own(std::size_t bins, std::size_t stride) c
 }
 
 LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
+                                                     const BarNoise& noise,
                                                      std::size_t lowest_bins) {
   const BarData::Places& places = data_.places();
   const auto others = static_cast<Eigen::Index>(data_.gauges() - 1);
@@ -271,17 +392,17 @@ LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
   const double samples = static_cast<double>(stride) * places.samples_per_place;
   // Power per sample of what is not in the slow parts, which are treated each by itself.
   const auto steady = [&](std::size_t gauge, std::size_t bin) {
-    double power = data_.noise_power(gauge)[bin] * places.samples_per_place / judged;
+    double power = noise.power[gauge][bin] * places.samples_per_place / judged;
     const double cycles = data_.judged_path()[bin].imag() / (2.0 * std::numbers::pi) *
                           data_.records().front().period_s;
-    for (const auto& part : data_.slow_noise(gauge)) {
+    for (const auto& part : noise.slow(gauge)) {
       power -= part.power(cycles);
     }
     return std::max(power, 0.0);
   };
   EightColumns by_first = shown_by_first(at, lowest_bins, stride);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2 * others * bins, 2 * others * bins);
-  for (const auto& part : data_.slow_noise(0)) {
+  for (const auto& part : noise.slow(0)) {
     add_square(driven(by_first, part, samples), covariance);
   }
   for (Eigen::Index bin = 0; bin < bins; ++bin) {
@@ -294,9 +415,9 @@ LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
   for (Eigen::Index j = 0; j < others; ++j) {
     const auto gauge = static_cast<std::size_t>(j) + 1;
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(2 * bins, 2 * bins);
-    if (!data_.slow_noise(gauge).empty()) {
+    if (!noise.slow(gauge).empty()) {
       const EightColumns by_own = shown_by_own(lowest_bins, stride);
-      for (const auto& part : data_.slow_noise(gauge)) {
+      for (const auto& part : noise.slow(gauge)) {
         add_square(driven(by_own, part, samples), own);
       }
     }
@@ -317,11 +438,12 @@ LowerTriangle BarLikelihood::coupling_of_lowest_bins(std::span<const double> at,
   return LowerTriangle(factor.matrixLLT());
 }
 
-BarLikelihood::Weights BarLikelihood::weights_at(std::span<const double> at, bool together) {
-  Whitening weights = whitening(at);
+BarLikelihood::Weights BarLikelihood::weights_at(std::span<const double> at, bool together,
+                                                 const BarNoise& noise) {
+  Whitening weights = whitening(at, noise);
   if (together) {
-    weights.lowest_bins = bins_taken_together(data_);
-    weights.lowest_factor = coupling_of_lowest_bins(at, weights.lowest_bins);
+    weights.lowest_bins = bins_taken_together(data_, noise);
+    weights.lowest_factor = coupling_of_lowest_bins(at, noise, weights.lowest_bins);
   }
   return std::make_shared<const Whitening>(std::move(weights));
 }
@@ -360,13 +482,13 @@ void BarLikelihood::whiten_above_lowest(EightColumns& columns) const {
 /// The baseline of gauge 0 and the gauges' jumps: in the lowest bins they lie in the covariance.
 void BarLikelihood::look_at_nuisances() {
   place_.nuisances = EightColumns(rows(), 1 + others());
-  const std::vector<Spectrum> jump = jumps(data_);
+  const std::vector<Spectrum> jump = jumps(data_, weights_->noise);
   Spectrum offset(data_.judged_path().size());
   for (Eigen::Index j = 0; j < others(); ++j) {
     const auto i = static_cast<std::size_t>(j);
     judge_.judge_product(place_.transfers->g[i], data_.unit_offset(), offset);
     for (Complex& value : offset) {
-      value *= data_.baseline_sd(0, 0);
+      value *= weights_->noise.baseline_sd(0, 0);
     }
     put(offset, j, 0, weights_->lowest_bins, place_.nuisances);
     put(jump[i], j, 1 + j, weights_->lowest_bins, place_.nuisances);
@@ -515,29 +637,54 @@ Eigen::MatrixXd BarLikelihood::without_nuisances(const EightColumns& columns,
   return own;
 }
 
-/// Of the white residuals, by row.
-Eigen::VectorXd BarLikelihood::mean_squares_by_octaves() const {
-  const Eigen::VectorXd squares =
-      without_nuisances(place_.white_residuals, static_cast<Eigen::Index>(place_.shots.size()))
-          .rowwise()
-          .squaredNorm() /
-      static_cast<double>(place_.shots.size());
-  const Eigen::Index per_bin = 2 * others();
-  const Eigen::Index bins = rows() / per_bin;
-  Eigen::VectorXd means(rows());
-  for (Eigen::Index first = 0; first < bins;) {
-    const Eigen::Index last = std::min(bins, std::max(first + kFirstOctave, 2 * first));
-    const Eigen::Index begin = per_bin * first;
-    const Eigen::Index count = per_bin * (last - first);
-    means.segment(begin, count).setConstant(squares.segment(begin, count).mean());
-    first = last;
+std::vector<std::size_t> BarLikelihood::octaves() const {
+  const std::size_t bins = data_.judged_path().size();
+  std::vector<std::size_t> firsts{0};
+  while (firsts.back() < bins) {
+    firsts.push_back(std::min(bins, std::max(firsts.back() + kFirstOctave, 2 * firsts.back())));
   }
-  return means;
+  return firsts;
 }
 
-Eigen::MatrixXd BarLikelihood::scatter_beyond(double known) {
+std::vector<OctaveLeft> BarLikelihood::left_over() const {
+  const auto shots = static_cast<Eigen::Index>(data_.shots());
+  const Eigen::MatrixXd own = without_nuisances(place_.white_residuals, shots);
+  Eigen::VectorXd alike(rows());
+  for (Eigen::Index row = 0; row < rows(); row += 2 * others()) {
+    const std::vector<Complex> along =
+        data_.along_waves(static_cast<std::size_t>(row / (2 * others())));
+    const Eigen::Map<const Eigen::VectorXcd> shares(along.data(), shots);
+    const auto real = own.middleRows(row, others());
+    const auto imaginary = own.middleRows(row + others(), others());
+    alike.segment(row, others()) = real * shares.real() - imaginary * shares.imag();
+    alike.segment(row + others(), others()) = real * shares.imag() + imaginary * shares.real();
+  }
+  const auto frequency_Hz = [&](std::size_t bin) {
+    return data_.judged_path()[bin].imag() / (2.0 * std::numbers::pi);
+  };
+  const std::vector<std::size_t> firsts = octaves();
+  std::vector<OctaveLeft> list;
+  for (std::size_t i = 0; i + 1 < firsts.size(); ++i) {
+    const Eigen::Index begin = 2 * others() * static_cast<Eigen::Index>(firsts[i]);
+    const Eigen::Index count = 2 * others() * static_cast<Eigen::Index>(firsts[i + 1]) - begin;
+    const auto numbers = static_cast<double>(count);
+    list.push_back(
+        {frequency_Hz(firsts[i]), frequency_Hz(firsts[i + 1] - 1), numbers,
+         own.middleRows(begin, count).squaredNorm() / (numbers * static_cast<double>(shots)),
+         alike.segment(begin, count).squaredNorm() / numbers});
+  }
+  return list;
+}
+
+Eigen::MatrixXd BarLikelihood::scatter_of(const std::vector<double>& power) {
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
-  const Eigen::VectorXd beyond = (mean_squares_by_octaves().array() - known).max(0.0);
+  const std::vector<std::size_t> firsts = octaves();
+  Eigen::VectorXd by_row(rows());
+  for (std::size_t i = 0; i < power.size(); ++i) {
+    const Eigen::Index begin = 2 * others() * static_cast<Eigen::Index>(firsts[i]);
+    const Eigen::Index count = 2 * others() * static_cast<Eigen::Index>(firsts[i + 1]) - begin;
+    by_row.segment(begin, count).setConstant(power[i]);
+  }
   const Slopes moving = slopes();
   EightColumns columns(rows(), parameters);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(parameters, parameters);
@@ -545,7 +692,7 @@ Eigen::MatrixXd BarLikelihood::scatter_beyond(double known) {
     put_slopes(index, moving, columns);
     whiten(columns);
     const Eigen::MatrixXd own = without_nuisances(columns, parameters);
-    scatter += own.transpose() * beyond.asDiagonal() * own;
+    scatter += own.transpose() * by_row.asDiagonal() * own;
   }
   return scatter;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "processing/identification/bar_judge.hpp"
+#include "processing/identification/bar_misfit.hpp"
 #include "processing/identification/bar_model.hpp"
 #include "processing/identification/wide_products.hpp"
 
@@ -51,7 +52,11 @@ class BarLikelihood {
   /// bin
   struct Whitening;
   using Weights = std::shared_ptr<const Whitening>;
-  [[nodiscard]] Weights weights_at(std::span<const double> at, bool together);
+  [[nodiscard]] Weights weights_at(std::span<const double> at, bool together) {
+    return weights_at(at, together, data_.noise());
+  }
+  [[nodiscard]] Weights weights_at(std::span<const double> at, bool together,
+                                   const BarNoise& noise);
   void use(Weights weights) { weights_ = std::move(weights); }
   [[nodiscard]] const Weights& weights() const { return weights_; }
 
@@ -64,12 +69,20 @@ class BarLikelihood {
   /// gradient . step + step . information . step / 2.
   [[nodiscard]] std::vector<ShotTerms> terms();
 
-  /// What noise beyond the one that the quiet samples show adds to the scatter of all shots'
-  /// gradients, at the place looked at last. A few hundred quiet samples say little of slow noise,
-  /// the residuals do: their mean square by octaves of frequency, over all shots and gauges, is
-  /// what the noise's power is there, in what the weights take it for.
-  /// @param known  mean square that is reckoned with already
-  [[nodiscard]] Eigen::MatrixXd scatter_beyond(double known);
+  /// The gauges' noise as the residuals show it at the place looked at last, every shot by itself,
+  /// beside the quiet samples: a few hundred of these say little of slow noise. Only what the shots
+  /// do not have in common counts, in which what the model lacks hardly shows and on which its
+  /// parameters hardly bear. Nothing where that is the noise that the weights have, and of a
+  /// single shot, of which noise and what the model lacks cannot be told apart.
+  [[nodiscard]] std::optional<BarNoise> noise_by_residuals();
+
+  /// What is left at the place looked at last, every shot by itself, in what the weights take for
+  /// noise.
+  [[nodiscard]] std::vector<OctaveLeft> left_over() const;
+  /// What more power than the weights reckon with adds to the scatter of all shots' gradients
+  /// there.
+  /// @param power  by octave, in what the weights take for noise
+  [[nodiscard]] Eigen::MatrixXd scatter_of(const std::vector<double>& power);
 
  private:
   using Spectrum = BarData::Spectrum;
@@ -91,8 +104,19 @@ class BarLikelihood {
   }
   /// Real parts of all gauges before imaginary ones, bin after bin.
   [[nodiscard]] Eigen::Index rows() const;
-  [[nodiscard]] Whitening whitening(std::span<const double> at);
-  [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at, std::size_t bins);
+  /// What a bin of gauge 0's noise shows at the others, over the returns there has been time for.
+  struct Echoes {
+    Eigen::MatrixXcd mean_square;
+    Eigen::VectorXcd mean;
+  };
+  [[nodiscard]] std::vector<Echoes> echoes(std::span<const double> at);
+  [[nodiscard]] Whitening whitening(std::span<const double> at, BarNoise noise);
+  [[nodiscard]] std::vector<Eigen::MatrixXcd> scatter_of_residuals() const;
+  [[nodiscard]] std::vector<NoiseSpectrum::Seen> expected_noise(
+      const BarNoise& noise, const std::vector<Echoes>& echoes,
+      const std::vector<Eigen::MatrixXcd>& scatter) const;
+  [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at,
+                                                      const BarNoise& noise, std::size_t bins);
   [[nodiscard]] EightColumns shown_by_first(std::span<const double> at, std::size_t bins,
                                             std::size_t stride);
   [[nodiscard]] EightColumns shown_by_own(std::size_t bins, std::size_t stride) const;
@@ -112,7 +136,8 @@ class BarLikelihood {
   [[nodiscard]] Slopes slopes() const;
   [[nodiscard]] Eigen::MatrixXd without_nuisances(const EightColumns& columns,
                                                   Eigen::Index count) const;
-  [[nodiscard]] Eigen::VectorXd mean_squares_by_octaves() const;
+  /// The first bin of each octave, the lowest of two, and one beyond the last.
+  [[nodiscard]] std::vector<std::size_t> octaves() const;
 
   const BarData& data_;
   BarJudge judge_;
@@ -123,6 +148,7 @@ class BarLikelihood {
 
 /// What whitens the residuals, and what estimates gauge 0's noise from them, by bin.
 struct BarLikelihood::Whitening {
+  BarNoise noise;
   std::vector<Complex> lower_inverse;   ///< triangles, row by row: rows of unit variance each
   std::vector<Complex> noise_of_first;  ///< p_0 g^H C^-1, gauge by gauge
   std::size_t lowest_bins = 0;          ///< which are taken together

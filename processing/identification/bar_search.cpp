@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
@@ -203,13 +204,49 @@ BarFit BarSearch::so_far() {
   return describe(objective_at(place_.at, BarLikelihood::Shots::each));
 }
 
+/// Evidence and chi2 stay those of the noise that the quiet samples show: all theories are compared
+/// by that, and what a model lacks must not pass for noise.
 BarFit BarSearch::finished() {
   minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
   minimise(BarLikelihood::Shots::each, kNegligibleGain);
-  const auto judged = static_cast<double>(likelihood_.residuals());
-  const double known = std::max(1.0, (place_.objective - prior_.chi2(place_.at)) / judged);
-  const Eigen::MatrixXd scatter = likelihood_.scatter_beyond(known);
-  BarFit fit = describe(place_.objective, &scatter);
+  const auto noise = likelihood_.noise_by_residuals();
+  if (!noise) {
+    return described_with_shots();
+  }
+  const BarFit by_quiet = describe(place_.objective);
+  const BarLikelihood::Weights weights = likelihood_.weights();
+  likelihood_.use(likelihood_.weights_at(at(), true, *noise));
+  minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
+  minimise(BarLikelihood::Shots::each, kNegligibleGain);
+  BarFit fit = described_with_shots();
+  fit.chi2_reduced = by_quiet.chi2_reduced;
+  fit.log_evidence = by_quiet.log_evidence;
+  likelihood_.use(weights);
+  return fit;
+}
+
+/// Once every shot has been looked at by itself. What is left beyond noise widens the deviations as
+/// noise of that power would; where the model does not fit, by what the shots have in common, which
+/// is all that a fit goes by: over many shots the noise that they do not share would hide it.
+BarFit BarSearch::described_with_shots() {
+  const std::vector<OctaveLeft> left = likelihood_.left_over();
+  const auto misfit = common_misfit(left, likelihood_.data().shots());
+  double squares = 0.0;
+  double numbers = 0.0;
+  std::vector<double> power;
+  for (const OctaveLeft& octave : left) {
+    power.push_back(misfit ? std::max(octave.of_all, octave.in_common) : octave.of_all);
+    squares += octave.numbers * power.back();
+    numbers += octave.numbers;
+  }
+  const double everywhere = std::max(1.0, squares / numbers);
+  for (double& beyond : power) {
+    beyond = std::max(0.0, beyond - everywhere);
+  }
+  const Eigen::MatrixXd inverse = inverse_of(place_.information);
+  BarFit fit = describe(place_.objective,
+                        everywhere * inverse + inverse * likelihood_.scatter_of(power) * inverse);
+  fit.misfit = misfit;
   for (const ShotTerms& shot : place_.shots) {
     fit.shots.push_back(estimate_of(shot, place_, prior_, likelihood_));
   }
@@ -217,7 +254,17 @@ BarFit BarSearch::finished() {
 }
 
 /// @param objective  of every shot by itself
-BarFit BarSearch::describe(double objective, const Eigen::MatrixXd* scatter) const {
+BarFit BarSearch::describe(double objective) const {
+  return describe(objective,
+                  inverse_of(place_.information) * std::max(1.0, chi2_reduced(objective)));
+}
+
+double BarSearch::chi2_reduced(double objective) const {
+  return (objective - prior_.chi2(place_.at)) /
+         static_cast<double>(likelihood_.residuals() - likelihood_.model().first_unknown());
+}
+
+BarFit BarSearch::describe(double objective, const Eigen::MatrixXd& posterior) const {
   const BarModel& model = likelihood_.model();
   const std::size_t solid = model.solid_parameters();
   BarFit fit;
@@ -227,17 +274,11 @@ BarFit BarSearch::describe(double objective, const Eigen::MatrixXd* scatter) con
   fit.lossless = model.theory().lossless;
   fit.band_limit_Hz = likelihood_.data().band_limit_Hz();
   fit.degrees_of_freedom = likelihood_.residuals() - model.first_unknown();
-  fit.chi2_reduced =
-      (objective - prior_.chi2(place_.at)) / static_cast<double>(fit.degrees_of_freedom);
+  fit.chi2_reduced = chi2_reduced(objective);
   fit.log_evidence =
       -0.5 * (objective + static_cast<double>(model.first_unknown()) *
                               std::log(static_cast<double>(likelihood_.residuals())));
-  const double widened = std::max(1.0, fit.chi2_reduced);
   const Eigen::MatrixXd inverse = inverse_of(place_.information);
-  Eigen::MatrixXd posterior = inverse * widened;
-  if (scatter != nullptr) {
-    posterior += inverse * *scatter * inverse;
-  }
   fit.at.assign(place_.at.data(), place_.at.data() + place_.at.size());
   fit.posterior = rows_of(posterior);
   fit.parameters = numbers_of(model.theory().solid, place_.at, posterior);
@@ -258,7 +299,8 @@ BarFit BarSearch::describe(double objective, const Eigen::MatrixXd* scatter) con
     fit.bench.push_back(
         {unknown.name, fit.at[at] * unknown.sd, std::sqrt(fit.posterior[at][at]) * unknown.sd});
     for (std::size_t p = 0; p < solid; ++p) {
-      fit.by_bench[p].push_back(fit.parameters[p].value * fit.posterior[p][at] / widened);
+      fit.by_bench[p].push_back(fit.parameters[p].value * inverse(static_cast<Eigen::Index>(p),
+                                                                  static_cast<Eigen::Index>(at)));
     }
   }
   return fit;

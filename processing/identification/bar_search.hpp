@@ -68,8 +68,10 @@ class BarSearch {
   [[nodiscard]] BarPlace looked_at(const Eigen::VectorXd& at, double objective);
   /// @return whether it came to an end below `hopeless`
   bool minimise(BarLikelihood::Shots shots, double negligible_gain, double hopeless = HUGE_VAL);
-  /// @param scatter  of the gradients beyond that of the noise as the weights have it, if known
-  [[nodiscard]] BarFit describe(double objective, const Eigen::MatrixXd* scatter = nullptr) const;
+  [[nodiscard]] BarFit describe(double objective) const;
+  [[nodiscard]] BarFit describe(double objective, const Eigen::MatrixXd& posterior) const;
+  [[nodiscard]] double chi2_reduced(double objective) const;
+  [[nodiscard]] BarFit described_with_shots();
 
   BarLikelihood likelihood_;
   ParameterPrior prior_;

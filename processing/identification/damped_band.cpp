@@ -60,8 +60,8 @@ std::vector<double> powers_at(const BarData& data, const DampedBand& band, std::
   const double of_constant = 1.0 / std::norm(band.path[k] * band.period_s);
   std::vector<double> powers;
   for (std::size_t j = 0; j < data.gauges(); ++j) {
-    const double baseline = data.baseline_sd(0, j);
-    powers.push_back(data.noise_power(j)[bin] / judged_samples * band.samples_seen() +
+    const double baseline = data.noise().baseline_sd(0, j);
+    powers.push_back(data.noise().power[j][bin] / judged_samples * band.samples_seen() +
                      baseline * baseline * of_constant);
   }
   return powers;

@@ -6,6 +6,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "processing/base/wide.hpp"
 #include "processing/waves/transform.hpp"
@@ -75,55 +76,153 @@ Eigen::ArrayXd slow_power_at_bins(double keep, double n, const Eigen::ArrayXd& h
 }
 
 /// Mean power of the stretches' last `samples` at the transform's bins but that at zero.
-struct Periodogram {
-  std::size_t samples = 0;
-  double stretches = 0.0;
-  std::vector<double> cycles;
-  Eigen::ArrayXd half_turn;  ///< sin^2(pi cycles)
-  Eigen::ArrayXd power;
-
-  explicit Periodogram(const std::vector<std::span<const double>>& quiet) {
-    std::size_t shortest = SIZE_MAX;
-    for (const auto& stretch : quiet) {
-      if (!stretch.empty()) {
-        shortest = std::min(shortest, stretch.size());
-        stretches += 1.0;
-      }
+NoiseSpectrum::Seen periodogram(const std::vector<std::span<const double>>& quiet) {
+  NoiseSpectrum::Seen seen;
+  std::size_t shortest = SIZE_MAX;
+  for (const auto& stretch : quiet) {
+    if (!stretch.empty()) {
+      shortest = std::min(shortest, stretch.size());
+      seen.stretches += 1.0;
     }
-    if (stretches == 0.0 || shortest < kFewestForSpectrum) {
+  }
+  if (seen.stretches == 0.0 || shortest < kFewestForSpectrum) {
+    return {};
+  }
+  std::size_t samples = shortest / 2 * 2;
+  while (good_transform_length(samples) != samples) {
+    samples -= 2;
+  }
+  seen.samples = static_cast<double>(samples);
+  DampedTransform transform(samples, 1.0, 1.0);
+  std::vector<Complex> spectrum(transform.bins());
+  const std::size_t bins = transform.bins() - 2;
+  seen.power.resize(bins);
+  for (const auto& stretch : quiet) {
+    if (stretch.empty()) {
+      continue;
+    }
+    transform.forward(stretch.last(samples), spectrum);
+    for (std::size_t k = 0; k < bins; ++k) {
+      seen.power[k] += std::norm(spectrum[k + 1]) / (seen.samples * seen.stretches);
+    }
+  }
+  for (std::size_t k = 0; k < bins; ++k) {
+    seen.cycles.push_back(static_cast<double>(k + 1) / seen.samples);
+  }
+  return seen;
+}
+
+/// What a gauge's noise is known by, one stretch of bins after the other.
+class Spectra {
+ public:
+  void add(const NoiseSpectrum::Seen& seen) {
+    const auto count = static_cast<Eigen::Index>(seen.power.size());
+    if (count == 0) {
       return;
     }
-    samples = shortest / 2 * 2;
-    while (good_transform_length(samples) != samples) {
-      samples -= 2;
+    const Eigen::Map<const Eigen::ArrayXd> cycles(seen.cycles.data(), count);
+    kinds_.push_back({seen.samples, (std::numbers::pi * cycles).sin().square()});
+    append(Eigen::Map<const Eigen::ArrayXd>(seen.power.data(), count), power_);
+    append(Eigen::ArrayXd::Constant(count, seen.stretches), stretches_);
+    append(cycles, cycles_);
+    longest_ = std::max(longest_, seen.samples);
+  }
+
+  [[nodiscard]] bool empty() const { return kinds_.empty(); }
+  [[nodiscard]] double longest() const { return longest_; }
+  [[nodiscard]] const Eigen::ArrayXd& power() const { return power_; }
+  [[nodiscard]] const Eigen::ArrayXd& stretches() const { return stretches_; }
+  [[nodiscard]] const Eigen::ArrayXd& cycles() const { return cycles_; }
+
+  /// What first-order noise of unit variance shows in them.
+  [[nodiscard]] Eigen::ArrayXd of_part(double keep) const {
+    Eigen::ArrayXd shown;
+    for (const Kind& kind : kinds_) {
+      append(slow_power_at_bins(keep, kind.samples, kind.half_turn), shown);
     }
-    DampedTransform transform(samples, 1.0, 1.0);
-    std::vector<Complex> spectrum(transform.bins());
-    const std::size_t bins = transform.bins() - 2;
-    power = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(bins));
-    for (const auto& stretch : quiet) {
-      if (stretch.empty()) {
-        continue;
+    return shown;
+  }
+
+  /// Where each octave's bins begin, and how many there are.
+  [[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> octaves() const {
+    std::vector<std::pair<Eigen::Index, Eigen::Index>> list;
+    Eigen::Index begin = 0;
+    for (const Kind& kind : kinds_) {
+      const Eigen::Index bins = kind.half_turn.size();
+      for (Eigen::Index first = 0; first < bins;) {
+        const Eigen::Index count = std::min(bins, std::max<Eigen::Index>(2, 2 * first)) - first;
+        list.emplace_back(begin + first, count);
+        first += count;
       }
-      transform.forward(stretch.last(samples), spectrum);
-      for (std::size_t k = 0; k < bins; ++k) {
-        power[static_cast<Eigen::Index>(k)] +=
-            std::norm(spectrum[k + 1]) / (static_cast<double>(samples) * stretches);
-      }
+      begin += bins;
     }
-    for (std::size_t k = 0; k < bins; ++k) {
-      cycles.push_back(static_cast<double>(k + 1) / static_cast<double>(samples));
-    }
-    half_turn = (std::numbers::pi * Eigen::Map<const Eigen::ArrayXd>(cycles.data(), power.size()))
-                    .sin()
-                    .square();
+    return list;
   }
 
   /// Whittle's log likelihood of a model's powers.
   [[nodiscard]] double log_likelihood(const Eigen::ArrayXd& model) const {
-    return -stretches * (model.log() + power / model).sum();
+    return -(stretches_ * (model.log() + power_ / model)).sum();
   }
+
+ private:
+  struct Kind {
+    double samples;
+    Eigen::ArrayXd half_turn;  ///< sin^2(pi cycles)
+  };
+
+  static void append(const Eigen::ArrayXd& values, Eigen::ArrayXd& to) {
+    Eigen::ArrayXd both(to.size() + values.size());
+    both << to, values;
+    to = std::move(both);
+  }
+
+  std::vector<Kind> kinds_;
+  Eigen::ArrayXd power_;
+  Eigen::ArrayXd stretches_;  ///< by bin
+  Eigen::ArrayXd cycles_;
+  double longest_ = 0.0;
 };
+
+Eigen::ArrayXd mean_power(const std::vector<Spectra>& gauges, const std::vector<double>& levels) {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(gauges.front().power().size());
+  for (std::size_t j = 0; j < gauges.size(); ++j) {
+    sum += gauges[j].power() / levels[j];
+  }
+  return sum / static_cast<double>(gauges.size());
+}
+
+/// Where all gauges have the same spectrum, the chance of refusing it is about one in a thousand.
+constexpr double kUnlike = 3.1;
+
+/// Of each gauge, over the mean of all.
+std::vector<double> levels_of(const std::vector<Spectra>& gauges) {
+  constexpr int kRounds = 3;
+  std::vector<double> levels(gauges.size(), 1.0);
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::ArrayXd mean = mean_power(gauges, levels);
+    for (std::size_t j = 0; j < gauges.size(); ++j) {
+      levels[j] = (gauges[j].power() / mean).mean();
+    }
+  }
+  return levels;
+}
+
+/// By the scatter of their powers over the mean, octave by octave.
+bool are_alike(const std::vector<Spectra>& gauges, const std::vector<double>& levels) {
+  const Eigen::ArrayXd mean = mean_power(gauges, levels);
+  double squares = 0.0;
+  double octaves = 0.0;
+  for (const auto& [first, count] : gauges.front().octaves()) {
+    for (std::size_t j = 0; j < gauges.size(); ++j) {
+      const Eigen::ArrayXd over =
+          gauges[j].power().segment(first, count) / (levels[j] * mean.segment(first, count));
+      squares += std::pow(over.mean() - 1.0, 2) * gauges[j].stretches().segment(first, count).sum();
+    }
+    octaves += 1.0;
+  }
+  const double freedom = (static_cast<double>(gauges.size()) - 1.0) * (octaves - 1.0);
+  return squares < freedom + kUnlike * std::sqrt(2.0 * freedom);
+}
 
 // Bins go through the sums four at a time, whatever the machine: on every one to the same bits.
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
@@ -155,11 +254,11 @@ KOLSKY_WIDE void put_inverse_of_sum(const std::vector<Eigen::ArrayXd>& parts,
 /// What data of this power ask of a part whose weight should grow or shrink, over what it gives.
 /// @param inverse  of the sum of all parts
 KOLSKY_WIDE double asked_over_given(const Eigen::ArrayXd& part, const Eigen::ArrayXd& inverse,
-                                    const Eigen::ArrayXd& power) {
+                                    const Eigen::ArrayXd& power, const Eigen::ArrayXd& stretches) {
   Four asked{};
   Four given{};
   for (Eigen::Index q = 0; q < part.size() / 4; ++q) {
-    const Four own = fours(part)[q] * fours(inverse)[q];
+    const Four own = fours(stretches)[q] * fours(part)[q] * fours(inverse)[q];
     given += own;
     asked += own * fours(inverse)[q] * fours(power)[q];
   }
@@ -171,17 +270,17 @@ KOLSKY_WIDE double asked_over_given(const Eigen::ArrayXd& part, const Eigen::Arr
 /// A sum of parts with positive weights, fitted to a periodogram.
 class NoiseSpectrum::Fit {
  public:
-  explicit Fit(const Periodogram& data)
+  explicit Fit(const Spectra& data)
       : data_(&data),
-        power_(in_fours(data.power)),
-        parts_{in_fours(Eigen::ArrayXd::Ones(data.power.size()))},
-        weights_{data.power.mean()} {
+        power_(in_fours(data.power())),
+        stretches_(in_fours(data.stretches())),
+        parts_{in_fours(Eigen::ArrayXd::Ones(data.power().size()))},
+        weights_{data.power().mean()} {
     refine();
   }
 
   void add(double keep) {
-    const Eigen::ArrayXd part =
-        slow_power_at_bins(keep, static_cast<double>(data_->samples), data_->half_turn);
+    const Eigen::ArrayXd part = data_->of_part(keep);
     parts_.push_back(in_fours(part));
     weights_.push_back(0.3 * weights_[0] / part.mean());
     keeps_.push_back(keep);
@@ -189,7 +288,7 @@ class NoiseSpectrum::Fit {
   }
 
   [[nodiscard]] double log_likelihood() const {
-    Eigen::ArrayXd model = Eigen::ArrayXd::Zero(data_->power.size());
+    Eigen::ArrayXd model = Eigen::ArrayXd::Zero(data_->power().size());
     for (std::size_t part = 0; part < parts_.size(); ++part) {
       model += weights_[part] * parts_[part].head(model.size());
     }
@@ -215,15 +314,16 @@ class NoiseSpectrum::Fit {
       put_inverse_of_sum(parts_, weights_, inverse);
       moved = 0.0;
       for (std::size_t part = 0; part < parts_.size(); ++part) {
-        const double factor = asked_over_given(parts_[part], inverse, power_);
+        const double factor = asked_over_given(parts_[part], inverse, power_, stretches_);
         weights_[part] *= factor;
         moved = std::max(moved, std::abs(factor - 1.0));
       }
     }
   }
 
-  const Periodogram* data_;
+  const Spectra* data_;
   Eigen::ArrayXd power_;
+  Eigen::ArrayXd stretches_;
   std::vector<Eigen::ArrayXd> parts_;  ///< what each shows at each bin; white noise first
   std::vector<double> weights_;        ///< likewise
   std::vector<double> keeps_;
@@ -274,10 +374,15 @@ NoiseSpectrum::Autoregression NoiseSpectrum::autoregression(
   return chosen;
 }
 
-NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) {
+NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet)
+    : NoiseSpectrum(quiet, Seen{}) {}
+
+NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet, const Seen& seen) {
   const Autoregression shaped = autoregression(quiet);
-  const Periodogram data(quiet);
-  if (data.power.size() == 0 || shaped.innovation <= 0.0) {
+  Spectra data;
+  data.add(periodogram(quiet));
+  data.add(seen);
+  if (data.empty() || shaped.innovation <= 0.0) {
     shaped_ = shaped;
     return;
   }
@@ -296,7 +401,7 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
         next = with;
       }
     };
-    for (double time = 1.0; time < 4.0 * static_cast<double>(data.samples); time *= 2.0) {
+    for (double time = 1.0; time < 4.0 * data.longest(); time *= 2.0) {
       look(time);
     }
     if (highest < likelihood + kWorthAPart / 2.0) {
@@ -315,9 +420,8 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
   }
   white_ = best.white();
   slow_ = best.slow();
-  Eigen::ArrayXd powers(data.power.size());
-  std::transform(data.cycles.begin(), data.cycles.end(), powers.begin(),
-                 [&](double cycles) { return shaped.power(cycles); });
+  const Eigen::ArrayXd powers =
+      data.cycles().unaryExpr([&](double cycles) { return shaped.power(cycles); });
   const double own = likelihood - 2.0 * static_cast<double>(slow_.size());
   const double others =
       data.log_likelihood(powers) - static_cast<double>(shaped.coefficients.size());
@@ -325,6 +429,56 @@ NoiseSpectrum::NoiseSpectrum(const std::vector<std::span<const double>>& quiet) 
     shaped_ = shaped;
     slow_.clear();
   }
+}
+
+NoiseSpectrum NoiseSpectrum::at_level(double level) const {
+  NoiseSpectrum scaled = *this;
+  scaled.white_ *= level;
+  scaled.shaped_.innovation *= level;
+  for (SlowPart& part : scaled.slow_) {
+    part.variance *= level;
+  }
+  return scaled;
+}
+
+std::vector<NoiseSpectrum> NoiseSpectrum::of_gauges(
+    const std::vector<std::vector<std::span<const double>>>& quiet, const std::vector<Seen>& seen) {
+  std::vector<Spectra> gauges(quiet.size());
+  bool comparable = true;
+  for (std::size_t j = 0; j < gauges.size(); ++j) {
+    gauges[j].add(periodogram(quiet[j]));
+    gauges[j].add(seen[j]);
+    comparable = comparable && !gauges[j].empty() && gauges[j].power().minCoeff() > 0.0 &&
+                 gauges[j].power().size() == gauges[0].power().size();
+  }
+  std::vector<NoiseSpectrum> spectra;
+  const std::vector<double> levels = comparable ? levels_of(gauges) : std::vector<double>{};
+  if (!comparable || !are_alike(gauges, levels)) {
+    for (std::size_t j = 0; j < gauges.size(); ++j) {
+      spectra.emplace_back(quiet[j], seen[j]);
+    }
+    return spectra;
+  }
+  std::vector<std::vector<double>> levelled;
+  Seen together = seen.front();
+  together.stretches = 0.0;
+  std::fill(together.power.begin(), together.power.end(), 0.0);
+  for (std::size_t j = 0; j < gauges.size(); ++j) {
+    for (const auto& stretch : quiet[j]) {
+      auto& own = levelled.emplace_back(stretch.begin(), stretch.end());
+      std::transform(own.begin(), own.end(), own.begin(),
+                     [&](double value) { return value / std::sqrt(levels[j]); });
+    }
+    together.stretches += seen[j].stretches;
+    for (std::size_t k = 0; k < together.power.size(); ++k) {
+      together.power[k] += seen[j].power[k] / (levels[j] * static_cast<double>(gauges.size()));
+    }
+  }
+  const NoiseSpectrum shape({levelled.begin(), levelled.end()}, together);
+  for (const double level : levels) {
+    spectra.push_back(shape.at_level(level));
+  }
+  return spectra;
 }
 
 double NoiseSpectrum::power(double cycles_per_sample) const {

@@ -15,9 +15,26 @@ namespace kolsky {
 /// unknown and its ends leak: the first family is compared as a stretch of that length shows it.
 class NoiseSpectrum {
  public:
+  /// Mean power, per sample, that longer stretches of the same noise show at whole cycles of their
+  /// length: what quiet stretches are too short for.
+  struct Seen {
+    double samples = 0.0;    ///< of a stretch
+    double stretches = 0.0;  ///< over how many the mean goes
+    std::vector<double> cycles;
+    std::vector<double> power;
+  };
+
   /// @param quiet  stretches of one gauge, each taken about its own mean; empty ones are passed
   /// over
   explicit NoiseSpectrum(const std::vector<std::span<const double>>& quiet);
+  NoiseSpectrum(const std::vector<std::span<const double>>& quiet, const Seen& seen);
+
+  /// Of several gauges, whose amplifiers are mostly of a kind: where their spectra, each at its own
+  /// level, differ by no more than chance, all have the shape that they show together. Slow noise
+  /// is then known several times as well. @param seen  by gauge
+  [[nodiscard]] static std::vector<NoiseSpectrum> of_gauges(
+      const std::vector<std::vector<std::span<const double>>>& quiet,
+      const std::vector<Seen>& seen);
 
   /// Power per sample at a frequency in cycles per sample: for white noise its variance.
   [[nodiscard]] double power(double cycles_per_sample) const;
@@ -51,6 +68,7 @@ class NoiseSpectrum {
   };
   class Fit;
 
+  [[nodiscard]] NoiseSpectrum at_level(double level) const;
   static Autoregression autoregression(const std::vector<std::span<const double>>& quiet);
 
   double white_ = 0.0;

@@ -87,13 +87,6 @@ std::vector<double> strain_of(const Shot& shot, const ShpbStation& station, std:
 
 }  // namespace
 
-const Bench& bench_of_all(const std::vector<Shot>& shots) {
-  for (const Shot& shot : shots) {
-    require_serving(shot, shots.front());
-  }
-  return shots.front().bench;
-}
-
 std::vector<ShpbStation> shpb_stations(const Bench& bench) {
   std::vector<ShpbStation> stations;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
@@ -137,6 +130,7 @@ std::vector<ShpbRecords> read_shpb_records(const std::vector<Shot>& shots,
   const double rate_Hz = shots.front().rate.Hz();
   auto quiet = static_cast<std::size_t>(kLongestQuiet_s * rate_Hz);
   for (const Shot& shot : shots) {
+    require_serving(shot, shots.front());
     pulses.push_back(pulse_of(shot, stations.front()));
     quiet = std::min(quiet, pulses.back().quiet);
   }

@@ -22,18 +22,13 @@ struct ShpbRecords {
   double foot_s = 0.0;                      ///< of the pulse at the first station, from sample 0
 };
 
-/// The bench that all shots were fired on. @pre there is a shot
-/// @throws InputError where a shot cannot serve: another kind of bench, other benches or rates
-///   among the shots, a hole, clipped codes
-[[nodiscard]] const Bench& bench_of_all(const std::vector<Shot>& shots);
-
 /// The stations of a bench of kind "shpb": those on the input bar first, from the impacted end on,
 /// then those on the output bar from the specimen on.
 /// @throws InputError where a bar has none
 [[nodiscard]] std::vector<ShpbStation> shpb_stations(const Bench& bench);
 
-/// @pre the shots are of one bench, as `bench_of_all` asks
-/// @throws InputError where a shot holds no pulse or no quiet samples before it
+/// @throws InputError where a shot cannot serve: another kind of bench, other benches or rates
+///   among the shots, a hole, clipped codes, no pulse, no quiet samples before it
 [[nodiscard]] std::vector<ShpbRecords> read_shpb_records(const std::vector<Shot>& shots,
                                                          const std::vector<ShpbStation>& stations);
 

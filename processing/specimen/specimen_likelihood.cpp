@@ -87,7 +87,7 @@ class Scaled final : public Compliance {
 
 SpecimenLikelihood::SpecimenLikelihood(const std::vector<Shot>& shots, const BarPrior& bars,
                                        const SpecimenWindow& window)
-    : bench_(bench_of_all(shots)),
+    : bench_(shots.front().bench),
       bars_(bars),
       stations_(shpb_stations(bench_)),
       records_(read_shpb_records(shots, stations_)),

@@ -31,8 +31,7 @@ struct SpecimenWindow {
 /// Holds work space: one thread at a time.
 class SpecimenLikelihood {
  public:
-  /// @throws InputError as bench_of_all and read_shpb_records, and where the window holds too
-  /// little
+  /// @throws InputError as read_shpb_records, and where the window holds too little
   SpecimenLikelihood(const std::vector<Shot>& shots, const BarPrior& bars,
                      const SpecimenWindow& window);
 

@@ -100,11 +100,17 @@ std::vector<Shot> BarShots::draw(std::size_t count, const Recording& recording,
       channel.code_min = static_cast<std::int32_t>(-full);
       channel.code_max = static_cast<std::int32_t>(full - 1);
       const double d = moved_m[j];
-      double noise = normal(random);
+      std::vector<double> coloured;
+      if (recording.colour != NoiseColour::white) {
+        coloured = testing::noise(recording.colour, 1.0, kStep_s * kStepsPerSample,
+                                  strain_[j].size(), random);
+      }
+      double noise = coloured.empty() ? normal(random) : 0.0;
       for (std::size_t n = 0; n < strain_[j].size(); ++n) {
         const double strain =
             gain[j] * peak * (strain_[j][n] + d * (gradient_[j][n] + 0.5 * d * curvature_[j][n]));
-        noise = recording.noise_correlation * noise + fresh * normal(random);
+        noise = coloured.empty() ? recording.noise_correlation * noise + fresh * normal(random)
+                                 : coloured[n];
         const double volts = (strain + recording.noise_rms * noise) / 1e-3;
         channel.codes.push_back(static_cast<std::int32_t>(
             std::clamp(std::round(volts / channel.scale), -full, full - 1)));

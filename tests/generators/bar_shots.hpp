@@ -5,6 +5,7 @@
 
 #include "drivers/simulated/rod.hpp"
 #include "processing/base/shot.hpp"
+#include "tests/generators/noise.hpp"
 
 namespace kolsky::testing {
 
@@ -27,7 +28,8 @@ class BarShots {
   /// How a shot is recorded. Deviations are filed in the bench; the truth is drawn from them.
   struct Recording {
     double noise_rms = 4e-6;
-    double noise_correlation = 0.0;  ///< of neighbouring samples
+    NoiseColour colour = NoiseColour::white;
+    double noise_correlation = 0.0;  ///< of neighbouring samples, of noise that is else white
     double gain_sd = 0.0;
     double position_sd_m = 0.0;
     int bits = 16;

@@ -17,6 +17,13 @@ constexpr std::array<std::pair<const char*, NoiseColour>, 4> kNames{
      {"pink", NoiseColour::pink},
      {"measured", NoiseColour::measured}}};
 
+// First-order parts of pink noise, each of the white part's variance.
+constexpr std::array kPinkTimes_s{2e-6, 8e-6, 32e-6, 128e-6, 512e-6, 2e-3};
+
+// Of coloured noise's first-order part.
+constexpr double kShortest_s = 30e-6;
+constexpr double kLongest_s = 300e-6;
+
 // First-order noise of unit variance.
 std::vector<double> slow(double time_s, double period_s, std::size_t samples,
                          std::mt19937_64& random) {
@@ -94,18 +101,17 @@ std::vector<double> noise(NoiseColour colour, double rms, double period_s, std::
     value = normal(random);
   }
   if (colour == NoiseColour::coloured) {
-    std::uniform_real_distribution<double> log_time(std::log(30e-6), std::log(300e-6));
+    std::uniform_real_distribution<double> log_time(std::log(kShortest_s), std::log(kLongest_s));
     add(out, slow(std::exp(log_time(random)), period_s, samples, random));
     for (double& value : out) {
       value *= std::sqrt(0.5);
     }
   } else if (colour == NoiseColour::pink) {
-    constexpr std::array kTimes_s{2e-6, 8e-6, 32e-6, 128e-6, 512e-6, 2e-3};
-    for (const double time_s : kTimes_s) {
+    for (const double time_s : kPinkTimes_s) {
       add(out, slow(time_s, period_s, samples, random));
     }
     for (double& value : out) {
-      value /= std::sqrt(1.0 + static_cast<double>(kTimes_s.size()));
+      value /= std::sqrt(1.0 + static_cast<double>(kPinkTimes_s.size()));
     }
   } else if (colour == NoiseColour::measured && measured.size() > 8) {
     out = stretch(measured, samples, random);
@@ -116,6 +122,30 @@ std::vector<double> noise(NoiseColour colour, double rms, double period_s, std::
     value *= rms;
   }
   return out;
+}
+
+std::vector<double> covariance_of(NoiseColour colour, double rms, double period_s,
+                                  std::size_t samples) {
+  std::vector<double> times_s;
+  double slow_part = 0.0;
+  if (colour == NoiseColour::coloured) {
+    constexpr int kTimes = 64;
+    for (int i = 0; i < kTimes; ++i) {
+      times_s.push_back(kShortest_s * std::pow(kLongest_s / kShortest_s, (i + 0.5) / kTimes));
+    }
+    slow_part = 0.5 * rms * rms / kTimes;
+  } else if (colour == NoiseColour::pink) {
+    times_s.assign(kPinkTimes_s.begin(), kPinkTimes_s.end());
+    slow_part = rms * rms / (1.0 + static_cast<double>(kPinkTimes_s.size()));
+  }
+  std::vector<double> covariance(samples, 0.0);
+  covariance[0] = rms * rms - slow_part * static_cast<double>(times_s.size());
+  for (std::size_t n = 0; n < samples; ++n) {
+    for (const double time_s : times_s) {
+      covariance[n] += slow_part * std::exp(-static_cast<double>(n) * period_s / time_s);
+    }
+  }
+  return covariance;
 }
 
 }  // namespace kolsky::testing

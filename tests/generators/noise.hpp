@@ -22,4 +22,9 @@ enum class NoiseColour {
                                         std::size_t samples, std::mt19937_64& random,
                                         const std::vector<double>& measured = {});
 
+/// Covariance of two samples of noise of that rms, by how many samples lie between; of coloured
+/// noise its mean over the times that are drawn. @param colour  not measured
+[[nodiscard]] std::vector<double> covariance_of(NoiseColour colour, double rms, double period_s,
+                                                std::size_t samples);
+
 }  // namespace kolsky::testing

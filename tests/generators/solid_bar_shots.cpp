@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "tests/generators/bar_readings.hpp"
 #include "tests/generators/campaign_draw.hpp"
@@ -77,10 +79,47 @@ Eigen::VectorXd stacked(const std::vector<Record>& stations) {
   return all;
 }
 
-/// Removes from columns whatever sources and offsets can make.
+/// Makes the noise of stacked records white, of unit variance.
+class Whitener {
+ public:
+  Whitener(NoiseColour colour, const Timing& timing) {
+    const auto samples = static_cast<Eigen::Index>(timing.samples);
+    const double quantum = 2.0 * kRange / std::ldexp(1.0, kBits);
+    std::vector<double> by_lag = covariance_of(colour, kNoise, timing.period_s(), timing.samples);
+    by_lag[0] += quantum * quantum / 12.0;
+    Eigen::MatrixXd covariance(samples, samples);
+    for (Eigen::Index a = 0; a < samples; ++a) {
+      for (Eigen::Index b = 0; b < samples; ++b) {
+        covariance(a, b) = by_lag[static_cast<std::size_t>(std::abs(a - b))];
+      }
+    }
+    white_sd_ = std::sqrt(by_lag[0]);
+    if (colour != NoiseColour::white) {
+      factor_.compute(covariance);
+    }
+  }
+
+  void apply(Eigen::MatrixXd& columns) const {
+    const Eigen::Index samples = factor_.rows();
+    if (samples == 0) {
+      columns /= white_sd_;
+      return;
+    }
+    for (Eigen::Index from = 0; from < columns.rows(); from += samples) {
+      auto own = columns.middleRows(from, samples);
+      factor_.matrixL().solveInPlace(own);
+    }
+  }
+
+ private:
+  double white_sd_ = 1.0;
+  Eigen::LLT<Eigen::MatrixXd> factor_;  ///< empty where the noise is white
+};
+
+/// Removes from whitened columns whatever sources and offsets can make.
 class FreeOfSources {
  public:
-  explicit FreeOfSources(const BarWorld& world) {
+  FreeOfSources(const BarWorld& world, const Whitener& whitener) {
     const Responses responses = BarForward().sensor_responses(world, world.shots.front());
     const Timing& timing = world.timing;
     const auto samples = static_cast<Eigen::Index>(timing.samples);
@@ -98,10 +137,12 @@ class FreeOfSources {
             Eigen::Map<const Eigen::VectorXd>(record.data(), samples);
       }
     }
-    design_.leftCols(knots) /= design_.leftCols(knots).cwiseAbs().maxCoeff();
     for (Eigen::Index g = 0; g < gauges; ++g) {
       design_.col(knots + g).segment(g * samples, samples).setOnes();
     }
+    whitener.apply(design_);
+    design_.leftCols(knots) /= design_.leftCols(knots).cwiseAbs().maxCoeff();
+    design_.rightCols(gauges) /= design_.rightCols(gauges).cwiseAbs().maxCoeff();
     Eigen::MatrixXd normal = design_.transpose() * design_;
     normal.diagonal().array() += 1e-11 * normal.diagonal().maxCoeff();
     solver_.compute(normal);
@@ -123,7 +164,8 @@ SolidBarShots::SolidBarShots(const PublishedPmma& bar)
       truth_{bar.material.E1_Pa, bar.material.E2_Pa, bar.material.eta2_Pa_s},
       readings_(BarForward().readings(world_)) {}
 
-std::vector<Shot> SolidBarShots::draw(const Tolerances& tolerances, std::mt19937_64& random) const {
+std::vector<Shot> SolidBarShots::draw(const Tolerances& tolerances, std::mt19937_64& random,
+                                      NoiseColour colour) const {
   std::normal_distribution<double> normal(0.0, 1.0);
   Bench bench;
   bench.kind = BenchKind::bar;
@@ -154,13 +196,20 @@ std::vector<Shot> SolidBarShots::draw(const Tolerances& tolerances, std::mt19937
         value *= gain[g];
       }
     }
+    if (colour != NoiseColour::white) {
+      for (Record& record : records) {
+        const Record own = noise(colour, kNoise, world_.timing.period_s(), record.size(), random);
+        std::transform(record.begin(), record.end(), own.begin(), record.begin(), std::plus<>());
+      }
+    }
     const auto seed = static_cast<unsigned>(random());
-    shots.push_back(digitise(bench, records, kNoise, kBits, kRange, seed));
+    shots.push_back(
+        digitise(bench, records, colour == NoiseColour::white ? kNoise : 0.0, kBits, kRange, seed));
   }
   return shots;
 }
 
-std::array<double, 3> SolidBarShots::bound(const Tolerances& tolerances) const {
+std::array<double, 3> SolidBarShots::bound(const Tolerances& tolerances, NoiseColour colour) const {
   constexpr double kStep = 2e-3;
   const auto gauges = static_cast<Eigen::Index>(kGauges);
   const auto samples = static_cast<Eigen::Index>(world_.timing.samples);
@@ -173,9 +222,8 @@ std::array<double, 3> SolidBarShots::bound(const Tolerances& tolerances) const {
     number *= std::exp(kStep);
     moved[m] = BarForward().readings(world);
   }
-  const FreeOfSources free(world_);
-  const double quantum = 2.0 * kRange / std::ldexp(1.0, kBits);
-  const double variance = kNoise * kNoise + quantum * quantum / 12.0;
+  const Whitener whitener(colour, world_.timing);
+  const FreeOfSources free(world_, whitener);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3 + 2 * gauges, 3 + 2 * gauges);
   for (std::size_t s = 0; s < readings_.size(); ++s) {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(gauges * samples, 3 + 2 * gauges);
@@ -192,8 +240,9 @@ std::array<double, 3> SolidBarShots::bound(const Tolerances& tolerances) const {
                                        Eigen::Map<const Eigen::VectorXd>(before.data(), samples)) /
                                       (2.0 * kBeside_m);
     }
+    whitener.apply(columns);
     const Eigen::MatrixXd left = free(columns);
-    information += left.transpose() * left / variance;
+    information += left.transpose() * left;
   }
   constexpr double kExact = 1e-9;
   for (Eigen::Index g = 0; g < gauges; ++g) {

@@ -6,13 +6,15 @@
 
 #include "processing/base/shot.hpp"
 #include "tests/generators/bar_world.hpp"
+#include "tests/generators/noise.hpp"
 #include "tests/generators/table4.hpp"
 
 namespace kolsky::testing {
 
 /// Ten shots on a bar of 20 mm by 2 m with lateral inertia, four gauges, a free end: solved once as
 /// an axisymmetric solid (bar2d), which knows nothing of wave theory. Draws move gauges by the
-/// solution's own differences along the bar, misfile gains, add noise and quantise to 16 bits.
+/// solution's own differences along the bar, misfile gains, add 4 microstrain of noise and quantise
+/// to 16 bits.
 class SolidBarShots {
  public:
   static constexpr std::size_t kShots = 10;
@@ -26,14 +28,17 @@ class SolidBarShots {
   explicit SolidBarShots(const PublishedPmma& bar);
 
   /// Peaks from 1000 to 3000 microstrain; one draw of gains and places for all.
-  [[nodiscard]] std::vector<Shot> draw(const Tolerances& tolerances, std::mt19937_64& random) const;
+  [[nodiscard]] std::vector<Shot> draw(const Tolerances& tolerances, std::mt19937_64& random,
+                                       NoiseColour colour = NoiseColour::white) const;
 
   [[nodiscard]] const std::array<double, 3>& truth() const { return truth_; }
 
   /// The bound of Cramer and Rao on the relative deviations of E1, E2, eta2 from all shots: sources
   /// (a bell every 4 us) and offsets free, gains and places known within their tolerances. From the
   /// records' own differences by the moduli, four solutions in all.
-  [[nodiscard]] std::array<double, 3> bound(const Tolerances& tolerances) const;
+  /// @param colour  its covariance is taken for known; not measured
+  [[nodiscard]] std::array<double, 3> bound(const Tolerances& tolerances,
+                                            NoiseColour colour = NoiseColour::white) const;
 
  private:
   BarWorld world_;  ///< three stations a gauge: before, at and behind its place

@@ -73,6 +73,17 @@ JsonList describe(const std::vector<Alternative>& alternatives) {
   return list;
 }
 
+/// null where the model fits.
+JsonValue describe(const std::optional<CommonMisfit>& misfit) {
+  if (!misfit) {
+    return nullptr;
+  }
+  return JsonObject{{"low_Hz", misfit->low_Hz},
+                    {"high_Hz", misfit->high_Hz},
+                    {"over_noise", misfit->power},
+                    {"deviations_from_chance", misfit->deviations}};
+}
+
 JsonList shots_of(const BarIdentification& result) {
   JsonList list;
   for (std::size_t i = 0; i < result.three_element.shots.size(); ++i) {
@@ -125,6 +136,7 @@ JsonValue describe(const BarIdentification& result, const std::vector<ForetoldSh
       {"correlation", correlation(three.covariance)},
       {"chi2_reduced", three.chi2_reduced},
       {"degrees_of_freedom", static_cast<std::uint64_t>(three.degrees_of_freedom)},
+      {"misfit", describe(three.misfit)},
       {"dispersion", name_of(three.theory)},
       {"far_end", name_of(three.far_end)},
       {"two_passes", result.two_passes},

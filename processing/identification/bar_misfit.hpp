@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace kolsky {
+
+/// What a fit leaves of a bar's shots in one octave of frequency, in the power of what is taken for
+/// noise: 1 where it is noise alone.
+struct OctaveLeft {
+  double low_Hz = 0.0;
+  double high_Hz = 0.0;
+  double numbers = 0.0;    ///< that are judged of each shot
+  double of_all = 1.0;     ///< mean over the shots
+  double in_common = 1.0;  ///< of what they have in common, as one shot (see BarData::all_as_one)
+
+  /// Of what they do not have in common; of a single shot there is no such thing.
+  [[nodiscard]] double apart(std::size_t shots) const;
+};
+
+/// That a model does not fit: what all shots' residuals have in common goes beyond what they do not
+/// have in common, which is noise. Noise has no reason to repeat, whatever its spectrum.
+struct CommonMisfit {
+  double low_Hz = 0.0;  ///< the octave in which it is farthest from chance
+  double high_Hz = 0.0;
+  double power = 0.0;       ///< there, of the noise's
+  double deviations = 0.0;  ///< how far from chance, in a normal number's standard deviations
+};
+
+/// By Fisher's ratio of variances, octave by octave; a model that fits is found wanting once in a
+/// thousand times. Nothing where it fits, and of a single shot, of which noise and misfit cannot be
+/// told apart.
+[[nodiscard]] std::optional<CommonMisfit> common_misfit(const std::vector<OctaveLeft>& left,
+                                                        std::size_t shots);
+
+/// Standard normal number that is exceeded as rarely as a ratio of two variances of normal numbers
+/// (Paulson's approximation, Ann. Math. Stat. 13 (1942) 233).
+/// @param above, below  degrees of freedom of the two variances
+[[nodiscard]] double normal_of_variance_ratio(double ratio, double above, double below);
+
+}  // namespace kolsky
