@@ -103,5 +103,3 @@ void exact_dispersion_to_60_kHz(benchmark::State& state) {
 BENCHMARK(exact_dispersion_to_60_kHz)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-
-BENCHMARK_MAIN();

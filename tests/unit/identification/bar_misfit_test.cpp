@@ -8,7 +8,8 @@
 namespace kolsky {
 namespace {
 
-// Points of the F distribution as printed tables have them; Paulson's approximation is good to 0.05.
+// Points of the F distribution as printed tables have them; Paulson's approximation is good to
+// 0.05.
 TEST(BarMisfit, RatiosOfVariancesAreAsRareAsTheTablesSay) {
   EXPECT_NEAR(normal_of_variance_ratio(2.348, 10.0, 20.0), 1.6449, 0.05);
   EXPECT_NEAR(normal_of_variance_ratio(5.636, 5.0, 10.0), 2.3263, 0.05);
