@@ -69,7 +69,6 @@ class Diagnostician {
     options_.progress("refitting rivals");
     const std::vector<ImpactRefit> refits = search.refits();
     scale_ = search.scale();
-    note_not_in_quiet(search);
     if (diagnosis_.candidates.empty()) {
       begin_table(search, refits, current);
     }
@@ -114,11 +113,17 @@ class Diagnostician {
   [[nodiscard]] const ImpactRefit* first_certified(const ImpactSearch& search,
                                                    const std::vector<ImpactRefit>& refits,
                                                    const Studied& current) {
-    std::vector<std::string> rejected;
-    const ImpactRefit* claimed = certifier_.first_certified(search, refits, current, rejected);
-    for (const std::string& id : rejected) {
+    note_not_in_quiet(search);
+    std::vector<std::string> judged;
+    const ImpactRefit* claimed = certifier_.first_certified(search, refits, current, judged);
+    for (const std::string& id : judged) {
       set_verdict(diagnosis_, id, "rejected");
     }
+    if (claimed != nullptr) {
+      judged.push_back(search.candidate(*claimed).id());
+      std::ranges::copy(beside(search, refits, *claimed), std::back_inserter(judged));
+    }
+    note_refits(search, refits, current, judged);
     return claimed;
   }
 
@@ -267,6 +272,11 @@ class Diagnostician {
         diagnosis_.next_experiment.push_back(next_impact(tied));
       }
     }
+    for (const std::string& id : not_in_quiet_) {
+      if (std::ranges::count(diagnosis_.effects, id) == 0) {
+        set_verdict(diagnosis_, id, "rejected");
+      }
+    }
     add_notes(impact_notes(study_, current, diagnosis_.candidates, scale_, flat_));
   }
 
@@ -306,19 +316,30 @@ class Diagnostician {
       flat_.push_back(flat.id);
     }
     set_limits(search.flat(), search.scale(), diagnosis_.candidates);
-    std::set<std::string> noted;
+    std::vector<std::string> all;
     for (const ImpactRefit& refit : refits) {
-      const std::string id = search.candidate(refit).id();
-      const bool best = noted.insert(id).second;
-      for (CandidateResult& result : diagnosis_.candidates) {
-        if (best && result.effect == id) {
-          result.gain = refit.gain;
-          result.log_p = search.with_search(refit.log_p);
-          result.own_log_p = refit.log_p;
-          result.held_out_gain = certifier_.held_out_gain(current, refit.studied);
-          set_strength(refit.studied, id, result);
-        }
+      all.push_back(search.candidate(refit).id());
+    }
+    note_refits(search, refits, current, all);
+  }
+
+  /// What a search found of these effects, in the place of what its row said before.
+  /// @param before  the model that was searched
+  void note_refits(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
+                   const Studied& before, const std::vector<std::string>& ids) {
+    for (CandidateResult& result : diagnosis_.candidates) {
+      const auto best = std::ranges::find_if(refits, [&](const ImpactRefit& refit) {
+        return search.candidate(refit).id() == result.effect;
+      });
+      if (best == refits.end() || std::ranges::find(ids, result.effect) == ids.end()) {
+        continue;
       }
+      result.gain = best->gain;
+      result.log_p = search.with_search(best->log_p);
+      result.own_log_p = best->log_p;
+      result.held_out_gain = certifier_.held_out_gain(before, best->studied);
+      result.refitted = true;
+      set_strength(best->studied, result.effect, result);
     }
   }
 

@@ -312,7 +312,7 @@ void ImpactSearch::leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list) {
   std::erase_if(list, [&](const ImpactRefit& own) {
     const std::string id = candidate(own).id();
     const bool lacks = !stands_before_pulse(own.studied, id, study_.residuals());
-    if (lacks) {
+    if (lacks && own.gain > kStandsBefore * kSolverDoubt) {
       not_in_quiet_.insert(id);
     }
     return lacks;

@@ -48,7 +48,7 @@ class ImpactSearch {
   /// What would be added to the records (hum, drift) is left out where it is not in the quiet
   /// before the pulse.
   [[nodiscard]] std::vector<ImpactRefit> refits();
-  /// Ids of what the last refits left out so.
+  /// Ids of what the last refits left out so, though it stands before nothing.
   [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
   /// Of what is allowed for the calculation's error, what the records leave open
   /// (solver_share.hpp).

@@ -20,6 +20,15 @@ namespace {
 
 constexpr double kToldApart = 5.0;  ///< sigma beside a rival
 
+/// What a step of one is in a strength's unit. Of an amplitude, cosine and sine.
+double scale_of(const Candidate& candidate) {
+  const EffectAbout& about = candidate.use.effect->about();
+  const double filed_sd = candidate.use.values[0].prior_sd;
+  const double scale =
+      candidate.frees_prior && filed_sd > 0.0 ? filed_sd : about.parameters.front().typical;
+  return about.quadrature ? scale * std::numbers::sqrt2 : scale;
+}
+
 /// The strength that stands at 5 sigma beside whichever other effect resembles it most.
 void set_identifiable(const Tried& tried, std::size_t i, double power, CandidateResult& result) {
   const Direction& own = tried.directions[i];
@@ -52,6 +61,37 @@ void set_identifiable(const Tried& tried, std::size_t i, double power, Candidate
                                                    power));
 }
 
+/// Where first order says the strength is, in its unit, and the gain there.
+struct Place {
+  double strength = 0.0;
+  double gain = 0.0;
+};
+
+/// One strength within its bounds: the line that first order is may lead out of them. Of several
+/// numbers their root mean square.
+Place place_of(const Tried& tried, std::size_t i) {
+  const Candidate& candidate = tried.candidates[i];
+  const Direction& direction = tried.directions[i];
+  const EffectAbout& about = candidate.use.effect->about();
+  const EffectParameter& parameter = about.parameters.front();
+  const double scale = scale_of(candidate);
+  const auto numbers = direction.step.size();
+  if (numbers > 1) {
+    const double step = direction.step.norm() / std::sqrt(static_cast<double>(numbers));
+    return {parameter.null_value + scale * root(step, parameter.power), direction.gain};
+  }
+  const double off = scale * root(direction.step[0], parameter.power);
+  const double strength =
+      std::clamp(parameter.null_value + off, std::min(parameter.lower, parameter.null_value),
+                 std::max(parameter.upper, parameter.null_value));
+  if (candidate.frees_prior || strength == parameter.null_value + off) {
+    return {parameter.null_value + off, direction.gain};
+  }
+  // A parabola in the step, the best of which is beyond the bound.
+  const double share = std::pow(std::abs((strength - parameter.null_value) / off), parameter.power);
+  return {strength, direction.gain * share * (2.0 - share)};
+}
+
 /// ln of the chance of a candidate's gain at first order. One that has one sign only has a chance
 /// above one half where the records ask for the other.
 double first_order_log_p(const Tried& tried, std::size_t i) {
@@ -67,14 +107,15 @@ double first_order_log_p(const Tried& tried, std::size_t i) {
   };
   const Candidate& candidate = tried.candidates[i];
   if (!candidate.one_sided || direction.information.rows() != 1) {
-    return two_sided(direction.gain);
+    return two_sided(place_of(tried, i).gain);
   }
   const EffectParameter& strength = candidate.use.effect->about().parameters.front();
   const bool up = strength.null_value <= strength.lower;
-  const double half =
-      0.5 *
-      std::exp(two_sided(direction.pull[0] * direction.pull[0] / direction.information(0, 0)));
-  return (direction.pull[0] > 0.0) == up ? std::log(half) : std::log1p(-half);
+  const bool asked = (direction.pull[0] > 0.0) == up;
+  const double both =
+      two_sided(asked ? place_of(tried, i).gain
+                      : direction.pull[0] * direction.pull[0] / direction.information(0, 0));
+  return asked ? both - std::log(2.0) : std::log1p(-0.5 * std::exp(both));
 }
 
 /// Chances of an effect, of whose variants the best counts: by itself, and among all that was
@@ -210,18 +251,12 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
     result.verdict = "untestable";
     return result;
   }
-  double scale = candidate.frees_prior && candidate.use.values[0].prior_sd > 0.0
-                     ? candidate.use.values[0].prior_sd
-                     : parameter.typical;
-  double step = direction.step[0];
-  if (const auto numbers = static_cast<double>(direction.step.size()); numbers > 1.0) {
-    step = direction.step.norm() / std::sqrt(numbers);
-    scale *= about.quadrature ? std::numbers::sqrt2 : 1.0;  // of an amplitude, cosine and sine
-  }
+  const double scale = scale_of(candidate);
+  const Place place = place_of(tried, i);
   const double sd = 1.0 / std::sqrt(direction.information.trace());
-  result.gain = direction.gain;
+  result.gain = place.gain;
   result.held_out_gain = foretold_gain(tried, i);
-  result.strength = parameter.null_value + scale * root(step, parameter.power);
+  result.strength = place.strength;
   result.sd = scale * root(sd, parameter.power);
   result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
   set_identifiable(tried, i, parameter.power, result);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/unit/criticism/thrown_balls.hpp"
 
@@ -179,6 +180,30 @@ TEST(ImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
   EXPECT_TRUE(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
     return note.find("not certified; nearest is bridge-nonlinearity") != std::string::npos;
   })) << told(diagnosis);
+}
+
+/// A row says what the search found by which its verdict was made, and no strength that its effect
+/// cannot have: the line that first order is leads far out where much is missing.
+TEST(ImpactDiagnosis, ARowStandsOnTheSearchThatMadeItsVerdict) {
+  testing::ImpactWishes own = two_speeds(19, 3);
+  own.core_b = 1.2;
+  own.bridge_b = -400.0;
+  own.across = 12;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+  EXPECT_EQ(diagnosis.effects.size(), 2U) << told(diagnosis);
+  for (const std::string& id : diagnosis.effects) {
+    const CandidateResult& row = row_of(diagnosis, id);
+    EXPECT_TRUE(row.refitted) << id;
+    EXPECT_GT(row.held_out_gain, 10.0) << id;
+    EXPECT_LT(row.log_p, -5.8) << id << told(diagnosis);
+  }
+  for (const CandidateResult& row : diagnosis.candidates) {
+    const EffectParameter& strength = use_named(row.effect).effect->about().parameters.front();
+    EXPECT_TRUE(std::isfinite(row.log_p) && std::isfinite(row.own_log_p)) << row.effect;
+    EXPECT_FALSE(row.strength < std::min(strength.lower, strength.null_value) ||
+                 row.strength > std::max(strength.upper, strength.null_value))
+        << row.effect << " " << row.strength;
+  }
 }
 
 /// A core whose stress falls with strain somewhere is outside of what its law allows: the numbers

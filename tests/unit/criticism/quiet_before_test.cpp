@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -74,6 +75,13 @@ TEST(QuietBefore, AShiftOfZeroIsNeitherHumNorDrift) {
     for (const std::string& tied : diagnosis.tied_with.at(id)) {
       EXPECT_FALSE(tied.starts_with("mains-hum") || tied.starts_with("baseline-drift")) << tied;
     }
+  }
+  for (const char* id : {"mains-hum", "baseline-drift:g1"}) {
+    const auto row = std::ranges::find(diagnosis.candidates, id, &CandidateResult::effect);
+    EXPECT_EQ(row->verdict, "rejected") << id;
+    EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [&](const std::string& note) {
+      return note.starts_with(std::string(id) + " is not claimed: ");
+    })) << id;
   }
 }
 
