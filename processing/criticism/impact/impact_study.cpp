@@ -195,7 +195,26 @@ std::pair<double, double> ImpactStudy::repeated(const Eigen::VectorXd& white) co
 
 double ImpactStudy::unexplained_log_p(const Eigen::VectorXd& white) const {
   const auto [chi2, freedom] = repeated(white);
-  return log_chi2_tail(chi2 / kSolverDoubt, freedom);
+  const auto [of_rebounds, rebounds] = repeated_of_rebounds(white);
+  return std::min(log_chi2_tail(chi2 / kSolverDoubt, freedom),
+                  log_chi2_tail(of_rebounds / kSolverDoubt, rebounds));
+}
+
+std::pair<double, double> ImpactStudy::repeated_of_rebounds(const Eigen::VectorXd& white) const {
+  const ImpactRecords& records = residuals_.records();
+  std::vector<Eigen::Index> said;
+  for (std::size_t g = 0; g < records.groups.size(); ++g) {
+    if (records.unsaid_rebounds(g) < records.groups[g].shots.size()) {
+      said.push_back(static_cast<Eigen::Index>((g + 1) * residuals_.per_shot() - 1));
+    }
+  }
+  if (said.empty()) {
+    return {0.0, 1.0};
+  }
+  const ImpactWhitening& whitening = residuals_.whitening();
+  const Eigen::VectorXd off = whitening.means_behind(white)(said);
+  const Eigen::MatrixXd covariance = whitening.of_means()(said, said);
+  return {off.dot(inverse_of(covariance) * off), static_cast<double>(said.size())};
 }
 
 bool ImpactStudy::within_calculation(const Eigen::VectorXd& white) const {

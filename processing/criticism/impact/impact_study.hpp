@@ -112,8 +112,12 @@ class ImpactStudy {
   /// chi2 of the groups' means and its degrees of freedom: what repeats.
   [[nodiscard]] std::pair<double, double> repeated(const Eigen::VectorXd& white) const;
 
+  /// Of the groups' mean rebound speeds by themselves: among many samples of the force a few
+  /// restitutions that are off would go under.
+  [[nodiscard]] std::pair<double, double> repeated_of_rebounds(const Eigen::VectorXd& white) const;
+
   /// ln of the chance that noise and the calculation's error, for all it is known to mimic
-  /// (kSolverDoubt), leave as much that repeats.
+  /// (kSolverDoubt), leave as much that repeats: of all or of the rebounds, whichever is less.
   [[nodiscard]] double unexplained_log_p(const Eigen::VectorXd& white) const;
   /// Whether they may.
   [[nodiscard]] bool within_calculation(const Eigen::VectorXd& white) const;

@@ -60,6 +60,8 @@ class ImpactWhitening {
   [[nodiscard]] Eigen::MatrixXd means(const Eigen::MatrixXd& white) const;
   /// The groups' mean residuals below each other, of which white ones are made.
   [[nodiscard]] Eigen::VectorXd means_behind(const Eigen::VectorXd& white) const;
+  /// Their covariance, C.
+  [[nodiscard]] const Eigen::MatrixXd& of_means() const { return mean_covariance_; }
   /// The force's part of D as such means have it.
   [[nodiscard]] Eigen::MatrixXd white_force_doubt() const;
   /// Of D, what the calculation may be off by.

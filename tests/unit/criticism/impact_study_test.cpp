@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "processing/base/error.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/impact/impact_whitening.hpp"
 #include "tests/unit/criticism/thrown_balls.hpp"
 
@@ -353,6 +354,28 @@ TEST(ImpactStudy, AReboundThatIsOffIsAPlaceWhereTheModelFails) {
   ASSERT_NE(own, comparison.tiles.end());
   EXPECT_TRUE(own->significant);
   EXPECT_NEAR(own->percent_of_peak, 3.0, 0.7);
+}
+
+/// Restitutions that are off by many times what codes differ by are few numbers among the samples
+/// of the force: they count by themselves, too.
+TEST(ImpactStudy, ReboundsThatAreOffAreUnexplainedHoweverManySamplesAreNot) {
+  testing::ImpactWishes own = two_speeds(18, 2);
+  own.across = 10;
+  std::vector<Shot> shots = testing::impact_shots(own);
+  const auto studied_as_it_is = [](ThrownBalls& balls) {
+    return balls.study.as_it_is(paper_with({}));
+  };
+  ThrownBalls sound(shots);
+  EXPECT_TRUE(sound.study.within_calculation(studied_as_it_is(sound).fit.residual));
+  for (Shot& shot : shots) {
+    const double rebound = std::stod(shot.meta["rebound_speed_m_per_s"]);
+    shot.meta["rebound_speed_m_per_s"] = std::to_string(1.03 * rebound);
+  }
+  ThrownBalls off(shots);
+  const Eigen::VectorXd white = studied_as_it_is(off).fit.residual;
+  const auto [chi2, freedom] = off.study.repeated(white);
+  EXPECT_GT(log_chi2_tail(chi2 / kSolverDoubt, freedom), kUnexplained) << "among all the samples";
+  EXPECT_FALSE(off.study.within_calculation(white)) << off.study.unexplained_log_p(white);
 }
 
 TEST(ImpactCampaign, WhatNoBallDoesIsBadData) {
