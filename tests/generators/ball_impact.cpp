@@ -70,6 +70,7 @@ struct Triangle {
   Tensor strain;  ///< deviatoric, logarithmic along the way
   std::array<Tensor, 2> arm;
   double theta = 0.0;
+  double most = 0.0;  ///< largest equivalent strain so far
   std::array<double, 2> arm_pressure{};
 };
 
@@ -315,8 +316,9 @@ class Strike {
     Tensor& e = t.strain;
     e = {before.rr + (Lrr - trace / 3.0) * dt_, before.zz + (Lzz - trace / 3.0) * dt_,
          before.tt + (Ltt - trace / 3.0) * dt_, before.rz + 0.5 * (Lrz + Lzr) * dt_};
-    const double stiff_now = stiffening(e, solid.b);
-    const double stiff_before = stiffening(before, solid.b);
+    const double stiff_before = stiffness(solid, before, t.most);
+    t.most = std::max(t.most, equivalent(e));
+    const double stiff_now = stiffness(solid, e, t.most);
     const double grown = trace * dt_;
     t.theta += grown;
     Tensor s{2.0 * G * law.relaxed * stiff_now * e.rr, 2.0 * G * law.relaxed * stiff_now * e.zz,
@@ -348,11 +350,13 @@ class Strike {
     }
   }
 
-  static double stiffening(const Tensor& e, double b) {
-    return b == 0.0
-               ? 1.0
-               : 1.0 + b * std::sqrt(2.0 / 3.0 *
-                                     (e.rr * e.rr + e.zz * e.zz + e.tt * e.tt + 2.0 * e.rz * e.rz));
+  static double equivalent(const Tensor& e) {
+    return std::sqrt(2.0 / 3.0 * (e.rr * e.rr + e.zz * e.zz + e.tt * e.tt + 2.0 * e.rz * e.rz));
+  }
+
+  /// Over the linear one's.
+  static double stiffness(const BallSolid& solid, const Tensor& e, double most) {
+    return (1.0 + solid.b * equivalent(e)) * (1.0 - solid.damage * most);
   }
 
   /// Of a circle about the ball's axis, by counting along it.

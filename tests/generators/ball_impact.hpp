@@ -6,7 +6,8 @@
 namespace kolsky::testing {
 
 /// A layer's solid: J = 1/E1 + 1/(E2 + s eta2) + D/(1 + s tau), one Poisson's ratio for bulk and
-/// shear; instantaneous deviatoric stress x (1 + b equivalent strain).
+/// shear; instantaneous deviatoric stress x (1 + b equivalent strain) (1 - damage x the largest
+/// equivalent strain so far), the latter of no effect in the library.
 struct BallSolid {
   double density_kg_m3 = 0.0;
   double poisson_ratio = 0.0;
@@ -16,6 +17,7 @@ struct BallSolid {
   double D_per_Pa = 0.0;
   double tau_s = 0.0;
   double b = 0.0;
+  double damage = 0.0;
 };
 
 struct BallImpact {

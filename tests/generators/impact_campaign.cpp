@@ -106,6 +106,7 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
   const std::array<double, 6>& moduli = wishes.moduli;
   impact.core = {1140.0, 0.376, 121e6 * moduli[0], 143e6 * moduli[1], 2860.0 * moduli[2]};
   impact.core.b = wishes.core_b;
+  impact.core.damage = wishes.core_damage;
   impact.core.D_per_Pa = wishes.core_D_per_Pa;
   impact.core.tau_s = wishes.core_tau_s;
   impact.cover = {960.0, 0.319, 987e6 * moduli[3], 452e6 * moduli[4], 6020.0 * moduli[5]};

@@ -22,6 +22,7 @@ struct ImpactWishes {
   double bridge_b = 0.0;      ///< reading = e (1 + b e)
   double gauge_factor = 0.0;  ///< reading x (1 + kappa)
   double core_b = 0.0;
+  double core_damage = 0.0;  ///< what it was strained to most softens it: in no library
   double core_D_per_Pa = 0.0;
   double core_tau_s = 1e-4;
   double cover_b = 0.0;

@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
   app.add_option("--noise", wishes.noise_strain, "rms strain");
   app.add_option("--speed-error", wishes.speed_error, "relative deviation of the speeds filed");
   app.add_option("--core-nonlinearity", wishes.core_b, "b");
+  app.add_option("--core-damage", wishes.core_damage,
+                 "d, softening by the largest strain so far, which no effect of the library is");
   app.add_option("--cover-nonlinearity", wishes.cover_b, "b");
   app.add_option("--core-relaxation", wishes.core_D_per_Pa, "D, 1/Pa");
   app.add_option("--core-relaxation-time", wishes.core_tau_s, "s");

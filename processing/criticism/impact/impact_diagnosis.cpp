@@ -256,14 +256,19 @@ class Diagnostician {
     diagnosis_.after = current.misfit;
     diagnosis_.model = current.model;
     set_held_out(first, current);
+    // What a ball lacks may have gone into the law's form, as far as that goes.
+    const double pressed = law_beyond_bounds(current);
+    const bool claims = !diagnosis_.effects.empty();
     if (remains(first, current) || overruled_) {
       give_up(diagnosis_, {}, first.model);
+    } else if (claims && pressed > kPressed) {
+      give_up(diagnosis_, {law_pressed_note(pressed)}, first.model);
     } else {
       settle_claims(diagnosis_,
                     [&](CandidateResult& result) { set_strength(current, result.effect, result); });
+      add_notes(left_notes(study_, current, diagnosis_.held_out));
     }
-    // What a ball lacks may have gone into the law's form, as far as that goes.
-    if (diagnosis_.verdict == DiagnosisVerdict::adequate && law_beyond_bounds(current) > kPressed) {
+    if (diagnosis_.verdict == DiagnosisVerdict::adequate && pressed > kPressed) {
       diagnosis_.verdict = DiagnosisVerdict::untestable;
     }
     for (const std::string& id : diagnosis_.effects) {

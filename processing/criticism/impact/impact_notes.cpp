@@ -185,6 +185,36 @@ std::vector<std::string> impact_notes(ImpactStudy& study, const Studied& current
   return lines;
 }
 
+std::string law_pressed_note(double beyond) {
+  return fmt::format(
+      "with what came nearest in the model the records want the finite-strain law beyond its bound "
+      "by {:.1f} deviations: what is missing is something else",
+      beyond);
+}
+
+std::vector<std::string> left_notes(const ImpactStudy& study, const Studied& current,
+                                    const HeldOut& held_out) {
+  switch (study.allowance(current)) {
+    case Allowance::kept:
+      return {};
+    case Allowance::mimicked:
+      return {fmt::format(
+          "what repeats stands out of noise and of what is allowed for the calculation (held-out "
+          "misfit {:.3g}, noise alone {:.3g}), by no more than an error of the calculation may "
+          "look "
+          "like: it cannot be told from something that is missing",
+          held_out.after, held_out.floor)};
+    case Allowance::exceeded:
+      return {fmt::format(
+          "what is left beside this exceeds what noise and the calculation leave (held-out misfit "
+          "{:.3g}, noise alone {:.3g}), and nothing tested explains it: it is little beside what "
+          "was "
+          "explained, and the strength is good to as much",
+          held_out.after, held_out.floor)};
+  }
+  return {};
+}
+
 std::vector<std::string> restitution_notes(const ImpactComparison& comparison) {
   Lines lines;
   for (const SpeedSummary& speed : comparison.speeds) {

@@ -5,6 +5,7 @@
 
 #include "processing/criticism/impact/impact_study.hpp"
 #include "processing/criticism/search/candidate_table.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 
 namespace kolsky {
 
@@ -23,6 +24,15 @@ inline constexpr double kPressed = 2.0;
                                                     const std::vector<CandidateResult>& candidates,
                                                     double scale,
                                                     const std::vector<std::string>& flat);
+
+/// Why nothing is claimed though something is certified. @param beyond  of law_beyond_bounds()
+[[nodiscard]] std::string law_pressed_note(double beyond);
+
+/// Where what repeats stands out of noise and of what is allowed for the calculation though the
+/// verdict names nothing more: that an error of its kind may look so, or that what is left is small
+/// beside what was explained.
+[[nodiscard]] std::vector<std::string> left_notes(const ImpactStudy& study, const Studied& current,
+                                                  const HeldOut& held_out);
 
 /// Restitution, foretold and measured, at each speed.
 [[nodiscard]] std::vector<std::string> restitution_notes(const ImpactComparison& comparison);

@@ -182,6 +182,37 @@ TEST(ImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
   })) << told(diagnosis);
 }
 
+/// A core that is softened by what it was strained to most is of no effect in the library. Effects
+/// that are explain much of it, and what they leave presses the law beyond its bound: it is none of
+/// them.
+TEST(ImpactDiagnosis, WhatPressesTheLawBesideAClaimIsNotClaimed) {
+  testing::ImpactWishes own = two_speeds(36, 3);
+  own.core_damage = 0.65;
+  own.across = 14;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_TRUE(diagnosis.effects.empty()) << told(diagnosis);
+  EXPECT_TRUE(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
+    return note.find("beyond its bound by") != std::string::npos &&
+           note.starts_with("with what came nearest");
+  })) << told(diagnosis);
+}
+
+/// Adequate is said with what it stands on where more repeats than is allowed for the calculation.
+TEST(ImpactDiagnosis, WhatAnErrorOfTheCalculationMayLookLikeIsSaid) {
+  const auto noted = [](std::size_t across) {
+    testing::ImpactWishes own = two_speeds(28, 3);
+    own.across = across;
+    const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
+    EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
+    return std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
+      return note.starts_with("what repeats stands out of noise");
+    });
+  };
+  EXPECT_TRUE(noted(5)) << "another code's coarse mesh";
+  EXPECT_FALSE(noted(12));
+}
+
 /// A row says what the search found by which its verdict was made, and no strength that its effect
 /// cannot have: the line that first order is leads far out where much is missing.
 TEST(ImpactDiagnosis, ARowStandsOnTheSearchThatMadeItsVerdict) {
