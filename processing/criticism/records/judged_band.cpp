@@ -27,8 +27,11 @@ constexpr std::size_t kFewestJudged = 64;
 constexpr std::size_t kMostDecimation = 8;
 /// Power over noise at the highest frequency judged. Where the source is as much noise as signal,
 /// an effect's test rests on how well the noise of each gauge is known, and says little of the
-/// effect.
-constexpr double kPowerOverNoise = 30.0;
+/// effect. Between two bars, whose echoes ring, what is not linear fits noise there all the sooner:
+/// a gauge's length of 60 mm was named among 151 campaigns with nothing hidden, judged to 12.
+double power_over_noise(BenchKind kind) {
+  return kind == BenchKind::shpb ? 30.0 : 15.0;
+}
 
 std::size_t small_factors(std::size_t n) {
   for (;; ++n) {
@@ -76,7 +79,7 @@ double limit_by_noise_Hz(const Campaign& campaign) {
     const double step = campaign.step[campaign.reference];
     const double noise =
         std::hypot(quiet_before(record, shot.quiet_samples).noise_rms, step / std::sqrt(12.0));
-    limits_Hz.push_back(limit.from_noise(record, noise, kPowerOverNoise));
+    limits_Hz.push_back(limit.from_noise(record, noise, power_over_noise(campaign.bench.kind)));
   }
   const auto middle = limits_Hz.begin() + static_cast<std::ptrdiff_t>(limits_Hz.size() / 2);
   std::nth_element(limits_Hz.begin(), middle, limits_Hz.end());

@@ -55,20 +55,33 @@ void hold_auxiliaries(EffectUse& use) {
   }
 }
 
+/// What all gauges have alike is the source's: without a bound such strengths run away together.
+/// In a record much shorter than a period only slopes show, so the bound is one on them: with the
+/// same for all frequencies a strong hum would look more likely as its third harmonic.
+void bound_strengths(EffectUse& use) {
+  const EffectAbout& about = use.effect->about();
+  if (!about.each_gauge) {
+    return;
+  }
+  constexpr double kLargest = 30.0;
+  double slower = 1.0;
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    if (about.parameters[p].unit == "Hz") {
+      slower = about.parameters[p].starts.back() / use.values[p].value;
+    }
+  }
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    if (!about.parameters[p].auxiliary()) {
+      use.values[p].prior_sd = kLargest * slower * about.parameters[p].typical;
+    }
+  }
+}
+
 void add_variants(const Effect& effect, const std::string& gauge, const Campaign& campaign,
                   std::vector<Candidate>& list) {
   const EffectAbout& about = effect.about();
   EffectUse use = null_use(effect, gauge);
   hold_auxiliaries(use);
-  if (about.each_gauge) {
-    // What all gauges have alike is the source's: without a bound such strengths run away together.
-    constexpr double kLargest = 30.0;
-    for (std::size_t p = 0; p < about.parameters.size(); ++p) {
-      if (!about.parameters[p].auxiliary()) {
-        use.values[p].prior_sd = kLargest * about.parameters[p].typical;
-      }
-    }
-  }
   const auto auxiliary = std::find_if(about.parameters.begin(), about.parameters.end(),
                                       [](const auto& p) { return p.auxiliary(); });
   std::vector<EffectUse> variants{use};
@@ -80,6 +93,7 @@ void add_variants(const Effect& effect, const std::string& gauge, const Campaign
     }
   }
   for (EffectUse& variant : variants) {
+    bound_strengths(variant);
     for (const bool per_shot : {false, true}) {
       if ((per_shot && (!about.per_shot || campaign.shots.size() < 2)) ||
           !means_something(variant, campaign)) {

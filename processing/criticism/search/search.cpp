@@ -23,6 +23,21 @@ constexpr double kSpecimenFarOff = 1.2;
 constexpr std::size_t kMostRefits = 14;
 constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
 constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
+/// So much more must a harmonic explain than the mains' own frequency, which hums most: in a record
+/// much shorter than a period all frequencies look alike, with amplitudes in inverse proportion.
+constexpr double kHarmonic = 9.0;
+
+/// Of the mains, and no frequency that the mains have anywhere.
+bool is_harmonic(const EffectUse& use) {
+  const auto& parameters = use.effect->about().parameters;
+  constexpr double kMainsAtMost_Hz = 65.0;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].chosen && parameters[p].unit == "Hz") {
+      return use.values[p].value > kMainsAtMost_Hz;
+    }
+  }
+  return false;
+}
 
 /// Two sensor effects of one gauge.
 bool at_one_gauge(const Candidate& a, const Candidate& b) {
@@ -274,7 +289,7 @@ std::vector<std::size_t> Search::worth_refitting() const {
     const double evidence = evidence_of(directions_[i], candidates_[i]);
     const EffectUse& use = candidates_[i].use;
     auto& own = best[use.id() + (use.per_shot ? " per shot" : "") + (use.alike ? " alike" : "")];
-    if (evidence > own.first) {
+    if (evidence > own.first + (is_harmonic(use) ? kHarmonic : 0.0)) {
       own = {evidence, i};
     }
   }

@@ -39,12 +39,17 @@ double belief_in(const Effect& effect) {
 double belief_in(const Effect& effect, const GaugeNoise& noise, std::size_t shots) {
   constexpr double kSteep = 0.5;  // slow noise is most of it
   constexpr double kMost = 100.0;
+  // Of additions, which stand where slow noise does: a little of it lies all at their frequencies.
+  constexpr double kHardlySteep = 0.9;
+  constexpr double kMostOfSlow = 20.0;
   const double least = belief_in(effect);
-  if (shots < 3 || is_addition(effect)) {
+  if (shots < 3) {
     return least;
   }
-  const double flat = std::clamp((noise.flatness() - kSteep) / (1.0 - kSteep), 0.0, 1.0);
-  return least + flat * (kMost - least);
+  const double steep = is_addition(effect) ? kHardlySteep : kSteep;
+  const double most = is_addition(effect) ? kMostOfSlow : kMost;
+  const double flat = std::clamp((noise.flatness() - steep) / (1.0 - steep), 0.0, 1.0);
+  return least + flat * (most - least);
 }
 
 double scatter_over_noise(const Studied& studied, const std::string& id, std::size_t per_shot) {
