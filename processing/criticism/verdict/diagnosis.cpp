@@ -68,11 +68,7 @@ class Diagnostician {
       drop(0, "rejected", without(current, diagnosis_.effects[0]), current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
-      // The last was certified beside all others, unless these take its part from another start.
-      drop_unneeded(current, diagnosis_.effects.size() > kMostBelieved ? 0 : 1);
-      if (reconsider(current)) {
-        drop_unneeded(current, 0);
-      }
+      go_back(current);
     }
     if (on_trial_ && std::ranges::count(diagnosis_.effects, *on_trial_) > 0) {
       // Nothing found beside it makes the shots agree on it.
@@ -121,11 +117,22 @@ class Diagnostician {
     diagnosis_.tied_with[choice.id] = std::move(choice.ties);
   }
 
-  /// What was found first was chosen beside what was not known yet: each but the last is sought
-  /// again beside all others. @return whether anything else took its place
-  bool reconsider(Studied& current) {
+  void go_back(Studied& current) {
+    const std::size_t found = diagnosis_.effects.size();
+    // The last was certified beside all others, unless these take its part from another start.
+    drop_unneeded(current, found > kMostBelieved ? 0 : 1);
+    // It stood beside what is gone now, and its rivals may have been what that took up.
+    const std::size_t spared = diagnosis_.effects.size() < found ? 0 : 1;
+    if (reconsider(current, spared)) {
+      drop_unneeded(current, 0);
+    }
+  }
+
+  /// What was found first was chosen beside what was not known yet: each but so many of the last is
+  /// sought again beside all others. @return whether anything else took its place
+  bool reconsider(Studied& current, std::size_t spared) {
     bool changed = false;
-    for (std::size_t i = 0; i + 1 < diagnosis_.effects.size(); ++i) {
+    for (std::size_t i = 0; i + spared < diagnosis_.effects.size(); ++i) {
       const std::string id = diagnosis_.effects[i];
       options_.progress("seeking " + id + " again beside the others");
       const Studied base = without(current, id);

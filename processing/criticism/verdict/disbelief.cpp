@@ -29,6 +29,21 @@ bool at_all_gauges_but_one(const Diagnosis& diagnosis, const Campaign& campaign)
                                  [&](const auto& own) { return own.second >= most; });
 }
 
+/// What explains so much that noise hardly would, though the shots do not foretell it of each other
+/// or disagree on it: something is there, and it is not that. @return nothing where something is
+/// claimed
+const CandidateResult* surest_rejected(const Diagnosis& diagnosis) {
+  constexpr double kSure = -11.5;  // 1e-5, the search counted
+  const CandidateResult* surest = nullptr;
+  for (const CandidateResult& own : diagnosis.candidates) {
+    if (diagnosis.effects.empty() && !own.per_shot && own.verdict == "rejected" &&
+        own.log_p < (surest != nullptr ? surest->log_p : kSure)) {
+      surest = &own;
+    }
+  }
+  return surest;
+}
+
 }  // namespace
 
 bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,
@@ -67,6 +82,12 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
     reasons.push_back(fmt::format(
         "misfit repeats that no effect of the library explains: noise leaves as much {}",
         chance_text(diagnosis.unexplained_log_p)));
+  }
+  if (const CandidateResult* own = surest_rejected(diagnosis)) {
+    reasons.push_back(fmt::format(
+        "{} explains what noise leaves {}, but shots do not foretell it of each other or disagree "
+        "on it: something else is there",
+        own->effect, chance_text(own->log_p)));
   }
   if (at_all_gauges_but_one(diagnosis, campaign)) {
     reasons.emplace_back(

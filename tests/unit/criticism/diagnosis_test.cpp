@@ -11,6 +11,7 @@
 
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/search.hpp"
+#include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/examination.hpp"
 #include "tests/generators/campaign.hpp"
 
@@ -404,6 +405,33 @@ TEST(Diagnosis, CallsUnknownWhatAGaugePicksUpBeforeItsPulse) {
   const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
   EXPECT_TRUE(diagnosis.effects.empty());
+}
+
+// A gauge of a metal bar that came loose by little at each pulse's peak was `adequate`, though a
+// bridge explained what noise leaves once in a million campaigns: shots disagreed on it.
+TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
+  const Made made = make(88, {});
+  const Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  const Studied current = study.fit(paper_model(BenchKind::bar, false));
+  Diagnosis diagnosis;
+  CandidateResult& own = diagnosis.candidates.emplace_back();
+  own.effect = "bridge-nonlinearity";
+  own.verdict = "rejected";
+  const auto reasons = [&] { return why_unknown(diagnosis, current, campaign, false).size(); };
+  own.log_p = -14.0;
+  EXPECT_EQ(reasons(), 1U);
+  own.log_p = -8.0;
+  EXPECT_EQ(reasons(), 0U) << "one campaign in three thousand";
+  own.log_p = -14.0;
+  own.per_shot = true;
+  EXPECT_EQ(reasons(), 0U) << "strengths of single shots follow slow noise";
+  own.per_shot = false;
+  own.verdict = "not needed";
+  EXPECT_EQ(reasons(), 0U);
+  own.verdict = "rejected";
+  diagnosis.effects = {"gauge-factor:" + campaign.bench.gauges.back().name};
+  EXPECT_EQ(reasons(), 0U) << "what is claimed may take its part";
 }
 
 // In a metal bar every gauge sees the same wave, and a bridge bends them all alike: nothing but
