@@ -511,14 +511,16 @@ void Search::rate(std::vector<Refit>& list) const {
     double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
     over_noise *= share_beside_unconfirmed(
         refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.one_sided)));
+    refit.noise = noise;
     refit.over_noise = over_noise;
     refit.gain = over_noise / refit.scatter;
-    refit.log_p = chance_of(refit);
+    refit.log_p = chance_of(refit, refit.gain);
     // The shots' scatter tells how well a gain is known, and only roughly: divided by one rival's
     // own, what fits best would come behind what fits worse. But slow noise gives additions more
     // than their rivals.
     const bool addition = is_addition(*candidates_[refit.candidate].use.effect);
     refit.doubt = addition ? 1.0 : refit.scatter;
+    refit.rival_log_p = addition ? refit.log_p : chance_of(refit, over_noise);
     refit.evidence = equivalent_square(
         log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));
     if (refit.products) {
@@ -529,9 +531,9 @@ void Search::rate(std::vector<Refit>& list) const {
   }
 }
 
-/// ln of the chance of a refit's gain on noise, whose power in its direction the shots tell no
+/// ln of the chance of a gain on noise as a refit's, whose power in its direction the shots tell no
 /// better than so many degrees of freedom do.
-double Search::chance_of(const Refit& refit) const {
+double Search::chance_of(const Refit& refit, double gain) const {
   const EffectUse& use = candidates_[refit.candidate].use;
   if (refit.products) {
     // Nothing else is judged by products: what has been sought among is the effect's own variants.
@@ -540,11 +542,11 @@ double Search::chance_of(const Refit& refit) const {
     });
     return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
   }
-  if (use.per_shot || refit.gain <= 0.0) {
-    return log_gain_tail(refit.gain, refit.freedom, refit.one_sided);
+  if (use.per_shot || gain <= 0.0) {
+    return log_gain_tail(gain, refit.freedom, refit.one_sided);
   }
   const double freedom = std::max(refit.freedom, 1.0);
-  const double log_p = log_f_tail(refit.gain / freedom, freedom, known_of(use));
+  const double log_p = log_f_tail(gain / freedom, freedom, known_of(use));
   return refit.one_sided ? log_p - std::log(2.0) : log_p;
 }
 

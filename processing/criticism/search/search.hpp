@@ -22,11 +22,14 @@ struct Refit {
   double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.
   std::optional<ProductTest> products = std::nullopt;
+  double noise = 1.0;       ///< what the objective has of it per residual: of all refits the best's
   double over_noise = 0.0;  ///< gain of the objective, over the noise
   double gain = 0.0;        ///< the same over the shots' scatter, too
   double evidence = 0.0;    ///< as a square of a normal deviate, the search not counted
   double doubt = 1.0;       ///< the scatter, where the evidence is that over the noise alone
   double log_p = 0.0;
+  /// ln of the chance of a rival's gain: by how much its shots scatter it is no less of one.
+  double rival_log_p = 0.0;
   /// With derivatives of the model without the candidate: cheap, and near enough for what is far
   /// behind.
   bool rough = false;
@@ -91,7 +94,7 @@ class Search {
   void dismiss(const Refit& refit);
   [[nodiscard]] double share_beside_unconfirmed(const Refit& refit, double evidence) const;
   [[nodiscard]] double known_of(const EffectUse& use) const;
-  [[nodiscard]] double chance_of(const Refit& refit) const;
+  [[nodiscard]] double chance_of(const Refit& refit, double gain) const;
 
   Study& study_;
   const Studied& base_;

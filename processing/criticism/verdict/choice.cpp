@@ -99,7 +99,7 @@ bool Chooser::foretold(const Found& found, std::size_t i) const {
   const Refit& refit = found.refits[i];
   // Of two shots, or parts of one, each is half of all that is known.
   return !options_.safeguards.held_out || refit.products || study_.campaign().shots.size() < 3 ||
-         found.held_out[i].gain > kShare * refit.gain;
+         found.held_out[i].gain > kShare * refit.noise * refit.gain;
 }
 
 bool Chooser::agreed(const Found& found, std::size_t i) const {
@@ -134,7 +134,8 @@ bool Chooser::claimable(const Search& search, const Refit& refit) const {
 
 /// Too little to be named by itself, enough not to be told from what is named with hardly more.
 bool Chooser::plausible(const Search& search, const Refit& refit) const {
-  return search.with_search(refit.log_p) <= options_.log_alpha + std::log(kRivalChance);
+  return search.with_search(std::min(refit.log_p, refit.rival_log_p)) <=
+         options_.log_alpha + std::log(kRivalChance);
 }
 
 /// Exact for those that may be named; of the others first order tells enough.
