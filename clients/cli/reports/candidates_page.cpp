@@ -29,9 +29,11 @@ PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_o
                    "on held-out " + held_out, "smallest detectable", "told apart", "nearest rival"},
                   {}};
   for (const CandidateResult& c : ranked) {
-    table.rows.push_back({c.effect, c.verdict, strength_text(c.strength, c.sd, c.unit),
-                          to_a_tenth(c.log_p), to_a_tenth(c.gain), to_a_tenth(c.held_out_gain),
-                          number_text(c.detectable), number_text(c.identifiable), c.nearest_rival});
+    const std::string strength =
+        c.verdict == "untestable" ? "" : strength_text(c.strength, c.sd, c.unit);
+    table.rows.push_back({c.effect, c.verdict, strength, to_a_tenth(c.log_p), to_a_tenth(c.gain),
+                          to_a_tenth(c.held_out_gain), number_text(c.detectable),
+                          number_text(c.identifiable), c.nearest_rival});
   }
   return table;
 }

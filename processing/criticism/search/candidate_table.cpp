@@ -247,7 +247,9 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
   result.per_shot = candidate.use.per_shot;
   if (!(direction.freedom > 0.0) || direction.information.rows() == 0) {
     result.detectable = result.identifiable = INFINITY;
-    result.strength = result.sd = NAN;
+    // Nothing is known of it but its bounds: the deviation of an even distribution between them.
+    result.strength = parameter.null_value;
+    result.sd = (parameter.upper - parameter.lower) / std::sqrt(12.0);
     result.verdict = "untestable";
     return result;
   }

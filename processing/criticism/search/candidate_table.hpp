@@ -17,8 +17,8 @@ struct CandidateResult {
   std::string effect;
   std::string parameter;
   std::string unit;
-  /// Not a number: untestable here. Of several strengths (each shot's, each gauge's) at first
-  /// order: their root mean square.
+  /// Untestable here: what its bounds alone say of it. Of several strengths (each shot's, each
+  /// gauge's) at first order: their root mean square.
   double strength = 0.0;
   double sd = 0.0;
   double own_log_p = 0.0;  ///< ln of its probability under noise, of this effect alone

@@ -38,6 +38,22 @@ double own_p(const std::vector<CandidateResult>& table, const std::string& id) {
   return std::exp(own->own_log_p);
 }
 
+// A program that reads the rows finds numbers in all of them: of what is fitted away, what its
+// bounds leave.
+TEST(CandidateTable, StatesAnUntestableStrengthByItsBounds) {
+  int untestable = 0;
+  for (const CandidateResult& result : searched(501, "")) {
+    EXPECT_TRUE(std::isfinite(result.strength)) << result.effect;
+    EXPECT_TRUE(std::isfinite(result.sd)) << result.effect;
+    if (result.verdict == "untestable") {
+      ++untestable;
+      EXPECT_EQ(result.own_log_p, 0.0) << result.effect;
+      EXPECT_GT(result.sd, std::abs(result.strength)) << result.effect;
+    }
+  }
+  EXPECT_GT(untestable, 0);
+}
+
 // Of one bench they hang together, so the bounds are those of some thirty independent numbers.
 TEST(CandidateTable, AnEffectsOwnChanceIsUniformWhereNothingIsHidden) {
   std::vector<double> chances;
