@@ -55,6 +55,7 @@ class Chain : public ::testing::Test {
   struct Files {
     scene::Folder folder;
     std::vector<std::string> bar, core, cover, ball;
+    std::string warm, near;  ///< a core's, 5 K and 1.5 K above the bar's shots
     testing::BallForce truth;
 
     void make() {
@@ -76,8 +77,8 @@ class Chain : public ::testing::Test {
     }
 
     void make_bar() {
-      std::string bench =
-          "kind = \"bar\"\nsampling_frequency_Hz = 1e6\n" + bar_lines("input", 2.0, 0.02);
+      std::string bench = "kind = \"bar\"\nsampling_frequency_Hz = 1e6\ntemperature_K = 296.0\n" +
+                          bar_lines("input", 2.0, 0.02);
       for (int j = 0; j < 4; ++j) {
         bench += gauge_lines(fmt::format("g{}", j + 1), "input", 0.1 + 0.2 * j);
       }
@@ -123,6 +124,10 @@ class Chain : public ::testing::Test {
                                records[0][n] + noise(random), records[1][n] + noise(random));
         }
         captures.push_back(import(fmt::format("{}{}", name, i), table, name + ".toml"));
+        if (i == 0 && name == "core") {
+          warm = import("warm", table, name + ".toml", {"--meta", "temperature_K=301.0"});
+          near = import("near", table, name + ".toml", {"--meta", "temperature_K=297.5"});
+        }
       }
       return captures;
     }
@@ -262,6 +267,20 @@ TEST_F(Chain, ForetellsWithoutAMeasurementAndInText) {
     EXPECT_NE(answer.out.find(wanted), std::string::npos) << wanted << "\n" << answer.out;
   }
   EXPECT_EQ(answer.out.find("agree"), std::string::npos) << "nothing was measured";
+}
+
+// PMMA's moduli change by some 0.3 % per kelvin: bars count as alike within 2 K.
+TEST_F(Chain, BarsIdentifiedAtAnotherTemperatureAreRefused) {
+  const auto chain = [&](const std::string& core) {
+    std::vector<std::string> words = with({"chain"}, "--bar-shots", files_->bar);
+    words = with(with(words, "--core-shots", {core}), "--cover-shots", files_->cover);
+    words.insert(words.end(),
+                 {"--bench", files_->folder / "impact.toml", "--speed", "31.1", "--draws", "8"});
+    return kolsky(words);
+  };
+  EXPECT_TRUE(refused(chain(files_->warm), {"warm", "301.0 K", "296.0 K"}));
+  const scene::Answer near = chain(files_->near);
+  EXPECT_EQ(near.code, 0) << near.err;
 }
 
 TEST_F(Chain, RefusesWhatIsNoChain) {
