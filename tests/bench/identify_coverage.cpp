@@ -1,11 +1,6 @@
-// How often the truth lies inside the stated 95 % interval of a ten-shot identification, and how
-// wide the intervals are: identify_coverage [--repeats 2000] [--row 1..4] [--shots 10]
-// [--colour white|coloured|pink] [--noise correlation] [--seed 1]
-// [--alone metres]: of one gauge at that place, the bar's length off within a filed 0.5 mm.
-#include <charconv>
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,29 +11,6 @@
 namespace {
 
 using namespace kolsky;
-
-std::string word(const std::vector<std::string>& words, const std::string& name,
-                 const std::string& otherwise) {
-  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
-    if (words[i] == name) {
-      return words[i + 1];
-    }
-  }
-  return otherwise;
-}
-
-double argument(const std::vector<std::string>& words, const std::string& name, double otherwise) {
-  const std::string text = word(words, name, "");
-  if (text.empty()) {
-    return otherwise;
-  }
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  if (std::from_chars(text.data(), end, value).ptr != end) {
-    throw std::invalid_argument(name + " needs a number");
-  }
-  return value;
-}
 
 struct Wishes {
   int repeats = 2000;
@@ -95,27 +67,29 @@ void cover(std::size_t row, const Wishes& wishes, const testing::BarShots::Recor
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const std::vector<std::string> words(argv + 1, argv + argc);
-    Wishes wishes;
-    wishes.repeats = static_cast<int>(argument(words, "--repeats", 2000));
-    wishes.shots = static_cast<std::size_t>(argument(words, "--shots", 10));
-    wishes.seed = static_cast<unsigned>(argument(words, "--seed", 1));
-    wishes.alone_m = argument(words, "--alone", 0.0);
-    const auto only = static_cast<std::size_t>(argument(words, "--row", 0));
-    testing::BarShots::Recording recording;
-    recording.gain_sd = 0.01;
-    recording.position_sd_m = 0.2e-3;
-    recording.noise_correlation = argument(words, "--noise", 0.0);
-    recording.colour = testing::colour_named(word(words, "--colour", "white"));
-    for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
-      if (only == 0 || only == row + 1) {
-        cover(row, wishes, recording);
-      }
+  CLI::App app(
+      "How often the truth lies inside the stated 95 % interval of an identification, and how\n"
+      "wide the intervals are.");
+  Wishes wishes;
+  std::size_t only = 0;
+  std::string colour = "white";
+  testing::BarShots::Recording recording;
+  recording.gain_sd = 0.01;
+  recording.position_sd_m = 0.2e-3;
+  app.add_option("--repeats", wishes.repeats, "identifications")->check(CLI::PositiveNumber);
+  app.add_option("--shots", wishes.shots, "of each")->check(CLI::PositiveNumber);
+  app.add_option("--seed", wishes.seed, "of the noise and of what is off");
+  app.add_option("--alone", wishes.alone_m,
+                 "one gauge at this place [m], the bar's length off within a filed 0.5 mm");
+  app.add_option("--row", only, "of Table 4; else all")->check(CLI::Range(1, 4));
+  app.add_option("--noise", recording.noise_correlation, "from one sample to the next");
+  app.add_option("--colour", colour)->check(CLI::IsMember({"white", "coloured", "pink"}));
+  CLI11_PARSE(app, argc, argv);
+  recording.colour = testing::colour_named(colour);
+  for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
+    if (only == 0 || only == row + 1) {
+      cover(row, wishes, recording);
     }
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "identify_coverage: %s\n", error.what());
-    return 2;
   }
+  return 0;
 }

@@ -1,10 +1,6 @@
-// What a bar with lateral inertia is found to be made of, beside the bound of Cramer and Rao and
-// what the paper's elementary waves make of the same records: identify_exact [--repeats 40]
-// [--row 1..4] [--colour white|coloured|pink] [--seed 1]
-#include <charconv>
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -15,29 +11,6 @@
 namespace {
 
 using namespace kolsky;
-
-std::string word(const std::vector<std::string>& words, const std::string& name,
-                 const std::string& otherwise) {
-  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
-    if (words[i] == name) {
-      return words[i + 1];
-    }
-  }
-  return otherwise;
-}
-
-double argument(const std::vector<std::string>& words, const std::string& name, double otherwise) {
-  const std::string text = word(words, name, "");
-  if (text.empty()) {
-    return otherwise;
-  }
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  if (std::from_chars(text.data(), end, value).ptr != end) {
-    throw std::invalid_argument(name + " needs a number");
-  }
-  return value;
-}
 
 struct Sums {
   double error = 0.0, square = 0.0, stated = 0.0, deviations = 0.0;
@@ -99,20 +72,22 @@ void judge(std::size_t row, int repeats, testing::NoiseColour colour, unsigned s
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const std::vector<std::string> words(argv + 1, argv + argc);
-    const auto repeats = static_cast<int>(argument(words, "--repeats", 40));
-    const auto seed = static_cast<unsigned>(argument(words, "--seed", 1));
-    const auto colour = testing::colour_named(word(words, "--colour", "white"));
-    const auto only = static_cast<std::size_t>(argument(words, "--row", 0));
-    for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
-      if (only == 0 || only == row + 1) {
-        judge(row, repeats, colour, seed);
-      }
+  CLI::App app(
+      "What a bar with lateral inertia is found to be made of, beside the bound of Cramer and\n"
+      "Rao and what the paper's elementary waves make of the same records.");
+  int repeats = 40;
+  unsigned seed = 1;
+  std::size_t only = 0;
+  std::string colour = "white";
+  app.add_option("--repeats", repeats, "identifications")->check(CLI::PositiveNumber);
+  app.add_option("--seed", seed, "of the noise and of what is off");
+  app.add_option("--row", only, "of Table 4; else all")->check(CLI::Range(1, 4));
+  app.add_option("--colour", colour)->check(CLI::IsMember({"white", "coloured", "pink"}));
+  CLI11_PARSE(app, argc, argv);
+  for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
+    if (only == 0 || only == row + 1) {
+      judge(row, repeats, testing::colour_named(colour), seed);
     }
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "identify_exact: %s\n", error.what());
-    return 2;
   }
+  return 0;
 }
