@@ -341,9 +341,15 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
 void set_strength(const Studied& studied, const std::string& id, std::size_t residuals_per_shot,
                   CandidateResult& result) {
   set_strength(studied, id, result);
-  if (studied.model.find(id) != nullptr) {
-    result.sd *= std::sqrt(scatter_over_noise(studied, id, residuals_per_shot) *
-                           std::max(1.0, studied.misfit.noise_scale));
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr) {
+    return;
+  }
+  result.sd *= std::sqrt(scatter_over_noise(studied, id, residuals_per_shot) *
+                         std::max(1.0, studied.misfit.noise_scale));
+  if (use->effect->about().quadrature && result.sd > 0.0) {
+    // First order speaks of single cosines and sines, a refit of their amplitude.
+    result.detectable = result.identifiable = kDetected * result.sd;
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <Eigen/Dense>
 #include <random>
 
@@ -98,6 +100,11 @@ TEST(ShareBeside, KeepsWhatAHumExplainsFromBeingNamedAsSomethingElse) {
   Study study(campaign, 0.0, Workers{});
   const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
   EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"mains-hum"});
+  const auto hum = std::ranges::find(diagnosis.candidates, "mains-hum", &CandidateResult::effect);
+  ASSERT_NE(hum, diagnosis.candidates.end());
+  // First order said a fiftieth of the deviation.
+  EXPECT_NEAR(hum->detectable, 6.0 * hum->sd, 1e-9 * hum->sd);
+  EXPECT_GE(hum->identifiable, hum->detectable);
 }
 
 }  // namespace
