@@ -276,8 +276,10 @@ class Diagnostician {
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
     const std::vector<std::string> reasons =
-        options_.safeguards.unknown ? why_unknown(diagnosis_, current, study_.campaign(), remains)
-                                    : std::vector<std::string>{};
+        options_.safeguards.unknown
+            ? why_unknown(diagnosis_, current, study_.campaign(),
+                          remains ? std::optional(left) : std::nullopt, options_.log_alpha)
+            : std::vector<std::string>{};
     if (reasons.empty()) {
       settle_claims(diagnosis_, [&](CandidateResult& result) {
         set_strength(current, result.effect, study_.residuals().per_shot(), result);

@@ -16,6 +16,22 @@ std::string chance_text(double log_p) {
                         : fmt::format("once in {:.2g} campaigns", std::exp(-log_p));
 }
 
+std::string repeats_text(double log_p) {
+  return fmt::format(
+      "misfit repeats that no effect of the library explains: noise leaves as much {}",
+      chance_text(log_p));
+}
+
+std::string apart_text(const ShotsApart& apart, const Campaign& campaign) {
+  const ReadingOfShot& most = *apart.furthest;
+  return fmt::format(
+      "gauges do not read all shots alike, which noise does {}: furthest is {}, which reads "
+      "{:+.2g} "
+      "± {:.1g} % in {} beside its other shots; look at its bond, wires and bridge there",
+      chance_text(apart.log_p), campaign.bench.gauges[most.gauge].name, 100.0 * most.gain,
+      100.0 * most.sd, campaign.shots[most.shot].id);
+}
+
 /// What all gauges but one need alike is something of that one which the library does not have.
 bool at_all_gauges_but_one(const Diagnosis& diagnosis, const Campaign& campaign) {
   std::map<std::string, std::size_t> gauges;
@@ -76,12 +92,12 @@ bool beyond_belief(const Studied& studied, const std::string& id, const Campaign
 }
 
 std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& current,
-                                     const Campaign& campaign, bool remains) {
+                                     const Campaign& campaign,
+                                     const std::optional<Unexplained>& remains, double log_alpha) {
   std::vector<std::string> reasons;
   if (remains) {
-    reasons.push_back(fmt::format(
-        "misfit repeats that no effect of the library explains: noise leaves as much {}",
-        chance_text(diagnosis.unexplained_log_p)));
+    reasons.push_back(remains->apart.log_p < log_alpha ? apart_text(remains->apart, campaign)
+                                                       : repeats_text(remains->log_p));
   }
   if (const CandidateResult* own = surest_rejected(diagnosis)) {
     reasons.push_back(fmt::format(

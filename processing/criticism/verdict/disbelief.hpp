@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "processing/criticism/verdict/diagnosis.hpp"
+#include "processing/criticism/verdict/unexplained.hpp"
 
 namespace kolsky {
 
@@ -19,9 +21,11 @@ inline constexpr std::size_t kMostBelieved = 2;
 
 /// Why what was claimed is not what is missing, in sentences; empty: it may be.
 /// @param current  fitted with what was claimed
-/// @param remains  misfit that nothing explains
+/// @param remains  misfit that nothing explains, where there is any
+/// @param log_alpha  ln of the chance at which something is there
 [[nodiscard]] std::vector<std::string> why_unknown(const Diagnosis& diagnosis,
                                                    const Studied& current, const Campaign& campaign,
-                                                   bool remains);
+                                                   const std::optional<Unexplained>& remains,
+                                                   double log_alpha);
 
 }  // namespace kolsky

@@ -11,6 +11,7 @@
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/departure.hpp"
 #include "processing/criticism/verdict/distortion.hpp"
+#include "processing/criticism/verdict/single_shots.hpp"
 #include "processing/criticism/verdict/wander.hpp"
 
 namespace kolsky {
@@ -22,9 +23,10 @@ constexpr double kOneStretch = 3.0;
 
 /// What is asked of the residuals, and how much each question weighs. Smooth distortions are few,
 /// and find what is small; what repeats finds what is of no smooth shape.
-constexpr double kOfDistortions = 0.6;
+constexpr double kOfDistortions = 0.5;
 constexpr double kOfRepeats = 0.2;
 constexpr double kOfOwnNumbers = 0.1;
+constexpr double kOfOwnReadings = 0.1;
 constexpr double kOfAll = 0.1;
 
 /// Columns of one kind of distortion at one place, and where they stand among all.
@@ -37,6 +39,7 @@ struct Distortions {
   Eigen::MatrixXd columns;
   std::vector<Kind> kinds;
   Eigen::VectorXd sizes;  ///< what each does at its usual size, of which the columns are a unit
+  std::vector<SensorColumns> sensors;  ///< by gauge but the reference
 };
 
 /// Residuals of the records, and below them those of the priors.
@@ -49,12 +52,14 @@ Distortions unit_columns(Study& study, const Studied& studied) {
   const Wander wander(study.residuals());
   std::optional<Departure> departure;
   std::vector<EffectUse> uses{null_use(bent_scale_effect())};
+  std::vector<std::size_t> at;  // which of them filter a gauge
   if (study.campaign().bench.specimen) {
     departure.emplace(study, studied);
     uses.push_back(null_use(*departure));
   }
   for (const std::size_t j : study.residuals().others()) {
     const std::string& gauge = study.campaign().bench.gauges[j].name;
+    at.push_back(uses.size());
     uses.push_back(null_use(distortion_effect(), gauge));
     uses.push_back(null_use(wander, gauge));
   }
@@ -72,6 +77,11 @@ Distortions unit_columns(Study& study, const Studied& studied) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     out.columns.middleCols(out.kinds[i].first, out.kinds[i].count) = list[i];
   }
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    out.sensors.push_back({study.residuals().others()[i],
+                           list[at[i]].leftCols(kGainAndDelay) /
+                               distortion_effect().about().parameters.front().typical});
+  }
   out.sizes = out.columns.colwise().norm();
   out.columns.colwise().normalize();
   return out;
@@ -85,7 +95,7 @@ Extended clear_columns(Study& study, const Studied& studied) {
   const Eigen::Index rows = unit.columns.rows();
   const auto numbers = static_cast<Eigen::Index>(fit.theta.size());
   Extended out{{Eigen::MatrixXd::Zero(rows + numbers, unit.columns.cols()), std::move(unit.kinds),
-                std::move(unit.sizes)},
+                std::move(unit.sizes), std::move(unit.sensors)},
                Eigen::VectorXd::Zero(rows + numbers)};
   Eigen::MatrixXd& columns = out.distortions.columns;
   columns.topRows(rows) = unit.columns - fit.jacobian * taken;
@@ -193,60 +203,6 @@ double log_p_of_all(const Misfit& misfit, std::size_t shots) {
                     freedom * (1.0 - 1.0 / static_cast<double>(shots)));
 }
 
-/// What a shot's residuals hold in the directions of the model's numbers, which all shots share.
-struct InOwnDirections {
-  double square = 0.0;
-  double count = 0.0;
-};
-
-InOwnDirections in_own_directions(const Eigen::MatrixXd& jacobian,
-                                  const Eigen::VectorXd& residual) {
-  constexpr double kResolved = 1e-6;
-  Eigen::MatrixXd columns = jacobian;
-  columns.colwise().normalize();
-  const SymmetricEigen solver(columns.transpose() * columns);
-  const Eigen::VectorXd pull = solver.eigenvectors().transpose() * (columns.transpose() * residual);
-  InOwnDirections own;
-  for (Eigen::Index i = 0; i < pull.size(); ++i) {
-    if (solver.eigenvalues()[i] > kResolved) {
-      own.square += pull[i] * pull[i] / solver.eigenvalues()[i];
-      own.count += 1.0;
-    }
-  }
-  return own;
-}
-
-/// ln of the chance that noise makes the shots ask for numbers so far apart. A model that lacks
-/// what grows with a shot's amplitude fits each by moduli of its own, and leaves little of it.
-double log_p_of_own_numbers(const Study& study, const Studied& studied, std::size_t per_shot,
-                            double known) {
-  const auto shots = static_cast<Eigen::Index>(study.campaign().shots.size());
-  const auto size = static_cast<Eigen::Index>(per_shot);
-  std::vector<Eigen::Index> shared;
-  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
-    if (studied.composition.numbers()[i].shot < 0) {
-      shared.push_back(static_cast<Eigen::Index>(i));
-    }
-  }
-  if (shared.empty() || shots < 3) {
-    return 0.0;
-  }
-  InOwnDirections all;
-  double common = 0.0;
-  for (Eigen::Index n = 0; n < shots; ++n) {
-    const InOwnDirections own =
-        in_own_directions(studied.fit.jacobian(Eigen::seqN(n * size, size), shared),
-                          studied.fit.residual.segment(n * size, size));
-    all.square += own.square;
-    all.count += own.count;
-    common = std::max(common, own.count);
-  }
-  const double freedom = all.count - common;
-  const double noise = noise_of(studied.misfit, study.campaign().shots.size());
-  return freedom > 0.0 ? log_f_tail(all.square / freedom / std::max(1.0, noise), freedom, known)
-                       : 0.0;
-}
-
 }  // namespace
 
 Unexplained unexplained(Study& study, const Studied& studied) {
@@ -279,11 +235,12 @@ Unexplained unexplained(Study& study, const Studied& studied) {
   }
   const double log_p = log_f_tail(found / freedom / noise.power, equal, noise.freedom);
   const double known = belief_in(distortion_effect(), study.residuals().noise(), shots);
+  const ShotsApart apart = readings_apart(studied, distortions.sensors, shots, per_shot, known);
   const std::array log_ps{combined(log_p, by_kind), studied.misfit.repeatable_log_p,
-                          log_p_of_own_numbers(study, studied, per_shot, known),
+                          log_p_of_own_numbers(studied, shots, per_shot, known), apart.log_p,
                           log_p_of_all(studied.misfit, shots)};
-  constexpr std::array weights{kOfDistortions, kOfRepeats, kOfOwnNumbers, kOfAll};
-  return {combined_log_p(log_ps, weights), std::max(0.0, found / noise.power - freedom)};
+  constexpr std::array weights{kOfDistortions, kOfRepeats, kOfOwnNumbers, kOfOwnReadings, kOfAll};
+  return {combined_log_p(log_ps, weights), std::max(0.0, found / noise.power - freedom), apart};
 }
 
 }  // namespace kolsky

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "processing/criticism/fitting/study.hpp"
+#include "processing/criticism/verdict/single_shots.hpp"
 
 namespace kolsky {
 
@@ -9,6 +9,7 @@ namespace kolsky {
 struct Unexplained {
   double log_p = 0.0;   ///< ln of the chance that noise alone leaves as much
   double excess = 0.0;  ///< chi2 beyond what noise leaves
+  ShotsApart apart{};
 };
 
 /// Distortions by frequency, amplitude and shot (distortion.hpp), by time (wander.hpp) and of the

@@ -418,7 +418,9 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   CandidateResult& own = diagnosis.candidates.emplace_back();
   own.effect = "bridge-nonlinearity";
   own.verdict = "rejected";
-  const auto reasons = [&] { return why_unknown(diagnosis, current, campaign, false).size(); };
+  const auto reasons = [&] {
+    return why_unknown(diagnosis, current, campaign, std::nullopt, -5.8).size();
+  };
   own.log_p = -14.0;
   EXPECT_EQ(reasons(), 1U);
   own.log_p = -8.0;
