@@ -19,13 +19,25 @@ namespace {
 
 constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
-HeldOut held_out(const Studied& before, const Studied& after, Study& study) {
+/// What the true model would leave of these very records. Where nothing shows that more than noise
+/// is left, it is what the fit left and what its numbers took up, one each: noise that repeats by
+/// chance is in all of them alike, and is nothing that an effect could close. Else noise is what
+/// differs between the shots.
+double floor_of(const Studied& after, bool remains, const Study& study) {
+  if (study.campaign().shots.size() < 2) {
+    return 1.0;
+  }
+  return remains ? after.misfit.noise_scale
+                 : (after.fit.objective() + static_cast<double>(after.fit.theta.size())) /
+                       static_cast<double>(after.fit.residual.size());
+}
+
+HeldOut held_out(const Studied& before, const Studied& after, bool remains, Study& study) {
   const auto mean = [&](const Studied& studied) {
     return held_out_misfit(held_out_squares(studied, study), studied.fit.penalty,
                            static_cast<double>(study.residuals().size()));
   };
-  return {mean(before), mean(after),
-          study.campaign().shots.size() > 1 ? after.misfit.noise_scale : 1.0};
+  return {mean(before), mean(after), floor_of(after, remains, study)};
 }
 
 }  // namespace
@@ -267,7 +279,6 @@ class Diagnostician {
     // Both by the same measure of the noise.
     const Studied before = diagnosis_.effects.empty() ? first : study_.refit(first);
     diagnosis_.before = before.misfit;
-    diagnosis_.held_out = held_out(before, current, study_);
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
@@ -275,6 +286,8 @@ class Diagnostician {
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          excess > allowed_rest() * std::max(0.0, explained);
+    diagnosis_.held_out =
+        held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
     const std::vector<std::string> reasons =
         options_.safeguards.unknown
             ? why_unknown(diagnosis_, current, study_.campaign(),
