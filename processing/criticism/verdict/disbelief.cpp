@@ -96,8 +96,14 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
                                      const std::optional<Unexplained>& remains, double log_alpha) {
   std::vector<std::string> reasons;
   if (remains) {
-    reasons.push_back(remains->apart.log_p < log_alpha ? apart_text(remains->apart, campaign)
-                                                       : repeats_text(remains->log_p));
+    const bool apart = remains->apart.log_p < log_alpha;
+    if (!apart || remains->common_log_p < log_alpha) {
+      reasons.push_back(repeats_text(remains->common_log_p));
+    }
+    if (apart) {
+      const bool surer = remains->apart.log_p < remains->common_log_p;
+      reasons.insert(surer ? reasons.begin() : reasons.end(), apart_text(remains->apart, campaign));
+    }
   }
   if (const CandidateResult* own = surest_rejected(diagnosis)) {
     reasons.push_back(fmt::format(

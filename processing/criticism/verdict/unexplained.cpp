@@ -203,13 +203,11 @@ double log_p_of_all(const Misfit& misfit, std::size_t shots) {
                     freedom * (1.0 - 1.0 / static_cast<double>(shots)));
 }
 
-}  // namespace
-
-Unexplained unexplained(Study& study, const Studied& studied) {
-  const auto [distortions, residual] = clear_columns(study, studied);
+/// What distortions find, all together and each kind by itself. Where the model or the source takes
+/// up all of them they find nothing, which says nothing of the other questions.
+Unexplained in_distortions(const Extended& extended, std::size_t per_shot, std::size_t shots) {
+  const auto& [distortions, residual] = extended;
   const Eigen::MatrixXd directions = directions_of(distortions.columns, distortions.sizes);
-  const std::size_t per_shot = study.residuals().per_shot();
-  const std::size_t shots = study.campaign().shots.size();
   const auto freedom = static_cast<double>(directions.cols());
   if (freedom == 0.0) {
     return {};
@@ -217,12 +215,12 @@ Unexplained unexplained(Study& study, const Studied& studied) {
   const double found = (directions.transpose() * residual).squaredNorm();
   if (shots < 2) {
     // Nothing shows that it would come back: noise is known by one short stretch alone.
-    return {log_f_tail(found / freedom, freedom, kOneStretch), std::max(0.0, found - freedom)};
+    const double log_p = log_f_tail(found / freedom, freedom, kOneStretch);
+    return {log_p, log_p, std::max(0.0, found - freedom)};
   }
   const Eigen::VectorXd powers = between_shots(directions, residual, per_shot, shots);
-  const auto further = static_cast<double>(shots - 1);
-  const double equal = equal_directions(powers, further);
-  const Noise noise{std::max(1.0, powers.mean()), equal * further};
+  const double equal = equal_directions(powers, static_cast<double>(shots - 1));
+  const Noise noise{std::max(1.0, powers.mean()), equal * static_cast<double>(shots - 1)};
   std::vector<double> by_kind;
   for (const Kind& kind : distortions.kinds) {
     const Eigen::MatrixXd own =
@@ -234,13 +232,31 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     }
   }
   const double log_p = log_f_tail(found / freedom / noise.power, equal, noise.freedom);
+  return {combined(log_p, by_kind), 0.0, std::max(0.0, found / noise.power - freedom)};
+}
+
+}  // namespace
+
+Unexplained unexplained(Study& study, const Studied& studied) {
+  const Extended extended = clear_columns(study, studied);
+  const std::size_t per_shot = study.residuals().per_shot();
+  const std::size_t shots = study.campaign().shots.size();
+  Unexplained left = in_distortions(extended, per_shot, shots);
+  if (shots < 2) {
+    return left;
+  }
   const double known = belief_in(distortion_effect(), study.residuals().noise(), shots);
-  const ShotsApart apart = readings_apart(studied, distortions.sensors, shots, per_shot, known);
-  const std::array log_ps{combined(log_p, by_kind), studied.misfit.repeatable_log_p,
-                          log_p_of_own_numbers(studied, shots, per_shot, known), apart.log_p,
+  left.apart = readings_apart(studied, extended.distortions.sensors, shots, per_shot, known);
+  const std::array log_ps{left.log_p, studied.misfit.repeatable_log_p,
+                          log_p_of_own_numbers(studied, shots, per_shot, known),
                           log_p_of_all(studied.misfit, shots)};
-  constexpr std::array weights{kOfDistortions, kOfRepeats, kOfOwnNumbers, kOfOwnReadings, kOfAll};
-  return {combined_log_p(log_ps, weights), std::max(0.0, found / noise.power - freedom), apart};
+  constexpr double kInCommon = 1.0 - kOfOwnReadings;
+  constexpr std::array weights{kOfDistortions / kInCommon, kOfRepeats / kInCommon,
+                               kOfOwnNumbers / kInCommon, kOfAll / kInCommon};
+  left.common_log_p = combined_log_p(log_ps, weights);
+  left.log_p = combined_log_p(std::array{left.common_log_p, left.apart.log_p},
+                              std::array{kInCommon, kOfOwnReadings});
+  return left;
 }
 
 }  // namespace kolsky

@@ -7,8 +7,9 @@ namespace kolsky {
 /// What smooth distortions of every gauge, and of a specimen's law, still find in a model's
 /// residuals.
 struct Unexplained {
-  double log_p = 0.0;   ///< ln of the chance that noise alone leaves as much
-  double excess = 0.0;  ///< chi2 beyond what noise leaves
+  double log_p = 0.0;         ///< ln of the chance that noise alone leaves as much
+  double common_log_p = 0.0;  ///< the same of all but what sets shots apart
+  double excess = 0.0;        ///< chi2 beyond what noise leaves
   ShotsApart apart{};
 };
 
