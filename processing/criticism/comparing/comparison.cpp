@@ -38,6 +38,25 @@ bool alike(const std::vector<ArrivalWindow>& a, const std::vector<ArrivalWindow>
                     [](const auto& one, const auto& other) { return one.weight == other.weight; });
 }
 
+/// A place that holds less of its shot's misfit than this is not where the model fails, however far
+/// it stands out of the noise: a wave that is missing pulls at sources and moduli, and they at the
+/// rest of the record.
+constexpr double kPartOfMisfit = 1e-3;
+
+double over(const Tile& tile) {
+  return std::max(0.0, tile.energy - tile.noise.mean);
+}
+
+void unmark_traces(std::vector<Tile>& tiles) {
+  std::map<std::size_t, double> by_shot;
+  for (const Tile& tile : tiles) {
+    by_shot[tile.shot] += over(tile);
+  }
+  for (Tile& tile : tiles) {
+    tile.significant = tile.significant && over(tile) > kPartOfMisfit * by_shot[tile.shot];
+  }
+}
+
 }  // namespace
 
 double Region::sigma() const {
@@ -176,12 +195,13 @@ std::vector<Tile> Comparer::compare_shot(std::size_t shot) {
     add_tiles(own, windowed(own.records.front(), shot, own.gauge), shot, tiles);
   }
   mark_significant(tiles);
+  unmark_traces(tiles);
   double excess = 0.0;
   for (const Tile& tile : tiles) {
-    excess += std::max(0.0, tile.energy - tile.noise.mean);
+    excess += over(tile);
   }
   for (Tile& tile : tiles) {
-    tile.share = excess > 0.0 ? std::max(0.0, tile.energy - tile.noise.mean) / excess : 0.0;
+    tile.share = excess > 0.0 ? over(tile) / excess : 0.0;
   }
   return tiles;
 }
@@ -260,7 +280,6 @@ void Comparer::mark_regions(std::map<Key, Region>& regions) {
 
 /// @return chi-square over what noise leaves, over all tiles
 double Comparer::share_out(std::vector<Tile>& tiles, std::map<Key, Region>& regions) {
-  const auto over = [](const Tile& tile) { return std::max(0.0, tile.energy - tile.noise.mean); };
   double excess = 0.0;
   for (const Tile& tile : tiles) {
     excess += over(tile);
@@ -271,8 +290,15 @@ double Comparer::share_out(std::vector<Tile>& tiles, std::map<Key, Region>& regi
     // A place that fails over all shots does so in every shot that shows it at all.
     tile.significant =
         tile.significant || (region.significant && tile.log_p < std::log(kFalseDiscovery));
-    tile.repeats = tile.significant && region.repeats;
     region.share += tile.share;
+  }
+  unmark_traces(tiles);
+  for (auto& [key, region] : regions) {
+    region.significant = region.significant && region.share > kPartOfMisfit;
+    region.repeats = region.repeats && region.significant;
+  }
+  for (Tile& tile : tiles) {
+    tile.repeats = tile.significant && regions[{tile.gauge, tile.window, tile.band}].repeats;
   }
   return excess;
 }

@@ -13,6 +13,10 @@ namespace {
 
 /// A gauge is off beyond doubt where noise would have it so once in a million.
 const double kBeyondDoubt = std::log(1e-6);
+/// Others agree where leaving it out takes all but this share of what they had beyond noise: moduli
+/// that were fitted with it are still off. (A delay leaves 0.6; of what waves lack 0.8 and more.)
+constexpr double kStillOff = 0.7;
+constexpr double kDeviationsOfChance = 2.0;
 constexpr double kFilterPasses = 0.1;
 /// Noise of a gauge that is left out, over its own.
 constexpr double kLeftOut = 1e8;
@@ -149,12 +153,26 @@ GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate, std::siz
   return out;
 }
 
-/// The gauges that stand out beyond doubt, each beside those before it, as long as more agree.
-std::vector<bool> GaugeDeviations::at_fault(Found now, std::size_t first, std::size_t end) const {
-  const std::size_t gauges = now.energy.size();
+/// What the gauges that are not left out have beyond noise.
+double GaugeDeviations::excess_of_others(const Found& now, const std::vector<bool>& left_out,
+                                         double freedom) {
+  double excess = 0.0;
+  for (std::size_t j = 0; j < left_out.size(); ++j) {
+    excess += left_out[j] ? 0.0 : now.energy[j] - freedom;
+  }
+  return excess;
+}
+
+/// The gauges that stand out beyond doubt, each beside those before it, until the others agree; as
+/// long as more are left. Where they never do the fault is in the waves, which all gauges read, and
+/// none is left out: of an end's reflection the gauge that shows most of it is not to blame.
+std::vector<bool> GaugeDeviations::at_fault(const Found& all, std::size_t first,
+                                            std::size_t end) const {
+  const std::size_t gauges = all.energy.size();
   const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged * (end - first));
   std::vector<bool> out(gauges, false);
-  for (std::size_t most = (gauges - 1) / 2; most > 0; --most) {
+  Found now = all;
+  for (std::size_t left = gauges - 1; left > gauges - 1 - (gauges - 1) / 2; --left) {
     std::size_t worst = gauges;
     for (std::size_t j = 0; j < gauges; ++j) {
       if (!out[j] && (worst == gauges || now.energy[j] > now.energy[worst])) {
@@ -165,11 +183,15 @@ std::vector<bool> GaugeDeviations::at_fault(Found now, std::size_t first, std::s
       break;
     }
     out[worst] = true;
-    if (most > 1) {
-      now = found(estimate(out), first, end);
+    now = found(estimate(out), first, end);
+    const double chance =
+        kDeviationsOfChance * std::sqrt(2.0 * freedom * static_cast<double>(left));
+    if (excess_of_others(now, out, freedom) <
+        kStillOff * excess_of_others(all, out, freedom) + chance) {
+      return out;
     }
   }
-  return out;
+  return std::vector<bool>(gauges, false);
 }
 
 std::vector<GaugeDeviation> GaugeDeviations::of_shots(std::size_t first, std::size_t end) {

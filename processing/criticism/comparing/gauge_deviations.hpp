@@ -25,8 +25,9 @@ struct GaugeDeviation {
 /// records' filter fades deviations out; cut off there they would ring before their pulses.
 ///
 /// Of all gauges the one at fault stands out furthest (Baarda's test for outliers). Where one does
-/// beyond doubt the others are taken without it, or a free source would book a part of its fault to
-/// them; and so on to the next as long as more are left than that.
+/// beyond doubt, and the others agree without it, they are taken without it, or a free source would
+/// book a part of its fault to them; where they do not agree, the next is left out too, as long as
+/// more are left than that.
 class GaugeDeviations {
  public:
   /// @param residuals  as frozen at theta
@@ -53,7 +54,10 @@ class GaugeDeviations {
 
   [[nodiscard]] Estimate estimate(const std::vector<bool>& left_out) const;
   [[nodiscard]] Found found(const Estimate& estimate, std::size_t first, std::size_t end) const;
-  [[nodiscard]] std::vector<bool> at_fault(Found now, std::size_t first, std::size_t end) const;
+  [[nodiscard]] static double excess_of_others(const Found& now, const std::vector<bool>& left_out,
+                                               double freedom);
+  [[nodiscard]] std::vector<bool> at_fault(const Found& all, std::size_t first,
+                                           std::size_t end) const;
   [[nodiscard]] std::size_t judged_bin(std::size_t fine) const;
 
   const WhiteResiduals& residuals_;

@@ -272,6 +272,18 @@ INSTANTIATE_TEST_SUITE_P(Faults, OneGauge,
                                            Fault{"gauge-factor:g3=-0.02", 2},
                                            Fault{"channel-delay:g3=2e-6", 2}));
 
+// What waves lack all gauges read, the nearest and the furthest most: none of them is to blame for
+// it alone, and none is free of it.
+TEST(Comparison, LaysWhatWavesLackAtAllGauges) {
+  for (const std::string effect : {"series-dashpot=3e-8", "fractional-damping=0.9"}) {
+    const Compared compared(make(12, {effect}).shots);
+    ASSERT_GT(compared.significant(), 20U) << effect;
+    for (std::size_t gauge = 0; gauge < compared.campaign.gauges(); ++gauge) {
+      EXPECT_LT(compared.share(gauge), 0.5) << effect << " " << gauge;
+    }
+  }
+}
+
 // A model keeps the mean of strengths that every shot has of its own; a hum's, of any phase, is
 // near none.
 TEST(Comparison, FindsStrengthsOfEachShotsOwnAnewAndNothingElse) {
