@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 constexpr double kFalseDiscovery = 0.005;
 
 double chance_of_marking(const PlaceTruth& truth) {
-  if (truth.freedom <= 0.0) {
+  if (truth.freedom <= 0.0 || (truth.trace && truth.excess > 0.0)) {
     return 0.0;
   }
   using namespace boost::math;

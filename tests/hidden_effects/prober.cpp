@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace kolsky::scoring {
 
@@ -48,6 +49,12 @@ Readings difference(const Readings& changed, const Readings& base, double step,
     }
   }
   return out;
+}
+
+std::function<void(Campaign&, double)> hidden_at(const std::string& id, const std::string& gauge) {
+  return [id, gauge](Campaign& campaign, double strength) {
+    testing::hide(campaign, {id, gauge, strength, {}});
+  };
 }
 
 }  // namespace
@@ -103,8 +110,8 @@ Readings Prober::unit_change_everywhere(const Candidate& candidate) {
   return unit_change(at, step, differences_of(candidate.kind));
 }
 
-Readings Prober::whole_change(const Campaign& changed) {
-  return difference(forward_.readings(changed), base_, 1.0, whiten_);
+Readings Prober::whole_change(const Campaign& changed, const Campaign& from) {
+  return difference(forward_.readings(changed), forward_.readings(from), 1.0, whiten_);
 }
 
 SourceFreedom Prober::freedom() {
@@ -151,18 +158,24 @@ Readings Prober::unit_change(const std::function<Campaign(double)>& at, double s
   return out;
 }
 
+std::function<Campaign(double)> Prober::along(std::function<void(Campaign&, double)> move) const {
+  return [this, move = std::move(move)](double share) {
+    Campaign campaign = campaign_;
+    move(campaign, share * kModulusStep);
+    return campaign;
+  };
+}
+
 // A modulus of the bars, free or within what is filed; held altogether where that is exact.
 void Prober::add_modulus(std::vector<Direction>& out, double testing::TrueMaterial::*member,
                          bool held, double relative_sd) {
   if (held && relative_sd == 0.0) {
     return;
   }
-  const auto at = [&](double share) {
-    Campaign campaign = campaign_;
-    campaign.world.material.*member *= 1.0 + share * kModulusStep;
-    return campaign;
+  const auto move = [member](Campaign& campaign, double relative) {
+    campaign.world.material.*member *= std::exp(relative);
   };
-  out.push_back({unit_change(at, kModulusStep, Differences::central), relative_sd});
+  out.push_back({unit_change(along(move), kModulusStep, Differences::central), relative_sd, move});
 }
 
 void Prober::add_specimen(std::vector<Direction>& out) {
@@ -176,12 +189,10 @@ void Prober::add_specimen(std::vector<Direction>& out) {
         {&S::diameter_m, filed.diameter_m.sd / filed.diameter_m.value}}) {
     const auto member = of_specimen;
     if (sd > 0.0 || (member != &S::length_m && member != &S::diameter_m)) {
-      const auto at = [&](double share) {
-        Campaign campaign = campaign_;
-        campaign.split->specimen.*member *= 1.0 + share * kModulusStep;
-        return campaign;
+      const auto move = [member](Campaign& campaign, double relative) {
+        campaign.split->specimen.*member *= std::exp(relative);
       };
-      out.push_back({unit_change(at, kModulusStep, Differences::central), sd});
+      out.push_back({unit_change(along(move), kModulusStep, Differences::central), sd, move});
     }
   }
 }
@@ -191,12 +202,13 @@ void Prober::add_gauges(std::vector<Direction>& out) {
     const Gauge& filed = campaign_.bench.gauges[g];
     const std::string& name = campaign_.world.gauges[g].name;
     if (filed.position_m.sd > 0.0) {
-      out.push_back(
-          {unit_change({{"gauge-position", name, 1e-4, {}}, {}, 0.0}), filed.position_m.sd});
+      out.push_back({unit_change({{"gauge-position", name, 1e-4, {}}, {}, 0.0}),
+                     filed.position_m.sd, hidden_at("gauge-position", name)});
     }
     if (filed.strain_per_V && filed.strain_per_V->sd > 0.0) {
       out.push_back({unit_change({{"gauge-factor", name, 1e-3, {}}, {}, 0.0}),
-                     filed.strain_per_V->sd / filed.strain_per_V->value});
+                     filed.strain_per_V->sd / filed.strain_per_V->value,
+                     hidden_at("gauge-factor", name)});
     }
   }
 }

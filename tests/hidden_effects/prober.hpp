@@ -24,6 +24,8 @@ struct Candidate {
 struct Direction {
   testing::Readings readings;
   double prior_sd = 0.0;  ///< 0: free
+  /// Brings a campaign so many units along it, however far.
+  std::function<void(testing::Campaign&, double)> move{};
 
   /// What its prior adds to its information.
   [[nodiscard]] double known() const { return prior_sd > 0.0 ? 1.0 / (prior_sd * prior_sd) : 0.0; }
@@ -42,8 +44,9 @@ class Prober {
   [[nodiscard]] testing::Readings unit_change(const Candidate& candidate);
   /// The same change at every gauge, at the cost of one.
   [[nodiscard]] testing::Readings unit_change_everywhere(const Candidate& candidate);
-  /// All that another campaign on the same bench reads otherwise.
-  [[nodiscard]] testing::Readings whole_change(const testing::Campaign& changed);
+  /// All that one campaign reads otherwise than another on the same bench.
+  [[nodiscard]] testing::Readings whole_change(const testing::Campaign& changed,
+                                               const testing::Campaign& from);
   [[nodiscard]] SourceFreedom freedom();
 
  private:
@@ -53,6 +56,8 @@ class Prober {
   [[nodiscard]] static Differences differences_of(const testing::EffectKind& kind);
   [[nodiscard]] testing::Readings unit_change(const std::function<testing::Campaign(double)>& at,
                                               double step, Differences differences);
+  [[nodiscard]] std::function<testing::Campaign(double)> along(
+      std::function<void(testing::Campaign&, double)> move) const;
   void add_modulus(std::vector<Direction>& out, double testing::TrueMaterial::*member, bool held,
                    double relative_sd);
   void add_specimen(std::vector<Direction>& out);

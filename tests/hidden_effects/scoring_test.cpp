@@ -264,10 +264,11 @@ TEST(Localisation, CountsWhatIsMarkedOfWhatFails) {
   EXPECT_TRUE(places.stretches[0].quiet);
   EXPECT_EQ(places.bands_Hz[1], (std::pair{2e3, 4e3}));
 
-  const std::vector<PlaceTruth> truth{{{"g1", "later", 1, 1}, 100.0, 4.0, true},
-                                      {{"g1", "later", 0, 1}, 100.0, 4.0, true},
-                                      {{"g1", "later", 1, 0}, 1.0, 4.0, true},
-                                      {{"g2", "later", 0, 0}, 0.0, 4.0, false}};
+  const std::vector<PlaceTruth> truth{{{"g1", "later", 1, 1}, 100.0, 4.0, true, false},
+                                      {{"g1", "later", 0, 1}, 100.0, 4.0, true, false},
+                                      {{"g1", "later", 1, 0}, 1.0, 4.0, true, false},
+                                      {{"g1", "later", 0, 0}, 100.0, 4.0, true, true},
+                                      {{"g2", "later", 0, 0}, 0.0, 4.0, false, false}};
   const Localisation found = localisation(truth, marked_by(compared));
   EXPECT_EQ(found.all.failing, 2U);
   EXPECT_EQ(found.all.marked, 2U);
