@@ -67,7 +67,29 @@ struct Place {
   double gain = 0.0;
 };
 
-/// One strength within its bounds: the line that first order is may lead out of them. Of several
+/// How far a step of several strengths may go until one of them is at its bound. Where the model
+/// takes up nearly all that they do together, the best of first order is beyond all measure.
+double share_in_bounds(const EffectAbout& about, const Eigen::VectorXd& step) {
+  std::vector<const EffectParameter*> strengths;
+  for (const EffectParameter& parameter : about.parameters) {
+    if (!parameter.auxiliary()) {
+      strengths.push_back(&parameter);
+    }
+  }
+  if (static_cast<Eigen::Index>(strengths.size()) != step.size()) {
+    return 1.0;  // strengths of every shot or gauge, which a prior bounds
+  }
+  double share = 1.0;
+  for (std::size_t k = 0; k < strengths.size(); ++k) {
+    const EffectParameter& own = *strengths[k];
+    const double off = own.typical * step[static_cast<Eigen::Index>(k)];
+    const double room = off > 0.0 ? own.upper - own.null_value : own.null_value - own.lower;
+    share = std::abs(off) > room ? std::min(share, room / std::abs(off)) : share;
+  }
+  return share;
+}
+
+/// Strengths within their bounds: the line that first order is may lead out of them. Of several
 /// numbers their root mean square.
 Place place_of(const Tried& tried, std::size_t i) {
   const Candidate& candidate = tried.candidates[i];
@@ -77,8 +99,10 @@ Place place_of(const Tried& tried, std::size_t i) {
   const double scale = scale_of(candidate);
   const auto numbers = direction.step.size();
   if (numbers > 1) {
-    const double step = direction.step.norm() / std::sqrt(static_cast<double>(numbers));
-    return {parameter.null_value + scale * root(step, parameter.power), direction.gain};
+    const double share = share_in_bounds(about, direction.step);
+    const double step = share * direction.step.norm() / std::sqrt(static_cast<double>(numbers));
+    return {parameter.null_value + scale * root(step, parameter.power),
+            direction.gain * share * (2.0 - share)};
   }
   const double off = scale * root(direction.step[0], parameter.power);
   const double strength =
