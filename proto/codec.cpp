@@ -39,6 +39,12 @@ constexpr EnumPair<Verdict, v1::Quality::Verdict> kVerdicts[] = {
     {Verdict::fail, v1::Quality::FAIL},
 };
 
+constexpr EnumPair<Separation, v1::Result::Separation> kSeparations[] = {
+    {Separation::never, v1::Result::SEPARATION_UNSPECIFIED},
+    {Separation::gauges, v1::Result::GAUGES},
+    {Separation::equilibrium, v1::Result::EQUILIBRIUM},
+};
+
 template <class Domain, class Wire, std::size_t N>
 Wire to_wire(Domain value, const EnumPair<Domain, Wire> (&pairs)[N]) {
   for (const auto& pair : pairs) {
@@ -481,6 +487,9 @@ void encode(const Reduction& reduction, const std::string& shot_id, v1::Result& 
   message.set_arrival_sigma_s(reduction.arrival_sigma_s);
   message.set_band_limit_hz(reduction.band_limit_Hz);
   message.set_quiet_samples(static_cast<std::uint32_t>(reduction.quiet_samples));
+  message.set_separation(to_wire(reduction.separation, kSeparations));
+  message.set_assumed_from_s(reduction.assumed_from_s);
+  message.set_push_left_share(reduction.push_left_share);
   if (reduction.ball) {
     encode(*reduction.ball, *message.mutable_ball());
   }
@@ -497,12 +506,15 @@ Reduction decode(const v1::Result& message) {
     if (message.has_ball()) {
       reduction.ball = within("ball", [&] { return decode(message.ball()); });
     }
+    reduction.separation = from_wire(message.separation(), kSeparations, "separation");
   });
   reduction.bar_model = message.bar_model();
   reduction.arrival_s = message.arrival_s();
   reduction.arrival_sigma_s = message.arrival_sigma_s();
   reduction.band_limit_Hz = message.band_limit_hz();
   reduction.quiet_samples = message.quiet_samples();
+  reduction.assumed_from_s = message.assumed_from_s();
+  reduction.push_left_share = message.push_left_share();
   return reduction;
 }
 

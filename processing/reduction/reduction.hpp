@@ -44,6 +44,7 @@ enum class Separation { as_needed, never, gauges, equilibrium };
 
 /// @throws InputError for any other name than auto, never, gauges, equilibrium
 [[nodiscard]] Separation separation_from(const std::string& name);
+[[nodiscard]] std::string name_of(Separation separation);
 
 /// A specimen's histories, engineering, compression positive, equally spaced; t = 0 when the pulse
 /// arrives at interface A (the input bar's end). All arrays have the same length.

@@ -1,7 +1,9 @@
 #include "processing/reduction/separated_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/pulse.hpp"
@@ -74,20 +76,28 @@ std::vector<double> times(const std::vector<double>& values, double factor) {
   return scaled;
 }
 
+constexpr std::array<std::pair<const char*, Separation>, 4> kSeparationNames = {
+    {{"auto", Separation::as_needed},
+     {"never", Separation::never},
+     {"gauges", Separation::gauges},
+     {"equilibrium", Separation::equilibrium}}};
+
 }  // namespace
 
 Separation separation_from(const std::string& name) {
-  const std::pair<const char*, Separation> names[] = {{"auto", Separation::as_needed},
-                                                      {"never", Separation::never},
-                                                      {"gauges", Separation::gauges},
-                                                      {"equilibrium", Separation::equilibrium}};
-  for (const auto& [known, separation] : names) {
+  for (const auto& [known, separation] : kSeparationNames) {
     if (name == known) {
       return separation;
     }
   }
   throw InputError("separate", "\"" + name + "\" is not a way to tell waves apart",
                    "give auto, never, gauges or equilibrium");
+}
+
+std::string name_of(Separation separation) {
+  const auto* const known =
+      std::ranges::find(kSeparationNames, separation, &std::pair<const char*, Separation>::second);
+  return known->first;
 }
 
 bool gauges_at_two_places(const Bench& bench, const std::string& bar) {

@@ -190,13 +190,6 @@ JsonObject describe(const std::vector<CompliancePoint>& spectrum,
   return object;
 }
 
-/// How the waves behind the histories were told apart, as `kolsky reduce --separate` has it.
-std::string name_of(Separation separation) {
-  return separation == Separation::equilibrium ? "equilibrium"
-         : separation == Separation::gauges    ? "gauges"
-                                               : "never";
-}
-
 JsonValue spectral_json(const Outcome& outcome) {
   if (!outcome.spectral) {
     return JsonObject{{"refused", outcome.spectral_refused}};

@@ -80,6 +80,7 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                        {"arrival_s", if_found(reduction.arrival_s)},
                        {"arrival_sigma_s", if_found(reduction.arrival_sigma_s)},
                        {"band_limit_Hz", if_found(reduction.band_limit_Hz)},
+                       {"separation", name_of(reduction.separation)},
                        {"quality", describe(reduction.quality, reduced)},
                        {"stress_from", reduced.stress},
                        {"corrections", reduced.corrections},

@@ -146,6 +146,7 @@ TEST_F(Files, ReduceTellsWavesApartByTwoGaugesWhereThePulseOutlastsTheWindow) {
     return worst / largest;
   };
   const json separated = json_of(scene::kolsky({"reduce", capture, "--json"}));
+  EXPECT_EQ(separated["separation"], "gauges");
   const json& checks = separated["quality"]["checks"];
   EXPECT_EQ(checks["window_overlap"]["verdict"], "pass");
   EXPECT_NE(checks["window_overlap"]["text"].get<std::string>().find("told apart by g1 and g3"),
@@ -154,6 +155,7 @@ TEST_F(Files, ReduceTellsWavesApartByTwoGaugesWhereThePulseOutlastsTheWindow) {
             std::string::npos);
   EXPECT_LT(off(separated), 5e-3);
   const json by_time = json_of(scene::kolsky({"reduce", capture, "--json", "--separate", "never"}));
+  EXPECT_EQ(by_time["separation"], "never");
   EXPECT_EQ(by_time["quality"]["checks"]["window_overlap"]["verdict"], "fail");
   EXPECT_GT(off(by_time), 0.1);
   EXPECT_FALSE(by_time["quality"]["checks"].contains("separated_noise"));

@@ -167,6 +167,9 @@ TEST(ReductionCodec, ComesBackExact) {
   EXPECT_EQ(back.arrival_sigma_s, reduction.arrival_sigma_s);
   EXPECT_EQ(back.band_limit_Hz, reduction.band_limit_Hz);
   EXPECT_EQ(back.quiet_samples, reduction.quiet_samples);
+  EXPECT_EQ(back.separation, reduction.separation);
+  EXPECT_EQ(back.assumed_from_s, reduction.assumed_from_s);
+  EXPECT_EQ(back.push_left_share, reduction.push_left_share);
   EXPECT_EQ(back.bar_model, reduction.bar_model);
   EXPECT_EQ(back.quality.reducible, true);
   ASSERT_EQ(back.quality.checks.size(), 2U);

@@ -213,6 +213,14 @@ v1::Result result_with_quiet() {
   return with_quiet;
 }
 
+v1::Result separated_result() {
+  v1::Result separated = result();
+  separated.set_separation(v1::Result::EQUILIBRIUM);
+  separated.set_assumed_from_s(6e-5);
+  separated.set_push_left_share(0.25);
+  return separated;
+}
+
 v1::Measured measured(double value, double sd) {
   v1::Measured number;
   number.set_value(value);
@@ -511,6 +519,7 @@ std::vector<Fixture> fixtures() {
       fixture("shot_identified", shot_identified()),
       fixture("result", result()),
       fixture("result_quiet", result_with_quiet()),
+      fixture("result_separated", separated_result()),
       fixture("result_irreducible", irreducible()),
       fixture("result_ball", ball_result()),
       fixture("fault", fault()),

@@ -77,6 +77,9 @@ Reduction awkward_reduction(std::size_t samples) {
   reduction.arrival_sigma_s = 1.0 / 3e7;
   reduction.band_limit_Hz = 123456.7;
   reduction.quiet_samples = 287;
+  reduction.separation = Separation::equilibrium;
+  reduction.assumed_from_s = 1.0 / 3e4;
+  reduction.push_left_share = 0.01 / 3.0;
   reduction.bar_model = "PMMA";
   reduction.quality.reducible = true;
   reduction.quality.checks = {{"equilibrium", 0.06, 0.05, "1", Verdict::warn, "they differ"},
