@@ -51,8 +51,11 @@ struct Set {
   bool keeps_volume;                 ///< the specimen; else it keeps its section
   std::optional<double> density;     ///< the specimen's, of a handbook
   std::vector<std::string> inertia;  ///< words for it
-  /// Allowed [%], rms over rms.
-  double output_velocity, input_velocity, stress, strain;
+  /// Rms of what is off [%]. That of stress and strain was asked for without saying over what.
+  struct Allowed {
+    double over_rms, over_largest;
+  };
+  Allowed output_velocity, input_velocity, stress, strain;
 };
 
 std::string bench_of(const Set& set) {
@@ -101,15 +104,20 @@ class Reference {
   std::vector<double> time_s_, values_;
 };
 
-/// Rms of the difference over that of the truth, in per cent, over the loading.
-double off(const std::vector<double>& found, const std::vector<double>& truth, std::size_t loaded) {
+/// Rms of the difference over the truth's rms and over its largest value, in per cent, over the
+/// loading.
+Set::Allowed off(const std::vector<double>& found, const std::vector<double>& truth,
+                 std::size_t loaded) {
   double difference = 0.0;
   double size = 0.0;
+  double largest = 0.0;
   for (std::size_t n = 0; n < loaded; ++n) {
     difference += std::pow(found[n] - truth[n], 2);
     size += std::pow(truth[n], 2);
+    largest = std::max(largest, std::abs(truth[n]));
   }
-  return 100.0 * std::sqrt(difference / size);
+  return {100.0 * std::sqrt(difference / size),
+          100.0 * std::sqrt(difference / static_cast<double>(loaded)) / largest};
 }
 
 /// Samples until the specimen, past its peak, carries less than a tenth of it.
@@ -184,10 +192,12 @@ TEST_P(FiniteElementShots, AreReducedFromTheirTableToWhatTheModelHad) {
   }
   const std::size_t loaded = loading(stress);
   const auto expect = [&](const char* what, const std::vector<double>& found,
-                          const std::vector<double>& truth, double allowed) {
-    const double share = off(found, truth, loaded);
-    std::printf("%s: %s off by %.2f %%\n", set.folder, what, share);
-    EXPECT_LT(share, allowed) << what;
+                          const std::vector<double>& truth, Set::Allowed allowed) {
+    const Set::Allowed share = off(found, truth, loaded);
+    std::printf("%s: %s off by %.2f %%, of the largest by %.2f %%\n", set.folder, what,
+                share.over_rms, share.over_largest);
+    EXPECT_LT(share.over_rms, allowed.over_rms) << what;
+    EXPECT_LT(share.over_largest, allowed.over_largest) << what;
   };
   const auto end_velocity = [&](const char* name) {
     return Reference(columns, name, 1e-3).at(time_s);
@@ -221,25 +231,37 @@ TEST_P(FiniteElementShots, AreCalledUnreliableByTimeAlone) {
                              {"gauges", "equilibrium"}));
 }
 
-// What stands in the way of less is in docs/accuracy.md.
-INSTANTIATE_TEST_SUITE_P(
-    Sets, FiniteElementShots,
-    ::testing::Values(
-        Set{"copper",
-            400e3,
-            1.0,
-            0.016,
-            0.006,
-            0.008,
-            true,
-            8940.0,
-            {"--inertia", "axial"},
-            1.4,
-            1.6,
-            1.0,
-            0.35},
-        Set{"aluminum_foam", 100e3, 1.6, 0.050, 0.015, 0.030, false, {}, {}, 0.3, 7.5, 3.2, 1.4}),
-    [](const auto& set) { return std::string(set.param.folder); });
+// Stress and strain over their largest value: as asked, copper 1 and 0.3 %, foam 3 and 1.1 %. Over
+// the rms copper's stress keeps to that too; the others, and velocities, of which no number was
+// asked, are held near to what is reached. What stands in the way is in docs/measured.md.
+INSTANTIATE_TEST_SUITE_P(Sets, FiniteElementShots,
+                         ::testing::Values(Set{"copper",
+                                               400e3,
+                                               1.0,
+                                               0.016,
+                                               0.006,
+                                               0.008,
+                                               true,
+                                               8940.0,
+                                               {"--inertia", "axial"},
+                                               {1.3, 0.9},
+                                               {1.35, 0.85},
+                                               {1.0, 1.0},
+                                               {0.33, 0.3}},
+                                           Set{"aluminum_foam",
+                                               100e3,
+                                               1.6,
+                                               0.050,
+                                               0.015,
+                                               0.030,
+                                               false,
+                                               {},
+                                               {},
+                                               {0.24, 0.11},
+                                               {7.1, 4.5},
+                                               {3.2, 3.0},
+                                               {1.3, 1.1}}),
+                         [](const auto& set) { return std::string(set.param.folder); });
 
 }  // namespace
 }  // namespace kolsky
