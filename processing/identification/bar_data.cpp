@@ -30,6 +30,9 @@ constexpr std::size_t kFewestJudged = 64;
 /// In c / a. From about 0.3 on surface gauges see next to nothing of the first mode, and higher
 /// modes propagate soon after.
 constexpr double kFirstModeAlone = 0.25;
+/// A combination of shots tells something where gauge 0 shows more than this many times its noise's
+/// power: half of that is the pulses' then.
+constexpr double kTelling = 2.0;
 
 std::size_t longest(const std::vector<BarRecords>& shots) {
   std::size_t samples = 0;
@@ -250,7 +253,8 @@ void BarData::prepare_spectra() {
   unit_impulse_ = filtered(std::vector<double>{1.0});
 }
 
-/// Weights are the shots' shares in the strongest common part of gauge 0's records.
+/// Weights are the shots' shares in what gauge 0's records have in common, strongest first: by
+/// principal components, as far as there is more of the pulses in them than of noise.
 void BarData::combine_shots() {
   const auto count = static_cast<Eigen::Index>(shots());
   Eigen::MatrixXd common(count, count);
@@ -266,7 +270,17 @@ void BarData::combine_shots() {
       common(a, b) = common(b, a) = sum;
     }
   }
-  const Eigen::VectorXd weights = SymmetricEigen(common).eigenvectors().rightCols(1);
+  const SymmetricEigen parts(common);
+  const auto noise_alone = static_cast<double>(judged_path_.size());
+  combine(parts.eigenvectors().col(count - 1));
+  for (Eigen::Index part = count - 2; part >= 0; --part) {
+    if (parts.eigenvalues()[part] > kTelling * noise_alone) {
+      combine(parts.eigenvectors().col(part));
+    }
+  }
+}
+
+void BarData::combine(const Eigen::VectorXd& weights) {
   const auto combined = [&](const std::vector<std::vector<Spectrum>>& of_shots) {
     std::vector<Spectrum> sums(gauges(), Spectrum(of_shots.front().front().size()));
     for (std::size_t shot = 0; shot < shots(); ++shot) {

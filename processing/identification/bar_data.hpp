@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -69,6 +70,9 @@ class BarData {
   /// Stands for a shot: the sum of all, weighted (by squares that add up to 1, so that its noise is
   /// a shot's) to hold what they have in common.
   [[nodiscard]] std::size_t all_as_one() const { return shots(); }
+  /// How many such sums, `all_as_one` and those after it, at right angles to each other, hold more
+  /// of the pulses than of noise. The others say nothing of the bar.
+  [[nodiscard]] std::size_t telling() const { return spectra_.size() - shots(); }
   /// The same of a record that is 1 throughout.
   [[nodiscard]] const Spectrum& unit_offset() const { return unit_offset_; }
   /// The same of a record that is 1 in its first sample and 0 after it.
@@ -118,6 +122,7 @@ class BarData {
   void weigh(BarNoise& noise) const;
   void prepare_spectra();
   void combine_shots();
+  void combine(const Eigen::VectorXd& weights);
 
   Bench bench_;
   std::vector<BarRecords> records_;

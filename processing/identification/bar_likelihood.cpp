@@ -7,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "processing/identification/carried_noise.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -176,6 +178,18 @@ std::size_t BarLikelihood::residuals() const {
   return 2 * data_.judged_path().size() * (data_.gauges() - 1) * data_.shots();
 }
 
+std::size_t BarLikelihood::count_of(Shots which) const {
+  switch (which) {
+    case Shots::each:
+      return data_.shots();
+    case Shots::telling:
+      return data_.telling();
+    case Shots::as_one:
+      break;
+  }
+  return 1;
+}
+
 /// g after n returns is its first passage times
 ///   sum_{i <= n} (-R q_0)^i + R q_j sum_{i < n} (-R q_0)^i.
 std::vector<BarLikelihood::Echoes> BarLikelihood::echoes(std::span<const double> at) {
@@ -311,6 +325,21 @@ std::vector<Eigen::MatrixXcd> BarLikelihood::scatter_of_residuals() const {
   return list;
 }
 
+/// Of each other gauge, in time, to what gauge 0 reads in the record's first sample.
+std::vector<std::vector<double>> BarLikelihood::responses_to_first(std::span<const double> at) {
+  const BarModel::Transfers transfers = model_.transfers(at, data_.path(), false);
+  std::vector<std::vector<double>> responses;
+  Spectrum product(data_.path().size());
+  for (const Spectrum& g : transfers.g) {
+    for (std::size_t k = 0; k < product.size(); ++k) {
+      product[k] = g[k] * data_.unit_impulse()[k];
+    }
+    const std::span<const double> response = judge_.in_time(product);
+    responses.emplace_back(response.begin(), response.end());
+  }
+  return responses;
+}
+
 /// What a unit of gauge 0's reading over one stride shows at the others in the lowest bins. Columns
 /// as the rows in `white`, a row a stride. The response from its place to the end of what is
 /// judged: differences of sums over one response. The mean of the quiet strides is taken off, as it
@@ -322,16 +351,7 @@ EightColumns BarLikelihood::shown_by_first(std::span<const double> at, std::size
   const auto begin = static_cast<std::size_t>(places.records_begin);
   const std::size_t entries = (places.judged_end - begin) / stride;
   const double samples = static_cast<double>(stride) * places.samples_per_place;
-  const BarModel::Transfers transfers = model_.transfers(at, data_.path(), false);
-  std::vector<std::vector<double>> responses;
-  Spectrum product(data_.path().size());
-  for (std::size_t j = 0; j < others; ++j) {
-    for (std::size_t k = 0; k < product.size(); ++k) {
-      product[k] = transfers.g[j][k] * data_.unit_impulse()[k];
-    }
-    const std::span<const double> response = judge_.in_time(product);
-    responses.emplace_back(response.begin(), response.end());
-  }
+  const std::vector<std::vector<double>> responses = responses_to_first(at);
   EightColumns shown(static_cast<Eigen::Index>(entries),
                      static_cast<Eigen::Index>(2 * others * bins));
   std::vector<Complex> phases(places.judged_end);
@@ -520,11 +540,9 @@ double BarLikelihood::chi2_at(std::span<const double> at, Shots which) {
   place_.at.assign(at.begin(), at.end());
   place_.transfers = model_.transfers(at, data_.path(), true);
   place_.passages = model_.first_passages(at, data_.judged_path(), true);
-  place_.shots = {data_.all_as_one()};
-  if (which == Shots::each) {
-    place_.shots.resize(data_.shots());
-    std::iota(place_.shots.begin(), place_.shots.end(), std::size_t{0});
-  }
+  place_.shots.resize(count_of(which));
+  std::iota(place_.shots.begin(), place_.shots.end(),
+            which == Shots::each ? std::size_t{0} : data_.all_as_one());
   look_at_nuisances();
   look_at_residuals();
   const Eigen::Index nuisances = 1 + others();
@@ -676,7 +694,8 @@ std::vector<OctaveLeft> BarLikelihood::left_over() const {
   return list;
 }
 
-Eigen::MatrixXd BarLikelihood::scatter_of(const std::vector<double>& power) {
+BarLikelihood::Scatter BarLikelihood::scatter_of_gradient(std::size_t as_it_is,
+                                                          const std::vector<double>& power) {
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
   const std::vector<std::size_t> firsts = octaves();
   Eigen::VectorXd by_row(rows());
@@ -685,16 +704,49 @@ Eigen::MatrixXd BarLikelihood::scatter_of(const std::vector<double>& power) {
     const Eigen::Index count = 2 * others() * static_cast<Eigen::Index>(firsts[i + 1]) - begin;
     by_row.segment(begin, count).setConstant(power[i]);
   }
+  const std::span<const double> own = judge_.in_time(data_.unit_impulse());
+  const std::vector<double> own_response(own.begin(), own.end());
+  CarriedNoise noise(data_, weights_->noise, responses_to_first(place_.at), own_response);
   const Slopes moving = slopes();
   EightColumns columns(rows(), parameters);
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(parameters, parameters);
+  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(parameters, parameters);
+  Scatter scatter{nothing, nothing};
   for (std::size_t index = 0; index < place_.shots.size(); ++index) {
     put_slopes(index, moving, columns);
     whiten(columns);
-    const Eigen::MatrixXd own = without_nuisances(columns, parameters);
-    scatter += own.transpose() * by_row.asDiagonal() * own;
+    const Eigen::MatrixXd white = without_nuisances(columns, parameters);
+    scatter.beyond += white.transpose() * by_row.asDiagonal() * white;
+    scatter.by_noise += index < as_it_is ? noise.covariance(unwhitened(white))
+                                         : Eigen::MatrixXd(white.transpose() * white);
   }
   return scatter;
+}
+
+/// What sums over white rows sum over the residuals' bins, by gauge.
+std::vector<Eigen::MatrixXcd> BarLikelihood::unwhitened(Eigen::MatrixXd white) const {
+  const Eigen::Index others = this->others();
+  const auto bins = static_cast<Eigen::Index>(data_.judged_path().size());
+  const auto lowest = static_cast<Eigen::Index>(weights_->lowest_bins);
+  if (lowest > 0) {
+    weights_->lowest_factor.solve_transposed_in_place(white);
+  }
+  std::vector<Eigen::MatrixXcd> weights(static_cast<std::size_t>(others),
+                                        Eigen::MatrixXcd::Zero(bins, white.cols()));
+  for (Eigen::Index k = 0; k < bins; ++k) {
+    const Complex* const triangle = weights_->lower_inverse.data() + k * others * (others + 1) / 2;
+    for (Eigen::Index j = 0; j < others; ++j) {
+      for (Eigen::Index l = 0; l <= j; ++l) {
+        const Complex share =
+            k < lowest ? Complex(j == l ? 1.0 : 0.0) : std::conj(triangle[j * (j + 1) / 2 + l]);
+        for (Eigen::Index c = 0; c < white.cols(); ++c) {
+          const Eigen::Index row = 2 * others * k + j;
+          weights[static_cast<std::size_t>(l)](k, c) +=
+              share * Complex(white(row, c), white(row + others, c));
+        }
+      }
+    }
+  }
+  return weights;
 }
 
 std::vector<ShotTerms> BarLikelihood::terms() {

@@ -60,8 +60,10 @@ class BarLikelihood {
   void use(Weights weights) { weights_ = std::move(weights); }
   [[nodiscard]] const Weights& weights() const { return weights_; }
 
-  /// Which shots are looked at: all of them, or what they have in common as one (see BarData).
-  enum class Shots { each, as_one };
+  /// Which shots are looked at: all of them, those of their combinations that hold more than noise,
+  /// or what they have in common as one (see BarData).
+  enum class Shots { each, telling, as_one };
+  [[nodiscard]] std::size_t count_of(Shots which) const;
 
   /// What the shots' chi2 add up to at a place in the parameters.
   [[nodiscard]] double chi2_at(std::span<const double> at, Shots which);
@@ -79,10 +81,15 @@ class BarLikelihood {
   /// What is left at the place looked at last, every shot by itself, in what the weights take for
   /// noise.
   [[nodiscard]] std::vector<OctaveLeft> left_over() const;
-  /// What more power than the weights reckon with adds to the scatter of all shots' gradients
-  /// there.
-  /// @param power  by octave, in what the weights take for noise
-  [[nodiscard]] Eigen::MatrixXd scatter_of(const std::vector<double>& power);
+  /// How the gradient's sum over the shots looked at last scatters.
+  struct Scatter {
+    Eigen::MatrixXd by_noise;  ///< the gauges'
+    Eigen::MatrixXd beyond;    ///< by more power than the weights reckon with
+  };
+  /// @param as_it_is  of so many shots the noise is taken as it is: what the weights take it for,
+  ///   which does for the others, leaves out how the far end ties bins above the lowest
+  /// @param power  what there is beyond, by octave, in what the weights take for noise
+  [[nodiscard]] Scatter scatter_of_gradient(std::size_t as_it_is, const std::vector<double>& power);
 
  private:
   using Spectrum = BarData::Spectrum;
@@ -117,6 +124,8 @@ class BarLikelihood {
       const std::vector<Eigen::MatrixXcd>& scatter) const;
   [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at,
                                                       const BarNoise& noise, std::size_t bins);
+  [[nodiscard]] std::vector<std::vector<double>> responses_to_first(std::span<const double> at);
+  [[nodiscard]] std::vector<Eigen::MatrixXcd> unwhitened(Eigen::MatrixXd white) const;
   [[nodiscard]] EightColumns shown_by_first(std::span<const double> at, std::size_t bins,
                                             std::size_t stride);
   [[nodiscard]] EightColumns shown_by_own(std::size_t bins, std::size_t stride) const;

@@ -103,6 +103,24 @@ ShotEstimate estimate_of(const ShotTerms& shot, const BarPlace& common, const Pa
   return estimate;
 }
 
+/// Of how many shots, those that tell most first, the gradient's scatter must be known well.
+std::size_t count_that_matters(const std::vector<ShotTerms>& shots,
+                               const Eigen::MatrixXd& posterior) {
+  constexpr double kOfInformation = 0.95;
+  std::vector<double> told;
+  double all = 0.0;
+  for (const ShotTerms& shot : shots) {
+    told.push_back(posterior.cwiseProduct(shot.information).sum());
+    all += told.back();
+  }
+  double sum = 0.0;
+  std::size_t count = 0;
+  while (count < told.size() && sum < kOfInformation * all) {
+    sum += told[count++];
+  }
+  return count;
+}
+
 }  // namespace
 
 BarSearch::BarSearch(const BarData& data, const BarTheory& theory)
@@ -134,9 +152,8 @@ bool BarSearch::minimise(BarLikelihood::Shots shots, double negligible_gain, dou
   // A foretold gain is of the same size as what a step gains, but far from the end.
   constexpr double kForetold = 10.0;
   const std::size_t logs = likelihood_.model().solid_parameters();
-  const double judged =
-      static_cast<double>(likelihood_.residuals()) /
-      (shots == BarLikelihood::Shots::each ? 1.0 : static_cast<double>(likelihood_.data().shots()));
+  const double judged = static_cast<double>(likelihood_.residuals() * likelihood_.count_of(shots)) /
+                        static_cast<double>(likelihood_.data().shots());
   place_ = looked_at(place_.at, objective_at(place_.at, shots));
   double damping = 0.0;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -204,31 +221,43 @@ BarFit BarSearch::so_far() {
   return describe(objective_at(place_.at, BarLikelihood::Shots::each));
 }
 
+/// Not on every shot by itself: what combinations that hold noise alone add to the gradient is its
+/// square, which no weights make vanish on average where they leave anything out.
+void BarSearch::to_the_end() {
+  minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
+  if (likelihood_.count_of(BarLikelihood::Shots::telling) > 1) {
+    minimise(BarLikelihood::Shots::telling, kNegligibleGain);
+  }
+}
+
 /// Evidence and chi2 stay those of the noise that the quiet samples show: all theories are compared
 /// by that, and what a model lacks must not pass for noise.
 BarFit BarSearch::finished() {
-  minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
-  minimise(BarLikelihood::Shots::each, kNegligibleGain);
+  to_the_end();
+  const double by_quiet = objective_at(place_.at, BarLikelihood::Shots::each);
+  const BarFit compared = describe(by_quiet);
   const auto noise = likelihood_.noise_by_residuals();
   if (!noise) {
     return described_with_shots();
   }
-  const BarFit by_quiet = describe(place_.objective);
   const BarLikelihood::Weights weights = likelihood_.weights();
   likelihood_.use(likelihood_.weights_at(at(), true, *noise));
-  minimise(BarLikelihood::Shots::as_one, kNegligibleGain);
-  minimise(BarLikelihood::Shots::each, kNegligibleGain);
+  to_the_end();
   BarFit fit = described_with_shots();
-  fit.chi2_reduced = by_quiet.chi2_reduced;
-  fit.log_evidence = by_quiet.log_evidence;
+  fit.chi2_reduced = compared.chi2_reduced;
+  fit.log_evidence = compared.log_evidence;
   likelihood_.use(weights);
   return fit;
 }
 
-/// Once every shot has been looked at by itself. What is left beyond noise widens the deviations as
-/// noise of that power would; where the model does not fit, by what the shots have in common, which
-/// is all that a fit goes by: over many shots the noise that they do not share would hide it.
+/// From where a search to the end has come to. Deviations are those of the estimate,
+/// (information)^-1 scatter (information)^-1: weights that leave out what ties bins cost it little,
+/// but would have it state too small ones. What is left beyond noise widens them as noise of that
+/// power would; where the model does not fit, by what the shots have in common, which is all that a
+/// fit goes by: over many shots the noise that they do not share would hide it.
 BarFit BarSearch::described_with_shots() {
+  const double objective = objective_at(place_.at, BarLikelihood::Shots::each);
+  const std::vector<ShotTerms> shots = likelihood_.terms();
   const std::vector<OctaveLeft> left = likelihood_.left_over();
   const auto misfit = common_misfit(left, likelihood_.data().shots());
   double squares = 0.0;
@@ -243,11 +272,15 @@ BarFit BarSearch::described_with_shots() {
   for (double& beyond : power) {
     beyond = std::max(0.0, beyond - everywhere);
   }
+  (void)objective_at(place_.at, BarLikelihood::Shots::telling);
   const Eigen::MatrixXd inverse = inverse_of(place_.information);
-  BarFit fit = describe(place_.objective,
-                        everywhere * inverse + inverse * likelihood_.scatter_of(power) * inverse);
+  BarLikelihood::Scatter scatter =
+      likelihood_.scatter_of_gradient(count_that_matters(place_.shots, inverse), power);
+  scatter.by_noise.diagonal() += prior_.weight;
+  BarFit fit =
+      describe(objective, inverse * (everywhere * scatter.by_noise + scatter.beyond) * inverse);
   fit.misfit = misfit;
-  for (const ShotTerms& shot : place_.shots) {
+  for (const ShotTerms& shot : shots) {
     fit.shots.push_back(estimate_of(shot, place_, prior_, likelihood_));
   }
   return fit;

@@ -68,6 +68,7 @@ class BarSearch {
   [[nodiscard]] BarPlace looked_at(const Eigen::VectorXd& at, double objective);
   /// @return whether it came to an end below `hopeless`
   bool minimise(BarLikelihood::Shots shots, double negligible_gain, double hopeless = HUGE_VAL);
+  void to_the_end();
   [[nodiscard]] BarFit describe(double objective) const;
   [[nodiscard]] BarFit describe(double objective, const Eigen::MatrixXd& posterior) const;
   [[nodiscard]] double chi2_reduced(double objective) const;

@@ -134,6 +134,10 @@ void LowerTriangle::solve_in_place(EightColumns& columns) const {
   }
 }
 
+void LowerTriangle::solve_transposed_in_place(Eigen::Ref<Eigen::MatrixXd> columns) const {
+  rows_.triangularView<Eigen::Lower>().transpose().solveInPlace(columns.topRows(rows_.rows()));
+}
+
 void multiply_in_place(std::span<const Complex> triangles, Eigen::Index size, Eigen::Index first,
                        EightColumns& columns) {
   const auto entries = static_cast<std::size_t>(size * (size + 1) / 2);

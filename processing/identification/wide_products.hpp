@@ -57,6 +57,8 @@ class LowerTriangle {
 
   /// The columns' first rows = lower^-1 those.
   void solve_in_place(EightColumns& columns) const;
+  /// Column = its first numbers times the transposed lower^-1.
+  void solve_transposed_in_place(Eigen::Ref<Eigen::MatrixXd> columns) const;
 
  private:
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows_;

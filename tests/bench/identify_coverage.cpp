@@ -34,6 +34,7 @@ void cover(std::size_t row, const Wishes& wishes, const testing::BarShots::Recor
   double squares[3] = {};
   double stated[3] = {};
   double deviations[3] = {};
+  double bias[3] = {};
   std::mt19937_64 random(row + wishes.seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -50,6 +51,7 @@ void cover(std::size_t row, const Wishes& wishes, const testing::BarShots::Recor
       inside[i] += std::abs(error) < 1.96 * fit.parameters[i].sd ? 1 : 0;
       squares[i] += error * error;
       deviations[i] += error * error / (fit.parameters[i].sd * fit.parameters[i].sd);
+      bias[i] += error / fit.parameters[i].sd / repeats;
       stated[i] += fit.parameters[i].sd / repeats;
     }
   }
@@ -57,10 +59,11 @@ void cover(std::size_t row, const Wishes& wishes, const testing::BarShots::Recor
   const char* const names[3] = {"E1", "E2", "eta2"};
   for (std::size_t i = 0; i < 3; ++i) {
     std::printf(
-        "  %-5s inside 95 %%: %5.2f %%   error rms %.4f %%   stated sd %.4f %%   mean square of "
-        "deviations %.3f\n",
+        "  %-5s inside 95 %%: %5.2f %%   error rms %.4f %%   stated sd %.4f %%   deviations' mean "
+        "%+.3f, "
+        "mean square %.3f\n",
         names[i], 100.0 * inside[i] / repeats, 100.0 * std::sqrt(squares[i] / repeats) / truth[i],
-        100.0 * stated[i] / truth[i], deviations[i] / repeats);
+        100.0 * stated[i] / truth[i], bias[i], deviations[i] / repeats);
   }
 }
 
