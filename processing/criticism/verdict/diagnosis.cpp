@@ -284,8 +284,10 @@ class Diagnostician {
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     // Smooth distortions show that something is left; how much, all that repeats.
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
-    const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
-                         excess > allowed_rest() * std::max(0.0, explained);
+    // Shots that ask for moduli or readings of their own may leave no more than noise does.
+    const bool remains =
+        diagnosis_.unexplained_log_p < options_.log_alpha &&
+        (diagnosis_.effects.empty() || excess > allowed_rest() * std::max(0.0, explained));
     diagnosis_.held_out =
         held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
     const std::vector<std::string> reasons =

@@ -25,11 +25,12 @@ std::string repeats_text(double log_p) {
 std::string apart_text(const ShotsApart& apart, const Campaign& campaign) {
   const ReadingOfShot& most = *apart.furthest;
   return fmt::format(
-      "gauges do not read all shots alike, which noise does {}: furthest is {}, which reads "
-      "{:+.2g} "
-      "± {:.1g} % in {} beside its other shots; look at its bond, wires and bridge there",
-      chance_text(apart.log_p), campaign.bench.gauges[most.gauge].name, 100.0 * most.gain,
-      100.0 * most.sd, campaign.shots[most.shot].id);
+      "gauges do not read all shots alike, which noise does {}: furthest is {} in {}, which reads "
+      "{:+.2g} ± {:.1g} % and {:+.2g} ± {:.1g} us late beside its other shots; look at its bond, "
+      "wires and bridge, or at that shot's temperature",
+      chance_text(apart.log_p), campaign.bench.gauges[most.gauge].name,
+      campaign.shots[most.shot].id, 100.0 * most.gain.value, 100.0 * most.gain.sd,
+      most.delay_us.value, most.delay_us.sd);
 }
 
 /// What all gauges but one need alike is something of that one which the library does not have.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "processing/models/scene.hpp"
 
@@ -10,7 +9,6 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kUnit_rad_per_s = 2.0 * std::numbers::pi * 1e4;
 constexpr std::array kRelaxations_s{1e-5, 5e-5, 3e-4};
 constexpr std::array kEchoes_s{6e-5, 1.2e-4, 2.4e-4, 4.8e-4};
 constexpr std::size_t kPowers = 4;
@@ -48,7 +46,7 @@ class Distortion final : public Effect {
       std::size_t i = 0;
       for (; i < kPowers; ++i) {
         sum += values[i] * power;
-        power *= s / kUnit_rad_per_s;
+        power *= s / kRateUnit_rad_per_s;
       }
       for (const double tau : kRelaxations_s) {
         sum += values[i++] / (1.0 + s * tau);

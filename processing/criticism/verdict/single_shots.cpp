@@ -40,48 +40,46 @@ class OwnReadings {
               std::size_t per_shot) {
     const auto size = static_cast<Eigen::Index>(per_shot);
     const Eigen::Index numbers = sensor.columns.cols();
-    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(numbers, numbers);
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(numbers);
+    whole_ = Eigen::MatrixXd::Zero(numbers, numbers);
+    all_ = Eigen::VectorXd::Zero(numbers);
     for (Eigen::Index n = 0; n < static_cast<Eigen::Index>(shots); ++n) {
       const auto own = sensor.columns.middleRows(n * size, size);
       information_.emplace_back(own.transpose() * own);
       pull_.emplace_back(-own.transpose() * residual.segment(n * size, size));
-      whole += information_.back();
-      all += pull_.back();
+      whole_ += information_.back();
+      all_ += pull_.back();
       square_ += pull_.back().dot(solve_symmetric(information_.back(), pull_.back()));
     }
-    square_ = std::max(0.0, square_ - all.dot(solve_symmetric(whole, all)));
+    square_ = std::max(0.0, square_ - all_.dot(solve_symmetric(whole_, all_)));
     freedom_ = static_cast<double>(numbers) * (static_cast<double>(shots) - 1.0);
   }
 
   [[nodiscard]] double square() const { return square_; }
   [[nodiscard]] double freedom() const { return freedom_; }
 
-  /// The shot whose gain is furthest from that of the others together.
-  [[nodiscard]] ReadingOfShot furthest(std::size_t gauge) const {
-    double pulls = 0.0;
-    double weights = 0.0;
+  /// The shot whose gain and delay are furthest from those of the others together.
+  [[nodiscard]] ReadingOfShot furthest(std::size_t gauge, double noise) const {
+    ReadingOfShot worst{gauge, 0, {}, {}};
+    double most = -1.0;
     for (std::size_t n = 0; n < pull_.size(); ++n) {
-      pulls += pull_[n][0];
-      weights += information_[n](0, 0);
-    }
-    ReadingOfShot worst{gauge, 0, 0.0, 1.0};
-    for (std::size_t n = 0; n < pull_.size(); ++n) {
-      const double own = information_[n](0, 0);
-      const double others = weights - own;
-      if (own <= 0.0 || others <= 0.0) {
-        continue;
-      }
-      const ReadingOfShot here{gauge, n, pull_[n][0] / own - (pulls - pull_[n][0]) / others,
-                               std::sqrt(1.0 / own + 1.0 / others)};
-      if (std::abs(here.gain) * worst.sd > std::abs(worst.gain) * here.sd) {
-        worst = here;
+      const Eigen::MatrixXd others = whole_ - information_[n];
+      const Eigen::VectorXd off =
+          solve_symmetric(information_[n], pull_[n]) - solve_symmetric(others, all_ - pull_[n]);
+      const Eigen::MatrixXd covariance =
+          noise * (symmetric_inverse(information_[n]) + symmetric_inverse(others));
+      const double square = off.dot(solve_symmetric(covariance, off));
+      if (square > most) {
+        most = square;
+        worst = {
+            gauge, n, {off[0], std::sqrt(covariance(0, 0))}, {off[1], std::sqrt(covariance(1, 1))}};
       }
     }
     return worst;
   }
 
  private:
+  Eigen::MatrixXd whole_;
+  Eigen::VectorXd all_;
   std::vector<Eigen::MatrixXd> information_;
   std::vector<Eigen::VectorXd> pull_;
   double square_ = 0.0;
@@ -139,8 +137,7 @@ ShotsApart readings_apart(const Studied& studied, std::span<const SensorColumns>
     weights.push_back(1.0 / static_cast<double>(sensors.size()));
     if (!out.furthest || log_ps.back() < least) {
       least = log_ps.back();
-      out.furthest = own.furthest(sensor.gauge);
-      out.furthest->sd *= std::sqrt(noise);
+      out.furthest = own.furthest(sensor.gauge, noise);
     }
   }
   out.log_p = combined_log_p(log_ps, weights);

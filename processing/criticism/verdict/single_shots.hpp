@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "processing/base/measured.hpp"
 #include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky {
@@ -13,8 +14,8 @@ namespace kolsky {
 struct ReadingOfShot {
   std::size_t gauge = 0;
   std::size_t shot = 0;
-  double gain = 0.0;  ///< of the reading, beside what the other shots have
-  double sd = 0.0;
+  Measured gain;      ///< of the reading, beside what the other shots have
+  Measured delay_us;  ///< likewise
 };
 
 /// What shots do not have in common.
@@ -26,7 +27,7 @@ struct ShotsApart {
 /// Columns of a gauge's gain and of its delay in the whitened residuals, over all shots.
 struct SensorColumns {
   std::size_t gauge = 0;
-  Eigen::MatrixXd columns;  ///< gain first, per unit
+  Eigen::MatrixXd columns;  ///< per unit of gain, and per microsecond of delay
 };
 
 /// ln of the chance that noise makes the shots ask for numbers of the model so far apart. A model

@@ -48,6 +48,14 @@ struct Extended {
   Eigen::VectorXd residual;
 };
 
+/// Per unit of gain and per microsecond of delay.
+Eigen::MatrixXd gain_and_delay(const Eigen::MatrixXd& distortions) {
+  Eigen::MatrixXd columns =
+      distortions.leftCols(kGainAndRate) / distortion_effect().about().parameters.front().typical;
+  columns.col(1) *= -1e-6 * kRateUnit_rad_per_s;
+  return columns;
+}
+
 Distortions unit_columns(Study& study, const Studied& studied) {
   const Wander wander(study.residuals());
   std::optional<Departure> departure;
@@ -78,9 +86,7 @@ Distortions unit_columns(Study& study, const Studied& studied) {
     out.columns.middleCols(out.kinds[i].first, out.kinds[i].count) = list[i];
   }
   for (std::size_t i = 0; i < at.size(); ++i) {
-    out.sensors.push_back({study.residuals().others()[i],
-                           list[at[i]].leftCols(kGainAndDelay) /
-                               distortion_effect().about().parameters.front().typical});
+    out.sensors.push_back({study.residuals().others()[i], gain_and_delay(list[at[i]])});
   }
   out.sizes = out.columns.colwise().norm();
   out.columns.colwise().normalize();
