@@ -260,9 +260,9 @@ class Diagnostician {
     const double pressed = law_beyond_bounds(current);
     const bool claims = !diagnosis_.effects.empty();
     if (remains(first, current) || overruled_) {
-      give_up(diagnosis_, {}, first.model);
+      give_up(diagnosis_, {}, first.model, diagnosis_.held_out.floor);
     } else if (claims && pressed > kPressed) {
-      give_up(diagnosis_, {law_pressed_note(pressed)}, first.model);
+      give_up(diagnosis_, {law_pressed_note(pressed)}, first.model, diagnosis_.held_out.floor);
     } else {
       settle_claims(diagnosis_,
                     [&](CandidateResult& result) { set_strength(current, result.effect, result); });

@@ -30,7 +30,8 @@ std::vector<std::string> drop_claims(Diagnosis& diagnosis) {
   return claimed;
 }
 
-void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, const Model& before) {
+void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, const Model& before,
+             double floor) {
   diagnosis.verdict = DiagnosisVerdict::unknown;
   diagnosis.notes.insert(diagnosis.notes.end(), reasons.begin(), reasons.end());
   std::string nearest;
@@ -45,6 +46,7 @@ void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, cons
   diagnosis.model = before;
   diagnosis.after = diagnosis.before;
   diagnosis.held_out.after = diagnosis.held_out.before;
+  diagnosis.held_out.floor = floor;
 }
 
 void settle_claims(Diagnosis& diagnosis,

@@ -18,7 +18,9 @@ std::vector<std::string> drop_claims(Diagnosis& diagnosis);
 
 /// Nothing is named, and the model stays as it was: misfits and held-out misfit after are those
 /// before. @param reasons  in sentences; what came nearest is added to them
-void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, const Model& before);
+/// @param floor  of the held-out misfit, by the noise as that model has it
+void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, const Model& before,
+             double floor);
 
 /// The verdict that the claims make (adequate without any), and the candidates' by it. What is
 /// claimed itself is no rival of what is claimed beside it.

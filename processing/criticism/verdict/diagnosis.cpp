@@ -300,7 +300,7 @@ class Diagnostician {
         set_strength(current, result.effect, study_.residuals().per_shot(), result);
       });
     } else {
-      give_up(diagnosis_, reasons, before.model);
+      give_up(diagnosis_, reasons, before.model, floor_of(before, true, study_));
     }
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
