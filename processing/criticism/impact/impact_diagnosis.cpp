@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "processing/criticism/impact/filed_conflict.hpp"
 #include "processing/criticism/impact/impact_certifier.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
 #include "processing/criticism/impact/impact_search.hpp"
@@ -256,19 +257,27 @@ class Diagnostician {
     diagnosis_.after = current.misfit;
     diagnosis_.model = current.model;
     set_held_out(first, current);
-    // What a ball lacks may have gone into the law's form, as far as that goes.
+    // What a ball lacks may have gone into the law's form, as far as that goes, or into materials.
     const double pressed = law_beyond_bounds(current);
+    const FiledConflict filed = conflict_with_filed(current);
+    const bool contradicts = filed.log_p < options_.log_alpha;
     const bool claims = !diagnosis_.effects.empty();
-    if (remains(first, current) || overruled_) {
-      give_up(diagnosis_, {}, first.model, diagnosis_.held_out.floor);
-    } else if (claims && pressed > kPressed) {
-      give_up(diagnosis_, {law_pressed_note(pressed)}, first.model, diagnosis_.held_out.floor);
+    std::vector<std::string> doubts;
+    if (claims && pressed > kPressed) {
+      doubts.push_back(law_pressed_note(pressed));
+    }
+    if (contradicts) {
+      doubts.push_back(filed_note(filed, claims));
+    }
+    if (remains(first, current) || overruled_ || (claims && !doubts.empty())) {
+      give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {
       settle_claims(diagnosis_,
                     [&](CandidateResult& result) { set_strength(current, result.effect, result); });
       add_notes(left_notes(study_, current, diagnosis_.held_out));
+      add_notes(std::move(doubts));
     }
-    if (diagnosis_.verdict == DiagnosisVerdict::adequate && pressed > kPressed) {
+    if (diagnosis_.verdict == DiagnosisVerdict::adequate && (pressed > kPressed || contradicts)) {
       diagnosis_.verdict = DiagnosisVerdict::untestable;
     }
     for (const std::string& id : diagnosis_.effects) {
