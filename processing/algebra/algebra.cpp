@@ -23,7 +23,8 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A) {
 }
 
 Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  return A.completeOrthogonalDecomposition().solve(b);
+  // A decomposition of nothing reads what is not there.
+  return A.cols() == 0 ? Eigen::VectorXd() : A.completeOrthogonalDecomposition().solve(b).eval();
 }
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {

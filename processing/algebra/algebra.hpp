@@ -29,7 +29,7 @@ class SymmetricEigen {
 /// The inverse of a square matrix.
 [[nodiscard]] Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A);
 
-/// The shortest x of those with the least |A x - b|.
+/// The shortest x of those with the least |A x - b|; empty where A has no columns.
 [[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A,
                                                   const Eigen::VectorXd& b);
 

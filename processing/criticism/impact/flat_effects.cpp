@@ -62,9 +62,6 @@ class Strengths {
   }
   /// Their squares clear of what the model's numbers take up.
   [[nodiscard]] double squares(const Eigen::VectorXd& change) const {
-    if (movable_.columns.cols() == 0) {
-      return change.squaredNorm();
-    }
     const Eigen::VectorXd pull = movable_.columns.transpose() * change;
     return change.squaredNorm() - pull.dot(least_norm_solution(movable_.information, pull));
   }
