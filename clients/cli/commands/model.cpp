@@ -20,15 +20,23 @@
 namespace kolsky::cli {
 namespace {
 
-void print(const ModelFile& file, const std::string& name, Context& context) {
+/// @param kept  where the model now is that had this name before, if there was one
+void print(const ModelFile& file, const std::string& name, Context& context,
+           const std::string& kept = "") {
   if (context.json) {
-    context.out << to_text(JsonObject{{"model", name},
-                                      {"kind", name_of(file.model.kind)},
-                                      {"effects", describe_effects(file.model)},
-                                      {"parameters", describe_parameters(file.model)},
-                                      {"parent", file.parent()}})
-                << "\n";
+    JsonObject object{{"model", name},
+                      {"kind", name_of(file.model.kind)},
+                      {"effects", describe_effects(file.model)},
+                      {"parameters", describe_parameters(file.model)},
+                      {"parent", file.parent()}};
+    if (!kept.empty()) {
+      object.push_back({"kept", kept});
+    }
+    context.out << to_text(object) << "\n";
     return;
+  }
+  if (!kept.empty()) {
+    context.out << fmt::format("{} had a history; with it, it is {} now\n", name, kept);
   }
   context.out << name << ": " << name_of(file.model.kind) << ", " << file.model.effects.size()
               << " effects\n"
@@ -105,6 +113,24 @@ std::string take_ball(const NewSettings& settings, const std::optional<Bench>& b
   return source;
 }
 
+/// Where a model with steps of history stands under the name of a new one: gives it another name.
+/// @return that name; empty where there was no history to lose
+std::string keep_ledger_of(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    return "";
+  }
+  require_replaceable(path, format_model({}));
+  if (read_model(path).history.empty()) {
+    return "";
+  }
+  std::filesystem::path kept;
+  for (int n = 1; kept.empty() || !rename_without_overwriting(path, kept); ++n) {
+    kept = path.parent_path() /
+           fmt::format("{}.{}{}", path.stem().string(), n, path.extension().string());
+  }
+  return kept.string();
+}
+
 int make_new(const NewSettings& settings, Context& context) {
   ModelFile file;
   const BenchKind kind = bench_kind(settings.kind);
@@ -142,8 +168,9 @@ int make_new(const NewSettings& settings, Context& context) {
     file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"
                                              : "the paper's PMMA (Table 4, row 1), held";
   }
+  const std::string kept = keep_ledger_of(settings.output);
   replace_file(settings.output, format_model(file));
-  print(file, settings.output, context);
+  print(file, settings.output, context, kept);
   return kDone;
 }
 

@@ -109,6 +109,24 @@ TEST_F(SimulatedBar, GoesBackStepByStepAndToAnyStep) {
   EXPECT_TRUE(refused(kolsky({"compare", file("shots"), "--model", model + "@9"}), {"@9"}));
 }
 
+TEST_F(SimulatedBar, KeepsAModelWithAHistoryWhoseNameANewOneTakes) {
+  const std::string model = file("again.toml");
+  const std::vector<std::string> anew{
+      "model", "new", "--kind", "bar", "--bench", file("campaign/bench.toml"), "-o", model};
+  ASSERT_EQ(kolsky(anew).code, 0);
+  ASSERT_EQ(kolsky(anew).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(file("again.1.toml"))) << "there was no history to keep";
+  for (const char* kept : {"again.1.toml", "again.2.toml"}) {
+    ASSERT_EQ(kolsky({"model", "add", model, "temperature"}).code, 0);
+    const std::string old = content(model);
+    const scene::Answer answer = kolsky(anew);
+    ASSERT_EQ(answer.code, 0);
+    EXPECT_NE(answer.out.find(kept), std::string::npos) << answer.out;
+    EXPECT_EQ(content(file(kept)), old);
+    EXPECT_EQ(content(model).find("temperature"), std::string::npos);
+  }
+}
+
 // The same captures in another order are the same captures; filed numbers are the bench's.
 TEST_F(SimulatedBar, KnowsItsCapturesInAnyOrderAndKeepsWhatIsFiled) {
   ASSERT_EQ(kolsky({"fit", file("shots"), "--model", file("m.toml"), "-o", file("m1.toml")}).code,
