@@ -135,9 +135,11 @@ void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warn
   }
   const FittedNumber& E2 = three.parameters[1];
   if (three.lossless || E2.sd > 0.3 * E2.value) {
-    warnings.push_back(
-        "next to no loss stands out of the noise: E2 and eta2 are not determined; the bar is as "
-        "good as elastic with E1");
+    warnings.push_back(result.spectrum.mean_loss.gains()
+                           ? "E2 and eta2 are not determined: they stand for a loss, and there is "
+                             "none"
+                           : "next to no loss stands out of the noise: E2 and eta2 are not "
+                             "determined; the bar is as good as elastic with E1");
     return;
   }
   for (std::size_t i = 0; i < three.parameters.size(); ++i) {
@@ -220,27 +222,17 @@ void take_temperatures(const std::vector<Shot>& shots, BarIdentification& result
   }
 }
 
-/// Loss must not be negative: J2 averaged over a band, by its noise.
 void warn_of_gain(const BarSpectrum& spectrum, std::vector<std::string>& warnings) {
-  constexpr double kSignificant = 4.0;
-  double weights = 0.0;
-  double sum = 0.0;
-  std::size_t below = 0;
-  for (std::size_t k = 0; k < spectrum.frequency_Hz.size(); ++k) {
-    const double weight = 1.0 / std::pow(spectrum.J2_per_Pa.sd_of_mean[k], 2);
-    weights += weight;
-    sum += weight * spectrum.J2_per_Pa.mean[k];
-    below += spectrum.J2_per_Pa.mean[k] < -kSignificant * spectrum.J2_per_Pa.sd_of_mean[k] ? 1 : 0;
+  const MeanLoss& loss = spectrum.mean_loss;
+  if (!loss.gains()) {
+    return;
   }
-  if (weights > 0.0 && sum < -kSignificant * std::sqrt(weights)) {
-    warnings.push_back(
-        "not passive: J2 is negative on average over the band; waves would grow on their way. "
-        "Check "
-        "the gauge factors and the order of the gauges");
-  } else if (below > 0) {
-    warnings.push_back("not passive: J2 is negative beyond four deviations at " +
-                       std::to_string(below) + " frequencies");
-  }
+  warnings.push_back(
+      "not passive: J2 is negative, on average over the band " +
+      rounded(loss.J2_per_Pa / loss.sd_per_Pa) + " deviations and at " +
+      std::to_string(loss.negative) + " of " + std::to_string(spectrum.frequency_Hz.size()) +
+      " frequencies clearly: waves would grow on their way; check the gauge factors and the order "
+      "of the gauges");
 }
 
 /// What is open about a bar of three elements.

@@ -16,10 +16,23 @@ struct SpectrumLine {
   std::vector<double> sd_of_mean;  ///< from the noise of all shots and the bench
 };
 
+/// J2 averaged over the band, each frequency weighted by what noise leaves of it. Deviations grow
+/// with what a fit leaves beyond noise, and nothing that a passive material can do fits waves that
+/// grow: so it is judged by noise, and by what the bench leaves open, alone.
+struct MeanLoss {
+  double J2_per_Pa = 0.0;
+  double sd_per_Pa = 0.0;
+  std::size_t negative = 0;  ///< frequencies at which J2 is below 0 by four such deviations of it
+
+  /// Whether waves grow on their way, by more than chance has once in some thousand bars.
+  [[nodiscard]] bool gains() const;
+};
+
 /// Propagation and compliance J = J1 - i J2 of a bar's material by frequency.
 struct BarSpectrum {
   std::vector<double> frequency_Hz;
   SpectrumLine alpha_per_m, wavenumber_per_m, J1_per_Pa, J2_per_Pa;
+  MeanLoss mean_loss;
 
   [[nodiscard]] bool empty() const { return frequency_Hz.empty(); }
 };

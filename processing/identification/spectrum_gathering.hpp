@@ -30,8 +30,20 @@ class SpectrumGathering {
   [[nodiscard]] BarSpectrum spectrum(double widened) const;
 
  private:
-  void append(std::size_t k, double widened, const std::function<double(Complex)>& of,
-              SpectrumLine& line) const;
+  using OfLogJ = std::function<double(Complex)>;
+  /// A number's mean over shots at a frequency, how it follows log J (real part: by its real part),
+  /// and the variance that the shots' noise alone gives the mean.
+  struct Mean {
+    double value = 0.0;
+    Complex slope;
+    double variance = 0.0;
+  };
+
+  [[nodiscard]] Complex J(std::size_t k, Complex log_J) const;
+  [[nodiscard]] Mean mean_of(std::size_t k, const OfLogJ& of) const;
+  [[nodiscard]] double variance_by_bench(std::size_t k, Complex slope) const;
+  void append(std::size_t k, double widened, const OfLogJ& of, SpectrumLine& line) const;
+  [[nodiscard]] MeanLoss mean_loss() const;
 
   std::vector<double> frequency_Hz_;
   std::vector<Complex> axis_;
