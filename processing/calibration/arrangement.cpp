@@ -346,7 +346,7 @@ std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPr
                        "file one gauge per channel, in their order");
     }
     if (const std::string reason = unusable_because(shot); !reason.empty()) {
-      throw InputError("capture " + shot.id, reason, "repeat the shot, or leave this capture out");
+      throw InputError("capture " + shot.id, reason, kRepeatOrLeaveOut);
     }
     part_of(parts, lay_of(shot)).shots.push_back(shot);
   }

@@ -45,7 +45,7 @@ void require_bar(const Shot& shot) {
   }
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
-    throw InputError("samples", unusable, "repeat the shot, or leave this capture out");
+    throw InputError("samples", unusable, kRepeatOrLeaveOut);
   }
 }
 

@@ -138,11 +138,15 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
   ReductionOptions reduction;
   reduction.bar_model = bars;
   plan.reduction = Reducer(reduction).reduce(plan.shot);
+  if (const Quality& quality = plan.reduction.quality; !quality.reducible) {
+    throw InputError("plan", quality.reason, quality.mend);
+  }
   plan.summary = summarise(plan.reduction);
   plan.quotable = quotable_part(plan.reduction);
 
   const double speed_in = front_speed_m_per_s(bench.input, *compliance_of(bench.input, bars));
   const double speed_out = front_speed_m_per_s(*bench.output, *compliance_of(*bench.output, bars));
+  plan.whole_pulse_m = 0.5 * speed_in * (pulse.duration_s() + pulse.rise_s);
   plan.window_s = 2.0 * shpb_stations(bench).front().to_specimen_m / speed_in;
   plan.returns_s = 2.0 * bench.input.length_m / speed_in;
   if (bench.output->far_end == FarEnd::free) {

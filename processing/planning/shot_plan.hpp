@@ -27,7 +27,9 @@ struct GaugeForecast {
 /// A shot before it is fired.
 struct ShotPlan {
   PlannedPulse pulse;
-  double window_s = 0.0;   ///< at the first gauge: the incident pulse alone
+  double window_s = 0.0;  ///< at the first gauge: the incident pulse alone
+  /// Distance from the specimen at which a gauge sees all of the pulse before its reflection.
+  double whole_pulse_m = 0.0;
   double returns_s = 0.0;  ///< from arrival at the specimen until a far end answers there
   double specimen_transit_s = 0.0;
   std::vector<GaugeForecast> gauges;
@@ -39,7 +41,8 @@ struct ShotPlan {
 
 /// Foretells a shot on a linear specimen: its gauge records, from the waves of the paper's model,
 /// the specimen's mass included where its density is filed; and what the reduction makes of them.
-/// @throws InputError where the bench has no specimen or no gauges
+/// @throws InputError where the bench has no specimen or no gauges, and where nothing can be made
+///   of what they would read: bars too short for the pulse
 [[nodiscard]] ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& specimen,
                                  const PlannedPulse& pulse, const PlanOptions& options);
 

@@ -94,9 +94,7 @@ Check window_overlap(const QualityInputs& in) {
                 "%.1f %% of the striker's push is left when the reflection hides it "
                 "(limit %.1f %%), if it stays %.0f %% of the largest strain is missing",
                 100 * check.value, 100 * check.limit, 100 * check.value * in.strain_per_push) +
-                ": it takes a shorter pulse, a gauge further from the specimen, or waves "
-                "told apart by a second place on the input bar (--separate gauges) or the "
-                "output bar's force (--separate equilibrium)";
+                ": it takes " + longer_window(in.gauge_to_specimen_m, in.wave_speed_m_per_s);
   return check;
 }
 
@@ -369,10 +367,21 @@ const Check* Quality::find(const std::string& check) const {
   return at == checks.end() ? nullptr : &*at;
 }
 
-Reduction not_reducible(std::string reason) {
+Reduction not_reducible(std::string reason, std::string mend) {
   Reduction reduction;
   reduction.quality.reason = std::move(reason);
+  reduction.quality.mend = std::move(mend);
   return reduction;
+}
+
+std::string longer_window(double gauge_to_specimen_m, double wave_speed_m_per_s) {
+  return formatted(
+             "a pulse that is over within %.0f us, a gauge further from the specimen than %.3g m "
+             "(half of the wave speed times the pulse's length, %.2g mm for each us of it), ",
+             2e6 * gauge_to_specimen_m / wave_speed_m_per_s, gauge_to_specimen_m,
+             0.5e-3 * wave_speed_m_per_s) +
+         "or waves told apart by a second place on the input bar (--separate gauges) or the output "
+         "bar's force (--separate equilibrium)";
 }
 
 FlatTop longest_flat_top(const Shot& shot) {

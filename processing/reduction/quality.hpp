@@ -30,8 +30,11 @@ struct FlatTop {
 /// A pass, or a warning where a record of unknown ends stands at its largest value for long.
 [[nodiscard]] Check clipping(const FlatTop& flat_top);
 
-/// No histories, and why.
-[[nodiscard]] Reduction not_reducible(std::string reason);
+/// What to do about a shot that is `unusable_because`.
+inline constexpr const char* kRepeatOrLeaveOut = "repeat the shot, or leave this capture out";
+
+/// No histories, why, and what would be right.
+[[nodiscard]] Reduction not_reducible(std::string reason, std::string mend);
 
 /// What is known of separated waves.
 struct SeparationJudgement {
@@ -41,6 +44,9 @@ struct SeparationJudgement {
   bool assumes_equilibrium = false;  ///< front and back force are one
   bool ends_in_loading = false;      ///< the record does, so nothing after it is known
 };
+
+/// What keeps the reflection from hiding the push at its gauge: how short a pulse, how far a gauge.
+[[nodiscard]] std::string longer_window(double gauge_to_specimen_m, double wave_speed_m_per_s);
 
 /// Largest share of the strain that what is left of the striker's push may take off it; of the push
 /// itself it is never more.
@@ -55,6 +61,8 @@ struct QualityInputs {
   /// What is left of the striker's push, as a share of its peak, at the end of what is known of it.
   double push_left_share = 0.0;
   double push_limit = kOverlapLimit;  ///< the share that may be left
+  double gauge_to_specimen_m = 0.0;   ///< of the gauge that sees the push
+  double wave_speed_m_per_s = 0.0;    ///< of a front in the input bar
   /// What a push that went on at its peak would take off the largest strain, as a share of it.
   double strain_per_push = 0.0;
   /// Time, as in the histories, from which a gauge holds waves that came back from a far end too.

@@ -85,7 +85,7 @@ Reduction Reducer::reduce(const Shot& shot) {
   require_reducible_bench(shot);
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
-    return not_reducible(unusable);
+    return not_reducible(unusable, kRepeatOrLeaveOut);
   }
   ReductionOptions options = state_->options;
   const bool assumed = !options.bar_model && !shot.bar_model;

@@ -26,6 +26,7 @@ struct Check {
 struct Quality {
   bool reducible = false;
   std::string reason{};  ///< why it is not
+  std::string mend{};    ///< what would be right
   std::vector<Check> checks;
 
   /// The worst of the checks; fail when not reducible.

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "processing/reduction/formatted.hpp"
 #include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 /// A run above the level shorter than this is a spike, not a pulse.
 constexpr double kShortestPulse_s = 5e-6;
+/// Noise's deviations beyond which something is not its account.
+constexpr double kStandsOut = 3.0;
 
 double largest(std::span<const double> values) {
   double most = 0.0;
@@ -42,19 +45,28 @@ class Pass {
 
   Reduction run() {
     if (!find_incident()) {
-      return not_reducible("no incident pulse stands out of the noise on " +
-                           shot_.channels[in_.channels.front()].gauge);
+      return not_reducible("no incident pulse stands out of the noise on " + first_gauge(),
+                           "give a shot's whole record, from before the impact, with that gauge's "
+                           "bridge supplied");
     }
     if (split_ >= shot_.samples()) {
-      return not_reducible("the record ends before the specimen's answer reaches " +
-                           shot_.channels[in_.channels.front()].gauge);
+      return not_reducible("the record ends before the specimen's answer reaches " + first_gauge(),
+                           record_longer());
     }
     transform_records();
     locate_arrival();
     weigh_hidden_push();
     separate();
+    if (!faces_ && push_still_rises()) {
+      return not_reducible(
+          formatted("the reflection hides the push at %s %.0f us after its foot, while it still "
+                    "rises: the bar is too short for this pulse",
+                    first_gauge().c_str(), 2e6 * travel_to_specimen_s()),
+          "it takes " + longer_window(in_.gauge_to_specimen_m, wave_speed_m_per_s()));
+    }
     if (!choose_window()) {
-      return not_reducible("the record ends before the pulse has loaded the specimen");
+      return not_reducible("the record ends before the pulse has loaded the specimen",
+                           record_longer());
     }
     if (faces_) {
       take_separated();
@@ -71,6 +83,25 @@ class Pass {
   }
 
  private:
+  [[nodiscard]] const std::string& first_gauge() const {
+    return shot_.channels[in_.channels.front()].gauge;
+  }
+  /// Of a front, from the gauge that sees the push.
+  [[nodiscard]] double travel_to_specimen_s() const {
+    return bars_.input.front_time_s(in_.gauge_to_specimen_m);
+  }
+  [[nodiscard]] double wave_speed_m_per_s() const {
+    return in_.gauge_to_specimen_m / travel_to_specimen_s();
+  }
+  /// By how much until the pulse has come and gone at the specimen, if it is as long as the bar
+  /// lets it be.
+  [[nodiscard]] std::string record_longer() const {
+    const double answered = gauge_foot_ + 4.0 * travel_to_specimen_s() * rate_Hz_;
+    const double missing = answered - static_cast<double>(shot_.samples());
+    return formatted("record for longer, by some %.0f us",
+                     1e6 * period_s_ * std::max(missing, rate_Hz_ * 10e-6));
+  }
+
   bool find_incident() {
     const auto width = static_cast<std::size_t>(std::ceil(kShortestPulse_s * rate_Hz_));
     const double round_trip_s = 2.0 * bars_.input.front_time_s(in_.gauge_to_specimen_m);
@@ -200,12 +231,33 @@ class Pass {
     push_peak_Pa_ = largest(push);
     push_left_share_ = push_peak_Pa_ > 0.0 ? std::abs(push_left_Pa_) / push_peak_Pa_ : 1.0;
     // Less than that is the noise's account.
-    constexpr double kStandsOut = 3.0;
     push_noise_share_ = kStandsOut * input_noise_ / std::max(largest(incident_strain()), 1e-300) /
                         std::sqrt(static_cast<double>(std::max<std::size_t>(few, 1)));
     if (push_left_share_ > push_noise_share_) {
       reduction_.push_left_share = push_left_share_;
     }
+  }
+
+  /// Whether what the gauge sees of the push alone ends on its rise: on a ramp the last fifth of
+  /// the window is 1.3 times the one before and near the peak, on a plateau that creeps no more
+  /// than 1.05; what is left of a push that has gone may be anything, but is small.
+  [[nodiscard]] bool push_still_rises() const {
+    constexpr double kRises = 1.15;
+    constexpr double kLeastOfPeak = 0.6;
+    const std::span<const double> push =
+        incident_strain().subspan(static_cast<std::size_t>(std::max(0.0, gauge_foot_)));
+    const std::size_t fifth = push.size() / 5;
+    if (fifth == 0) {
+      return true;
+    }
+    const auto mean = [&](std::span<const double> part) {
+      return sense_ * std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(fifth);
+    };
+    const double last = mean(push.last(fifth));
+    const double before = mean(push.last(2 * fifth).first(fifth));
+    const double noise = input_noise_ * std::sqrt(2.0 / static_cast<double>(fifth));
+    return last > kLeastOfPeak * largest(push) && last > kRises * before &&
+           last - before > kStandsOut * noise;
   }
 
   /// What a push that went on at its peak would take off the largest strain, as a share of it: all
@@ -440,6 +492,8 @@ class Pass {
     q.output_noise_rms = output_noise_;
     q.push_left_share = push_left_share_;
     q.push_limit = overlap_limit();
+    q.gauge_to_specimen_m = in_.gauge_to_specimen_m;
+    q.wave_speed_m_per_s = wave_speed_m_per_s();
     q.strain_per_push = strain_per_push_;
     q.returns_from_s = 2.0 * std::min(bars_.input.front_time_s(in_.gauge_to_far_end_m),
                                       far_end_time_s(out_.gauge_to_far_end_m));

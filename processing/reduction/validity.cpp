@@ -170,6 +170,10 @@ std::vector<double> disagreement(const Reduction& r) {
 
 Quotable quotable_part(const Reduction& r) {
   Quotable part;
+  if (!r.quality.reducible) {
+    part.text = "no part of the curve: there is none, " + r.quality.reason;
+    return part;
+  }
   const std::string doubt = strain_in_doubt(r);
   if (!doubt.empty()) {
     part.text = "no part of the curve: " + doubt;

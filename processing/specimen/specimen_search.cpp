@@ -187,8 +187,10 @@ SpecimenSearch::Place SpecimenSearch::search(Place place, const LogBounds* bound
   // A parameter that the data do not hold drifts without end; its deviation says so.
   constexpr double kDrift = 0.1;
   if ((!converged && last_gain > kDrift) || !place.r.allFinite()) {
-    throw InputError("fit", "does not converge",
-                     "try another family of solids, a narrower band or a shorter window");
+    throw InputError(
+        "fit", "does not converge",
+        "try a narrower band or a shorter window, shots whose pulse is shorter than the "
+        "bars let wait for its answer, or another family of solids");
   }
   return place;
 }
@@ -224,11 +226,12 @@ void SpecimenSearch::require_determined(const SpecimenMinimum& minimum) const {
   for (Eigen::Index i = 0; i < solids_; ++i) {
     const double variance = minimum.covariance(i, i);
     if (!(variance > 0.0 && variance < kUnknownLog * kUnknownLog)) {
-      throw InputError("fit",
-                       std::string("says nothing of ") +
-                           parameters_of(solid_)[static_cast<std::size_t>(i)].name +
-                           " where it ends",
-                       "try another family of solids, a wider band or more shots");
+      throw InputError(
+          "fit",
+          std::string("says nothing of ") +
+              parameters_of(solid_)[static_cast<std::size_t>(i)].name + " where it ends",
+          "give more shots or a wider band, bars that are not much shorter than the pulse, or "
+          "try another family of solids");
     }
   }
 }

@@ -35,7 +35,8 @@ ReducedShot exportable(const std::string& capture) {
   ReducedShot bar;
   bar.shot = std::move(shot);
   bar.capture = absolute_name(capture);
-  bar.reduction = not_reducible("a bar by itself has no specimen (see `kolsky identify bar`)");
+  bar.reduction = not_reducible("a bar by itself has no specimen (see `kolsky identify bar`)",
+                                "file bars.output and specimen, if there are");
   return bar;
 }
 

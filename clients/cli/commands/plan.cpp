@@ -98,6 +98,7 @@ JsonValue describe(const ShotPlan& plan, const Bars& bars) {
        plan.quotable.any ? JsonValue(plan.quotable.from_strain) : nullptr},
       {"specimen_transit_s", plan.specimen_transit_s},
       {"window_s", plan.window_s},
+      {"whole_pulse_m", plan.whole_pulse_m},
       {"returns_s", plan.returns_s},
       {"gauges", std::move(gauges)},
       {"quality", JsonObject{{"reducible", r.quality.reducible},
@@ -114,15 +115,22 @@ std::string line(const std::string& name, const std::string& text) {
   return fmt::format("  {:<18}{}\n", name, text);
 }
 
+/// What would keep the reflection from hiding the pulse.
+std::string needed(const ShotPlan& plan) {
+  const double bar_m = plan.shot.bench.input.length_m;
+  return fmt::format("too short: it takes a pulse of at most {}, or a gauge {} from the specimen{}",
+                     with_unit(plan.window_s, "s"), with_unit(plan.whole_pulse_m, "m"),
+                     bar_m < plan.whole_pulse_m
+                         ? fmt::format(", on a bar longer than its {}", with_unit(bar_m, "m"))
+                         : "");
+}
+
 std::string report(const ShotPlan& plan, const Bars& bars) {
   const double pulse_s = plan.pulse.duration_s() + plan.pulse.rise_s;
   std::string text =
       line("pulse", fmt::format("{} for {}", with_unit(plan.pulse.step_force_N.front(), "N"),
                                 with_unit(pulse_s, "s"))) +
       line("bars", bars.in_words);
-  if (!plan.reduction.quality.reducible) {
-    return text + line("result", "none: " + plan.reduction.quality.reason);
-  }
   text += line("largest strain", with_unit(plan.summary.peak_strain, "strain"));
   text += line("peak stress", with_unit(plan.summary.peak_stress_Pa, "Pa"));
   text +=
@@ -133,6 +141,9 @@ std::string report(const ShotPlan& plan, const Bars& bars) {
   text +=
       line("window", fmt::format("{} of incident pulse alone at the first gauge, which lasts {}",
                                  with_unit(plan.window_s, "s"), with_unit(pulse_s, "s")));
+  if (plan.window_s < pulse_s) {
+    text += line("", needed(plan));
+  }
   text += line("", fmt::format("a far end answers at the specimen {} after arrival",
                                with_unit(plan.returns_s, "s")));
   text += line("specimen transit", with_unit(plan.specimen_transit_s, "s"));

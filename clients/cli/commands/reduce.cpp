@@ -182,6 +182,14 @@ void refuse_for_ball(const Settings& settings) {
   }
 }
 
+// Without histories there is nothing to show or to write.
+void require_histories(const ReducedShot& reduced) {
+  const Quality& quality = reduced.reduction.quality;
+  if (!quality.reducible) {
+    throw InputError(reduced.capture + ": record", quality.reason, quality.mend);
+  }
+}
+
 int reduce_several(const Settings& settings, const ReductionOptions& options, Context& context) {
   if (settings.save || settings.svg || settings.csv) {
     throw InputError("kolsky reduce: CAPTURE", "is given more than once beside a file to write",
@@ -215,6 +223,7 @@ int run(const Settings& settings, Context& context) {
   if (reduced.shot.bench.kind == BenchKind::impact) {
     refuse_for_ball(settings);
   }
+  require_histories(reduced);
   if (bars.has_value()) {
     require_holds(*bars, reduced.shot);
     const std::string unchecked = temperature_unchecked(*bars, reduced.shot);

@@ -11,6 +11,12 @@ JsonValue measured(const Measured& number) {
   return JsonObject{{"value", number.value}, {"sd", number.sd}};
 }
 
+/// A speed that may be anything is no result.
+bool tells_speed(const PartResult& part) {
+  constexpr double kMost = 0.2;
+  return part.wave_speed_m_per_s.sd < kMost * part.wave_speed_m_per_s.value;
+}
+
 std::string unit_of(CalibratedNumber::Of of) {
   using Of = CalibratedNumber::Of;
   switch (of) {
@@ -86,21 +92,24 @@ JsonValue describe_part(const PartResult& part, const Bench& bench) {
   for (const auto& [one, other] : part.swapped) {
     swapped.emplace_back(std::vector<std::string>{one, other});
   }
-  return JsonObject{{"bars", name_of(part.lay)},
-                    {"two_passes", part.two_passes},
-                    {"shots", static_cast<std::int64_t>(part.shots)},
-                    {"dispersion", part.exact_waves ? "exact" : "elementary"},
-                    {"far_end_seen", part.far_end_seen},
-                    {"chi2_reduced", part.chi2_reduced},
-                    {"chi2_reduced_as_filed", part.chi2_reduced_as_filed},
-                    {"wave_speed_m_per_s", JsonObject{{"value", part.wave_speed_m_per_s.value},
-                                                      {"sd", part.wave_speed_m_per_s.sd},
-                                                      {"at_Hz", part.wave_speed_at_Hz}}},
-                    {"numbers", numbers},
-                    {"swapped", swapped},
-                    {"areas", describe_areas(part.areas)},
-                    {"momentum", describe_momentum(part.areas)},
-                    {"cannot_tell", part.cannot_tell}};
+  return JsonObject{
+      {"bars", name_of(part.lay)},
+      {"two_passes", part.two_passes},
+      {"shots", static_cast<std::int64_t>(part.shots)},
+      {"dispersion", part.exact_waves ? "exact" : "elementary"},
+      {"far_end_seen", part.far_end_seen},
+      {"chi2_reduced", part.chi2_reduced},
+      {"chi2_reduced_as_filed", part.chi2_reduced_as_filed},
+      {"wave_speed_m_per_s", tells_speed(part)
+                                 ? JsonValue(JsonObject{{"value", part.wave_speed_m_per_s.value},
+                                                        {"sd", part.wave_speed_m_per_s.sd},
+                                                        {"at_Hz", part.wave_speed_at_Hz}})
+                                 : nullptr},
+      {"numbers", numbers},
+      {"swapped", swapped},
+      {"areas", describe_areas(part.areas)},
+      {"momentum", describe_momentum(part.areas)},
+      {"cannot_tell", part.cannot_tell}};
 }
 
 std::string row(const CalibratedNumber& number, BarsLay lay, const Bench& bench) {
@@ -159,9 +168,12 @@ std::string part_text(const PartResult& part, const Bench& bench) {
       part.shots, part.two_passes ? ", two passes at one gauge" : "",
       part.exact_waves ? "exact" : "elementary", part.far_end_seen ? ", free far end" : "",
       part.chi2_reduced, part.chi2_reduced_as_filed);
-  text +=
-      fmt::format("  wave speed {:.2f} ± {:.2g} m/s at {:.0f} kHz\n", part.wave_speed_m_per_s.value,
-                  part.wave_speed_m_per_s.sd, part.wave_speed_at_Hz / 1e3);
+  text += tells_speed(part)
+              ? fmt::format("  wave speed {:.2f} ± {:.2g} m/s at {:.0f} kHz\n",
+                            part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd,
+                            part.wave_speed_at_Hz / 1e3)
+              : "  wave speed: these shots do not tell it; it takes gauges further apart, or bars "
+                "that are longer for this pulse\n";
   text += "  number                       filed                   by the shots        deviations\n";
   for (const CalibratedNumber& number : part.numbers) {
     text += row(number, part.lay, bench);

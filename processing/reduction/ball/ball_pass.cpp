@@ -28,21 +28,23 @@ double BallPass::front_speed(const Bar& bar) {
 
 Reduction BallPass::run() {
   if (!find_wave()) {
-    return not_reducible("no wave stands out of the noise on " +
-                         names_of(stations_[0], shot_.bench));
+    return not_reducible(
+        "no wave stands out of the noise on " + names_of(stations_[0], shot_.bench),
+        "give a shot's whole record, from before the impact, with that gauge's bridge supplied");
   }
   if (!read_strains()) {
-    return not_reducible("a reading is beyond what its gauge's bridge can give");
+    return not_reducible("a reading is beyond what its gauge's bridge can give",
+                         "check the gauge's excitation_V and gain in the bench");
   }
   choose_band();
   find_forces();
   weigh(std::vector<bool>(stations_.size(), true), best_);
   if (!locate_touch(best_)) {
-    return not_reducible("the first wave is tensile: a ball only pushes; check `positive`");
+    return not_reducible("the first wave is tensile: a ball only pushes", "check `positive`");
   }
   choose_stations();
   if (!locate_touch(force_) || !holds_push()) {
-    return not_reducible("the record ends before the ball has pushed");
+    return not_reducible("the record ends before the ball has pushed", "record for longer");
   }
   fill_history();
   measure();

@@ -47,7 +47,7 @@ Reduction BallReducer::reduce(const Shot& shot, const ReductionOptions& options)
   require_bench(shot);
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
-    return not_reducible(unusable);
+    return not_reducible(unusable, kRepeatOrLeaveOut);
   }
   const std::vector<Station> stations = stations_by_position(shot.bench);
   const Bar& bar = shot.bench.input;

@@ -172,6 +172,44 @@ TEST_F(BadFiles, ADamagedCaptureIsNotReduced) {
   EXPECT_TRUE(refused(scene::kolsky({"reduce", damaged}), {"damaged.h5"}));
 }
 
+TEST_F(BadFiles, ARecordThatHoldsNoShotIsRefusedAndNothingIsWritten) {
+  const auto table_of = [&](double share, std::size_t most_rows) {
+    std::string cut;
+    for (const std::string& line : scene::lines_of(bench_.table(share, 4e-6, 1))) {
+      cut += most_rows-- > 0 ? line + "\n" : "";
+      if (most_rows == 0) {
+        break;
+      }
+    }
+    return cut;
+  };
+  // The pulse is at the gauge from 300 us on, its answer from 495 us on.
+  const struct {
+    const char* name;
+    double share;
+    std::size_t rows;
+    std::vector<std::string> named;
+  } records[] = {
+      {"silent", 0.0, 1500, {"no incident pulse stands out", "whole record"}},
+      {"short", 1.0, 420, {"ends before", "record for longer"}},
+      {"early", 1.0, 250, {"no incident pulse stands out", "whole record"}},
+  };
+  for (const auto& [name, share, rows, named] : records) {
+    SCOPED_TRACE(name);
+    const std::string capture = bench_.file(std::string(name) + ".h5");
+    bench_.write(std::string(name) + ".csv", table_of(share, rows));
+    (void)scene::json_of(
+        scene::kolsky({"import", "csv", bench_.file(std::string(name) + ".csv"), "--bench",
+                       bench_.file("bench.toml"), "-o", capture, "--json"}));
+    std::vector<std::string> parts = named;
+    parts.push_back(capture + ": record: ");
+    const std::string table = bench_.file(std::string(name) + "-out.csv");
+    EXPECT_TRUE(refused(scene::kolsky({"reduce", capture, "--csv", table}), parts));
+    EXPECT_TRUE(refused(scene::kolsky({"reduce", capture, "--json"}), parts));
+    EXPECT_FALSE(std::filesystem::exists(table));
+  }
+}
+
 TEST_F(BadFiles, AnOutputThatCannotBeWrittenIsAnError) {
   // /dev/full takes nothing; the shell points stdout at it.
   const scene::Folder folder;

@@ -221,8 +221,13 @@ TEST_P(FiniteElementShots, AreReducedFromTheirTableToWhatTheModelHad) {
 }
 
 // A person who does not ask for it is told that time alone does not part these waves, and what
-// does.
+// does. Of copper's pulse, which rises for 90 us, the reflection hides the peak.
 TEST_P(FiniteElementShots, AreCalledUnreliableByTimeAlone) {
+  if (std::string(GetParam().folder) == "copper") {
+    EXPECT_TRUE(scene::refused(scene::kolsky({"reduce", capture_, "--json"}),
+                               {"while it still rises", "--separate equilibrium"}));
+    return;
+  }
   const json result = scene::json_of(scene::kolsky({"reduce", capture_, "--json"}));
   const json& overlap = result["quality"]["checks"]["window_overlap"];
   EXPECT_EQ(overlap["verdict"], "fail");

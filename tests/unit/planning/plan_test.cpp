@@ -63,6 +63,26 @@ TEST(PlanShot, WarnsOfWhatTheShotWillNotGive) {
   EXPECT_EQ(planned(longer, longer.bench()).reduction.quality.verdict(), Verdict::fail);
 }
 
+TEST(PlanShot, SaysHowFarAGaugeSeesAllOfAPulse) {
+  LinearShpb model;
+  model.input_length_m = 0.41;
+  model.output_length_m = 0.41;
+  model.gauge_in_m = 0.25;
+  const ShotPlan plan = planned(model, model.bench());
+  EXPECT_LT(plan.window_s, model.pulse_s);
+  EXPECT_NEAR(plan.whole_pulse_m, 0.5 * 2190.0 * (plan.pulse.duration_s() + plan.pulse.rise_s),
+              2e-3);
+  EXPECT_EQ(plan.reduction.quality.find("window_overlap")->verdict, Verdict::fail);
+  model.gauge_in_m = 0.39;  // 18 us of a rise of 40
+  try {
+    (void)planned(model, model.bench());
+    ADD_FAILURE() << "planned a shot of which no gauge sees the rise";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("too short for this pulse"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(PlanShot, TellsTheAmplifiersRangeInVolts) {
   const LinearShpb model;
   Bench bench = model.bench();

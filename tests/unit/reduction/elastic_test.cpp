@@ -197,6 +197,7 @@ TEST(ElasticReduction, NoiseAloneHoldsNoPulse) {
     const Reduction r = Reducer().reduce(model.shot(records, 4e-6, 16, 0.01, seed));
     EXPECT_FALSE(r.quality.reducible) << seed;
     EXPECT_NE(r.quality.reason.find("no incident pulse"), std::string::npos) << r.quality.reason;
+    EXPECT_FALSE(r.quality.mend.empty());
   }
 }
 
@@ -206,6 +207,18 @@ TEST(ElasticReduction, ARecordThatEndsTooEarlySaysSo) {
   const Reduction r = Reducer().reduce(noiseless(model, model.solve()));
   EXPECT_FALSE(r.quality.reducible);
   EXPECT_NE(r.quality.reason.find("ends before"), std::string::npos) << r.quality.reason;
+  EXPECT_NE(r.quality.mend.find("record for longer"), std::string::npos) << r.quality.mend;
+}
+
+/// 25 mm from the specimen the reflection is back 10 us after the foot of a pulse that rises in 20.
+TEST(ElasticReduction, APulseThatStillRisesWhenItsReflectionIsBackIsNotReduced) {
+  ElasticShpb model;
+  model.gauge_to_A_m = 0.025;
+  const Reduction r = Reducer().reduce(noiseless(model, model.solve()));
+  EXPECT_FALSE(r.quality.reducible);
+  EXPECT_NE(r.quality.reason.find("while it still rises"), std::string::npos) << r.quality.reason;
+  EXPECT_NE(r.quality.mend.find("further from the specimen than 0.025 m"), std::string::npos)
+      << r.quality.mend;
 }
 
 TEST(ElasticReduction, APulseLongerThanTheGaugeAllowsIsNamed) {
@@ -213,6 +226,9 @@ TEST(ElasticReduction, APulseLongerThanTheGaugeAllowsIsNamed) {
   model.pulse_s = 230e-6;  // the specimen answers after 195 us
   const Reduction r = Reducer().reduce(noiseless(model, model.solve()));
   EXPECT_EQ(check_of(r, "window_overlap").verdict, Verdict::fail);
+  const std::string text = check_of(r, "window_overlap").text;
+  EXPECT_NE(text.find("over within 195 us"), std::string::npos) << text;
+  EXPECT_NE(text.find("2.6 mm for each us"), std::string::npos) << text;
   EXPECT_EQ(
       check_of(Reducer().reduce(noiseless({}, ElasticShpb{}.solve())), "window_overlap").verdict,
       Verdict::pass);
