@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "drivers/files/captures/capture.hpp"
-#include "processing/base/error.hpp"
-
 namespace kolsky::cli {
 
 namespace {
@@ -34,6 +32,15 @@ std::vector<Shot> captured_shots(const std::vector<std::string>& places) {
     }
   }
   return shots;
+}
+
+InputError in_captures(const InputError& error, const std::vector<std::string>& places) {
+  if (places.empty() || error.place().starts_with("capture ")) {
+    return error;
+  }
+  const std::size_t others = places.size() - 1;
+  return error.inside(places.front() +
+                      (others == 0 ? "" : " and " + std::to_string(others) + " more"));
 }
 
 }  // namespace kolsky::cli

@@ -28,10 +28,7 @@ std::vector<double> readings_of(const Shot& shot, const ShpbStation& station) {
 
 void require_serving(const Shot& shot, const Shot& first) {
   const std::string place = "capture " + shot.id;
-  if (shot.bench.kind != BenchKind::shpb || !shot.bench.output || !shot.bench.specimen) {
-    throw InputError(place, "is not of a bench of kind \"shpb\" with a specimen",
-                     "identify a specimen from shots with bars.output and specimen filed");
-  }
+  require_specimen(shot);
   if (shot.channels.size() != shot.bench.gauges.size()) {
     throw InputError(place,
                      "has " + std::to_string(shot.channels.size()) + " channels for " +
@@ -44,7 +41,7 @@ void require_serving(const Shot& shot, const Shot& first) {
   }
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
-    throw InputError(place, unusable, "repeat the shot, or leave this capture out");
+    throw InputError(place, unusable, kRepeatOrLeaveOut);
   }
 }
 
@@ -86,6 +83,20 @@ std::vector<double> strain_of(const Shot& shot, const ShpbStation& station, std:
 }
 
 }  // namespace
+
+void require_specimen(const Shot& shot) {
+  const Bench& bench = shot.bench;
+  if (bench.kind != BenchKind::shpb) {
+    throw InputError(
+        "capture " + shot.id + ": kind", "is not \"shpb\": there is no specimen in it to identify",
+        bench.kind == BenchKind::bar ? "`kolsky identify bar` finds what a bar is made of"
+                                     : "`kolsky reduce` finds a ball's force and restitution");
+  }
+  if (!bench.output || !bench.specimen) {
+    throw InputError("capture " + shot.id, "is of a bench without a specimen between two bars",
+                     "file bars.output and specimen");
+  }
+}
 
 std::vector<ShpbStation> shpb_stations(const Bench& bench) {
   std::vector<ShpbStation> stations;

@@ -27,6 +27,10 @@ struct ShpbRecords {
 /// @throws InputError where a bar has none
 [[nodiscard]] std::vector<ShpbStation> shpb_stations(const Bench& bench);
 
+/// @throws InputError where a shot is not of a specimen between two bars, with the command that
+///   serves it
+void require_specimen(const Shot& shot);
+
 /// @throws InputError where a shot cannot serve: another kind of bench, other benches or rates
 ///   among the shots, a hole, clipped codes, no pulse, no quiet samples before it
 [[nodiscard]] std::vector<ShpbRecords> read_shpb_records(const std::vector<Shot>& shots,

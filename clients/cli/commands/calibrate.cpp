@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/reports/calibration_report.hpp"
 #include "clients/cli/reports/model_text.hpp"
@@ -53,7 +54,13 @@ int run(const Settings& settings, Context& context) {
   CalibrationOptions options = options_from(settings, shots);
   SlowWork progress("kolsky calibrate");
   options.progress = [&progress](const std::string& step) { progress.at(step); };
-  const Calibration calibration = calibrate(shots, options);
+  const Calibration calibration = [&] {
+    try {
+      return calibrate(shots, options);
+    } catch (const InputError& error) {
+      throw in_captures(error, settings.captures);
+    }
+  }();
   const Shot& first = shots.front();
   if (settings.bench_out) {
     NewFile file(*settings.bench_out);

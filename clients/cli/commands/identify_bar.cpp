@@ -80,10 +80,20 @@ void write_material(const std::string& path, const BarIdentification& result,
   file.publish(kReadableByAll);
 }
 
-int run(const Settings& settings, Context& context) {
+BarIdentification identify(const std::vector<Shot>& shots, const Settings& settings) {
   const BarIdentificationOptions options = options_from(settings);
+  try {
+    return identify_bar(shots, options, all_cores());
+  } catch (const InputError& error) {
+    throw in_captures(error, settings.captures);
+  }
+}
+
+int run(const Settings& settings, Context& context) {
   const std::vector<Shot> shots = captured_shots(settings.captures);
-  const BarIdentification result = identify_bar(shots, options, all_cores());
+  BarIdentification result = identify(shots, settings);
+  // Three elements are what there is by default, too.
+  result.solid.asked = settings.solid.has_value() && *settings.solid != "auto";
   std::vector<ForetoldShot> foretold;
   if (settings.waveforms || settings.svg) {
     foretold = foretell(shots, result.fit);
@@ -127,7 +137,9 @@ Command identify_bar_command() {
              &s.model_out),
       Argument{"--solid",
                "FAMILY",
-               "family of solids for the spectrum; the three-element parameters always come too",
+               "family of solids for the spectrum: three-element (default), or what the records "
+               "are evidence\n"
+               "for (auto); the three-element parameters always come too",
                &s.solid,
                false,
                {"three-element", "four-element-fluid", "two-kelvin", "three-kelvin", "fractional",

@@ -18,6 +18,7 @@
 #include "processing/base/error.hpp"
 #include "processing/identification/parameter_budget.hpp"
 #include "processing/specimen/fit_warnings.hpp"
+#include "processing/specimen/shpb_records.hpp"
 #include "processing/specimen/specimen_fit.hpp"
 #include "processing/specimen/specimen_spectrum.hpp"
 #include "processing/waves/compliance.hpp"
@@ -82,6 +83,7 @@ SpecimenFitOptions fit_options(const Settings& settings, const std::optional<Bar
 std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarModelFile>& bars) {
   std::vector<Shot> shots = captured_shots(settings.captures);
   for (const Shot& shot : shots) {
+    require_specimen(shot);
     if (bars) {
       require_holds(*bars, shot);
     } else if (shot.bar_model) {
@@ -111,7 +113,11 @@ Outcome identify(const Settings& settings) {
     options.most_band_Hz = identified->band_limit_Hz;
   }
   require_band_known(prior.material, settings.band_limit_Hz, "the capture's bar model");
-  outcome.fit = fit_specimen(outcome.shots, prior, options);
+  try {
+    outcome.fit = fit_specimen(outcome.shots, prior, options);
+  } catch (const InputError& error) {
+    throw in_captures(error, settings.captures);
+  }
   if (outcome.bars) {
     const std::string unchecked = temperature_unchecked(*outcome.bars, outcome.shots.front());
     if (!unchecked.empty()) {

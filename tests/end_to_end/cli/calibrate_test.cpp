@@ -82,7 +82,7 @@ TEST_F(Calibrate, NamesWhatDiffersAndMendsTheBenchFile) {
 }
 
 TEST_F(Calibrate, RefusesInOneLine) {
-  EXPECT_TRUE(refused(scene::kolsky(words({"--trust", "g9"})), {"g9"}));
+  EXPECT_TRUE(refused(scene::kolsky(words({"--trust", "g9"})), {" more: gauge g9"}));
   EXPECT_TRUE(refused(scene::kolsky(words({"--bench", "none.toml"})), {"none.toml"}));
   EXPECT_TRUE(refused(scene::kolsky({"calibrate"}), {"CAPTURE"}));
 }

@@ -78,6 +78,12 @@ TEST_F(IdentifyBar, IsWhatReducingABarPointsToAndItsGaugesAreExported) {
   EXPECT_NE(header.find("g4"), std::string::npos) << header;
 }
 
+TEST_F(IdentifyBar, ASolidThatIsAskedForIsSaidToBe) {
+  const json result = json_of(
+      scene::kolsky({"identify", "bar", captures_.front(), "--solid", "three-element", "--json"}));
+  EXPECT_EQ(result["choice"]["solid"]["asked"], true);
+}
+
 TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
   std::vector<std::string> words = {"identify", "bar"};
   words.insert(words.end(), captures_.begin(), captures_.end());
@@ -98,6 +104,20 @@ TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
   for (const char* name :
        {"J1_per_Pa", "J1_sd", "J2_per_Pa", "J2_sd", "alpha_per_m", "wavenumber_per_m"}) {
     EXPECT_EQ(result["spectrum"][name].size(), bins) << name;
+  }
+  EXPECT_EQ(result["choice"]["solid"]["asked"], false);
+  const json& correlation = result["correlation"];
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(correlation[i][i].get<double>(), 1.0, 1e-12);
+    const double sd = result["parameters"][names[i]]["sd"].get<double>();
+    EXPECT_NEAR(std::sqrt(result["covariance"][i][i].get<double>()) / sd, 1.0, 1e-9);
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_NEAR(correlation[i][j].get<double>(), correlation[j][i].get<double>(), 1e-9);
+      EXPECT_LT(std::abs(correlation[i][j].get<double>()), 1.0);
+      const double of_both = result["covariance"][i][j].get<double>() / sd /
+                             result["parameters"][names[j]]["sd"].get<double>();
+      EXPECT_NEAR(correlation[i][j].get<double>(), of_both, 1e-9);
+    }
   }
   EXPECT_EQ(result["waveforms"].size(), 3U);
   EXPECT_EQ(result["waveforms"][0]["gauges"].size(), 3U);
@@ -165,6 +185,15 @@ TEST_F(IdentifyBar, RefusesWhatCannotServe) {
                       {"--band-limit"}));
   EXPECT_TRUE(
       refused(scene::kolsky({"identify", "bar", (folder_ / "none.h5").string()}), {"none.h5"}));
+  // What is wrong with all of them is said after the first's name and how many more there are.
+  EXPECT_TRUE(refused(scene::kolsky({"identify", "bar", captures_[0], captures_[1], captures_[2],
+                                     "--band-limit", "400e3"}),
+                      {captures_[0] + " and 2 more: band limit"}));
+}
+
+TEST_F(IdentifyBar, ABarIsNotTakenForASpecimen) {
+  EXPECT_TRUE(refused(scene::kolsky({"identify", "specimen", captures_.front()}),
+                      {captures_.front() + ": kind", "is not \"shpb\"", "kolsky identify bar"}));
 }
 
 }  // namespace
