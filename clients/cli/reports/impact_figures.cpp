@@ -30,8 +30,6 @@ constexpr std::array kReadings = {Reading::full, Reading::bulk_E1, Reading::bulk
 constexpr double kOtherCore_m = 0.038;       // the usual construction, beside the bench's
 constexpr double kLeastDifference_m = 1e-4;  // of cores that are worth a row of their own
 constexpr std::size_t kTellEvery = 5;        // runs
-constexpr std::size_t kElements = 2048;
-constexpr std::size_t kFineElements = 8192;
 constexpr std::array kFiles = {"fig11.svg", "fig12.svg", "fig13.svg",
                                "fig14.svg", "fig15.svg", "table.md"};
 
@@ -42,13 +40,13 @@ struct Pair {
   ImpactHistory fine;
 };
 
-void run_all(std::vector<Pair>& pairs) {
+void run_all(std::vector<Pair>& pairs, std::size_t fine_elements) {
   std::mutex guard;
   std::size_t done = 0;
   all_cores().run(pairs.size(), [&](std::size_t i, std::size_t) {
     pairs[i].coarse = impact::simulate(pairs[i].model);
     ImpactModel finer = pairs[i].model;
-    finer.elements = kFineElements;
+    finer.elements = fine_elements;
     finer.field_at_turn = false;
     pairs[i].fine = impact::simulate(finer);
     const std::lock_guard lock(guard);
@@ -60,8 +58,10 @@ void run_all(std::vector<Pair>& pairs) {
 
 class Paper {
  public:
-  Paper(Bench bench, impact::BallMaterial core, impact::BallMaterial cover)
-      : bench_(std::move(bench)),
+  Paper(Bench bench, impact::BallMaterial core, impact::BallMaterial cover,
+        const FigureMeshes& meshes)
+      : meshes_(meshes),
+        bench_(std::move(bench)),
         core_(std::move(core)),
         cover_(std::move(cover)),
         own_core_m_(bench_.ball->core_diameter_m.value),
@@ -71,7 +71,7 @@ class Paper {
       cores_m_.push_back(kOtherCore_m);
     }
     plan();
-    run_all(pairs_);
+    run_all(pairs_, meshes_.fine);
   }
 
   void write(const std::filesystem::path& folder) const {
@@ -89,8 +89,9 @@ class Paper {
   }
 
   [[nodiscard]] std::string table() const {
-    std::string text =
-        "Mean of 2048 elements; in brackets what 8192 elements change.\n\n"
+    std::string text = fmt::format("Of {} elements; in brackets what {} elements change.\n\n",
+                                   meshes_.coarse, meshes_.fine);
+    text +=
         "| core mm | reading | friction | speed m/s | peak kN | at us | contact us | restitution | "
         "mass g |\n|---|---|---|---|---|---|---|---|---|\n";
     for (const Pair& pair : pairs_) {
@@ -110,7 +111,7 @@ class Paper {
     Pair pair;
     pair.model = impact_on(bench, core, cover, impact::TargetKind::dashpot, speed_m_per_s);
     pair.model.friction = friction;
-    pair.model.elements = kElements;
+    pair.model.elements = meshes_.coarse;
     const bool pictured = core_m == own_core_m_ && reading == Reading::full && friction == 0.3 &&
                           speed_m_per_s == 40.3;
     if (pictured) {
@@ -253,6 +254,7 @@ class Paper {
     return panel;
   }
 
+  FigureMeshes meshes_;
   Bench bench_;
   impact::BallMaterial core_;
   impact::BallMaterial cover_;
@@ -305,9 +307,10 @@ class FolderToFill {
 }  // namespace
 
 std::string write_paper_figures(const Bench& bench, const impact::BallMaterial& core,
-                                const impact::BallMaterial& cover, const std::string& folder) {
+                                const impact::BallMaterial& cover, const std::string& folder,
+                                const FigureMeshes& meshes) {
   FolderToFill fresh{folder};
-  const Paper paper(bench, core, cover);
+  const Paper paper(bench, core, cover, meshes);
   paper.write(fresh.path());
   fresh.keep();
   return paper.table() + "\nfigures 11 to 15 and table.md are in " + folder + "\n";

@@ -39,6 +39,12 @@ struct ImpactRun {
 /// The page that --svg writes.
 [[nodiscard]] std::string page(const ImpactRun& run);
 
+/// The meshes that the figures are of [elements, about]: the second shows what the first leaves.
+struct FigureMeshes {
+  std::size_t coarse = 2048;
+  std::size_t fine = 8192;
+};
+
 /// Writes the paper's figures 11 to 15 into a folder that is made for them: pictures, a table of
 /// every run, and the mesh error beside each trend. The ball is the bench's, and with the usual
 /// core of 38 mm. Runs on all processors. Where it fails nothing is left of the folder.
@@ -46,6 +52,7 @@ struct ImpactRun {
 /// @return what to print
 [[nodiscard]] std::string write_paper_figures(const Bench& bench, const impact::BallMaterial& core,
                                               const impact::BallMaterial& cover,
-                                              const std::string& folder);
+                                              const std::string& folder,
+                                              const FigureMeshes& meshes = {});
 
 }  // namespace kolsky::cli
