@@ -1,11 +1,12 @@
 // How often the stated 95 % intervals of a specimen's parameters hold the truth, over many repeats
-// of one experiment: specimen_coverage [REPEATS [core|cover|elastic [SHOTS [NOISE_MICROSTRAIN
-// [exact_bench]]]]]
+// of one experiment.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
+#include <vector>
 
+#include "tests/bench/held_coverage.hpp"
 #include "tests/generators/specimen_repeats.hpp"
 
 namespace {
@@ -32,12 +33,29 @@ testing::LinearShpb model_of(const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const unsigned repeats = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 2000;
-  const std::string name = argc > 2 ? argv[2] : "core";
-  const auto shots = static_cast<std::size_t>(argc > 3 ? std::atoi(argv[3]) : 10);
-  const double noise = argc > 4 ? std::atof(argv[4]) * 1e-6 : 4e-6;
+  CLI::App app("How often the truth lies inside the stated 95 % interval of a specimen's numbers.");
+  unsigned repeats = 2000;
+  std::string name = "core";
+  std::size_t shots = 10;
+  double noise_microstrain = 4.0;
+  bool exact_bench = false;
+  std::vector<double> hold;
+  app.add_option("repeats", repeats)->check(CLI::PositiveNumber);
+  app.add_option("specimen", name)->check(CLI::IsMember({"core", "cover", "elastic"}));
+  app.add_option("--shots", shots, "of each")->check(CLI::PositiveNumber);
+  app.add_option("--noise", noise_microstrain, "rms")->check(CLI::PositiveNumber);
+  app.add_flag("--exact-bench", exact_bench, "nothing of bench and bars is off");
+  app.add_option("--hold", hold,
+                 "least and most percent inside, as 94,96: fails where a share is outside by more\n"
+                 "than two deviations of that many repeats")
+      ->delimiter(',')
+      ->expected(2);
+  CLI11_PARSE(app, argc, argv);
+  const double noise = 1e-6 * noise_microstrain;
+  HeldCoverage held(hold, repeats);
+  held.state();
   testing::SpecimenRepeats::Filed filed;
-  if (argc > 5) {
+  if (exact_bench) {
     filed = {0.0, 0.0, 0.0, {0.0, 0.0, 0.0}};
   }
   const testing::SpecimenRepeats experiment(model_of(name), filed, shots, noise);
@@ -63,8 +81,9 @@ int main(int argc, char** argv) {
   const char* names[] = {"E1", "E2", "eta2"};
   for (std::size_t i = 0; i < 3; ++i) {
     std::printf(
-        "%-5s stated sd %.3f %%  mean %+.3f sd  rms %.3f sd  in the 95 %% interval %.2f %%\n",
-        names[i], 100 * stated[i], sum[i], std::sqrt(squares[i]), 100.0 * inside[i] / repeats);
+        "%-5s stated sd %.3f %%  mean %+.3f sd  rms %.3f sd  in the 95 %% interval %.2f %%%s\n",
+        names[i], 100 * stated[i], sum[i], std::sqrt(squares[i]), 100.0 * inside[i] / repeats,
+        held.judge(100.0 * inside[i] / repeats));
   }
-  return 0;
+  return held.missed() > 0 ? 1 : 0;
 }

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+namespace kolsky {
+
+/// What a share of intervals that hold the truth is held to: from the least to the most, and so
+/// much beside as chance does to the share of so many repeats (two of a binomial's deviations).
+class HeldCoverage {
+ public:
+  /// @param least_and_most_percent  empty: nothing is held
+  HeldCoverage(std::vector<double> least_and_most_percent, double repeats)
+      : held_(std::move(least_and_most_percent)),
+        allowance_percent_(100.0 * 2.0 * std::sqrt(0.95 * 0.05 / repeats)) {}
+
+  /// Says what is held.
+  void state() const {
+    if (!held_.empty()) {
+      std::printf("held to %g to %g %% inside, and %.2f %% beside, which chance does\n", held_[0],
+                  held_[1], allowance_percent_);
+    }
+  }
+
+  /// " outside" where a share is; it then counts as missed.
+  const char* judge(double inside_percent) {
+    if (held_.empty() || (inside_percent >= held_[0] - allowance_percent_ &&
+                          inside_percent <= held_[1] + allowance_percent_)) {
+      return "";
+    }
+    ++missed_;
+    return "  outside what is held";
+  }
+
+  [[nodiscard]] int missed() const { return missed_; }
+
+ private:
+  std::vector<double> held_;
+  double allowance_percent_;
+  int missed_ = 0;
+};
+
+}  // namespace kolsky
