@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "daemon/daemon.hpp"
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/tables/table_import.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/uncertainty/monte_carlo.hpp"
 #include "proto/codec.hpp"
 #include "tests/end_to_end/scene.hpp"
 
@@ -29,6 +33,8 @@ struct Measured {
   // where.
   double least_peak_Pa;
   double most_peak_Pa;
+  std::vector<const char*> warned{};  ///< what the record contradicts, which must be said
+  double cut_s = 0.0;                 ///< where the histories are cut for it; 0: they are not
 };
 
 std::filesystem::path shared(const std::string& name) {
@@ -39,6 +45,7 @@ std::filesystem::path shared(const std::string& name) {
 struct Outcome {
   Reduction published;
   Reduction again;  ///< the stored capture, reduced anew
+  Shot shot;        ///< of that capture
 };
 
 Outcome replayed(const Measured& set) {
@@ -68,8 +75,11 @@ Outcome replayed(const Measured& set) {
   }
   const std::string id = list.shots(0).id();
   const v1::ShotAndResult got = listener.control().get_shot(id);
-  return {wire::decode(got.result()),
-          Reducer().reduce(read_capture(folder / "store" / "shots" / (id + ".h5")))};
+  Outcome outcome;
+  outcome.published = wire::decode(got.result());
+  outcome.shot = read_capture(folder / "store" / "shots" / (id + ".h5"));
+  outcome.again = Reducer().reduce(outcome.shot);
+  return outcome;
 }
 
 double peak(const std::vector<double>& history) {
@@ -92,17 +102,34 @@ TEST_P(MeasuredRecords, ReachAPublishedResultThatTheMaterialIsKnownFor) {
   EXPECT_LT(peak(outcome.published.stress_Pa), set.most_peak_Pa);
   std::printf("%s: peak stress %.1f MPa, largest strain %.4f\n", set.name,
               peak(outcome.published.stress_Pa) / 1e6, peak(outcome.published.strain));
+  for (const char* name : set.warned) {
+    const Check* check = outcome.published.quality.find(name);
+    ASSERT_NE(check, nullptr) << name;
+    EXPECT_EQ(check->verdict, Verdict::warn) << check->text;
+  }
+  if (set.cut_s > 0.0) {
+    EXPECT_NEAR(outcome.published.time_s.back(), set.cut_s, 5e-6);
+    EXPECT_NE(outcome.published.quality.find("separation")->text.find("the histories end there"),
+              std::string::npos);
+  }
 }
 
+/// The back force leads, and 5 to 7 % of the energy are missing: of shot 5 just what may be.
 Measured steel(int shot) {
-  return {"945 steel",
-          "steel-945.toml",
-          {"steel-20mm-bars/steel-945/945steel_compression_0" + std::to_string(shot) + ".csv"},
-          "incident",
-          1500,
-          17000,
-          900e6,
-          1300e6};
+  constexpr int kCloses = 5;
+  Measured set{"945 steel",
+               "steel-945.toml",
+               {"steel-20mm-bars/steel-945/945steel_compression_0" + std::to_string(shot) + ".csv"},
+               "incident",
+               1500,
+               17000,
+               900e6,
+               1300e6,
+               {"front_back_lag", "equilibrium"}};
+  if (shot != kCloses) {
+    set.warned.push_back("energy_balance");
+  }
+  return set;
 }
 
 Measured epoxy(int shot) {
@@ -113,7 +140,9 @@ Measured epoxy(int shot) {
           2000,
           17500,
           180e6,
-          330e6};
+          330e6,
+          {"separation"},
+          408e-6};
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -140,14 +169,33 @@ INSTANTIATE_TEST_SUITE_P(
                       epoxy(1), epoxy(2), steel(1), steel(2), steel(3), steel(4), steel(5),
                       steel(6)));
 
+/// Of a shot's peak stress by what it states of itself: noise and the rest of the push.
+double peak_sd(const Outcome& outcome) {
+  UncertaintyOptions options;
+  options.draws = 200;
+  for (const UncertainFigure& figure :
+       propagate(outcome.shot, {}, outcome.again, options, {}).figures) {
+    if (figure.name == "peak_stress_Pa") {
+      return figure.sd;
+    }
+  }
+  throw std::runtime_error("no deviation of the peak stress");
+}
+
 TEST(MeasuredPairs, RepeatWithinThemselves) {
   if (!std::filesystem::exists(shared("steel-20mm-bars"))) {
     GTEST_SKIP() << "the measured records are not beside the project";
   }
   for (const int first : {1, 3, 5}) {
-    const double a = peak(replayed(steel(first)).published.stress_Pa);
-    const double b = peak(replayed(steel(first + 1)).published.stress_Pa);
+    const Outcome one = replayed(steel(first));
+    const Outcome other = replayed(steel(first + 1));
+    const double a = peak(one.published.stress_Pa);
+    const double b = peak(other.published.stress_Pa);
+    const double band = std::hypot(peak_sd(one), peak_sd(other));
+    std::printf("945 steel %d and %d: peaks differ by %.1f MPa, stated %.1f\n", first, first + 1,
+                1e-6 * std::abs(a - b), 1e-6 * band);
     EXPECT_LT(std::abs(a - b) / (a + b) * 2.0, 0.025) << "shots " << first << " and " << first + 1;
+    EXPECT_LT(std::abs(a - b), 3.0 * band) << "shots " << first << " and " << first + 1;
   }
 }
 
