@@ -192,9 +192,10 @@ TEST(MeasuredPasses, ExactWavesForetellThemBetterThanElementaryOnes) {
     const char* name;
     std::array<const char*, 2> channels;
     double from_s, to_s;
+    double falls_by;  ///< the misfit, as docs/measured.md has it
   };
-  for (const Rod& rod : {Rod{"input", {"Ch1", "Ch2"}, 112e-6, 130e-6},
-                         Rod{"output", {"Ch3", "Ch4"}, 110e-6, 150e-6}}) {
+  for (const Rod& rod : {Rod{"input", {"Ch1", "Ch2"}, 112e-6, 130e-6, 0.014},
+                         Rod{"output", {"Ch3", "Ch4"}, 110e-6, 150e-6, 0.005}}) {
     const auto file = [&](std::size_t i) {
       return folder / ("180303_171828_" + std::string(rod.channels[i]) + ".csv");
     };
@@ -217,7 +218,8 @@ TEST(MeasuredPasses, ExactWavesForetellThemBetterThanElementaryOnes) {
                 1e3 * fast.length_m);
     std::printf("%s bar: with a loss of %.2f /m %.2f %%\n", rod.name, lossy.loss_per_m,
                 100.0 * exact.off_all(lossy));
-    EXPECT_LT(exact.off_all(fast), elementary.off_all(slow)) << rod.name;
+    EXPECT_NEAR(1.0 - exact.off_all(fast) / elementary.off_all(slow), rod.falls_by, 0.003)
+        << rod.name;
   }
 }
 

@@ -43,6 +43,24 @@ TEST(PochhammerChree, MeanOverSurfaceStrainOfTheTable) {
   }
 }
 
+TEST(PochhammerChree, MeanStressOverMeanStrainOfTheTable) {
+  const auto table = testing::pochhammer_table();
+  if (table.empty()) {
+    GTEST_SKIP() << "no reference table beside the project";
+  }
+  for (const auto& [nu, rows] : table) {
+    const auto modes = testing::modes_at(nu, rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Complex s(0.0, kTwoPi * rows[i].speed * rows[i].a_over_wavelength);
+      const Complex ratio = s * s / (modes[i].gamma * modes[i].gamma);  // density and E are 1
+      // Six decimals, of the square of a speed that has seven.
+      EXPECT_NEAR(ratio.real(), rows[i].stress_over_strain, 1.5e-6)
+          << "nu " << nu << " a/Lambda " << rows[i].a_over_wavelength;
+      EXPECT_NEAR(ratio.imag(), 0.0, 1e-9);
+    }
+  }
+}
+
 TEST(PochhammerChree, ThePathDoesNotMatter) {
   const ThreeElementSolid pmma(paper_pmma());
   const PochhammerChree bar(1180.0, 0.36, 0.010, pmma);

@@ -15,7 +15,9 @@ namespace kolsky::testing {
 
 /// A row of `reference/pochhammer_chree.csv`, in units of the bar's radius a and its speed c0.
 struct PochhammerRow {
-  double a_over_wavelength, frequency, speed, mean_over_surface;  // f a / c0, cp / c0
+  double a_over_wavelength, frequency, speed;  ///< f a / c0, cp / c0
+  double mean_over_surface;                    ///< of axial strain
+  double stress_over_strain;                   ///< means over the section, over E
 };
 
 /// The table of reference values, by Poisson's ratio; empty where it is not beside the project.
@@ -31,7 +33,7 @@ inline std::map<double, std::vector<PochhammerRow>> pochhammer_table() {
     PochhammerRow row{};
     char comma = 0;
     cells >> nu >> comma >> row.a_over_wavelength >> comma >> row.frequency >> comma >> row.speed >>
-        comma >> row.mean_over_surface;
+        comma >> row.mean_over_surface >> comma >> row.stress_over_strain;
     table[nu].push_back(row);
   }
   return table;
