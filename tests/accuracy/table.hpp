@@ -29,9 +29,11 @@ std::optional<Section> elastic_waves();
 std::optional<Section> viscoelastic_waves();
 std::optional<Section> identified_bars();
 std::optional<Section> identified_solid_bar();
+std::optional<Section> identified_compliances();
 std::optional<Section> identified_specimens();
 std::optional<Section> separated_waves();
 std::optional<Section> reduced_shots();
+std::optional<Section> rubber_equilibrium();
 std::optional<Section> impacts();
 
 }  // namespace kolsky::accuracy

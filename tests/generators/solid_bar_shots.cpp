@@ -119,8 +119,7 @@ class Whitener {
 /// Removes from whitened columns whatever sources and offsets can make.
 class FreeOfSources {
  public:
-  FreeOfSources(const BarWorld& world, const Whitener& whitener) {
-    const Responses responses = BarForward().sensor_responses(world, world.shots.front());
+  FreeOfSources(const BarWorld& world, const Responses& responses, const Whitener& whitener) {
     const Timing& timing = world.timing;
     const auto samples = static_cast<Eigen::Index>(timing.samples);
     const auto knots = static_cast<Eigen::Index>(world.shots.front().source.size());
@@ -213,23 +212,26 @@ std::array<double, 3> SolidBarShots::bound(const Tolerances& tolerances, NoiseCo
   constexpr double kStep = 2e-3;
   const auto gauges = static_cast<Eigen::Index>(kGauges);
   const auto samples = static_cast<Eigen::Index>(world_.timing.samples);
-  std::array<Readings, 3> moved;
-  for (std::size_t m = 0; m < moved.size(); ++m) {
-    BarWorld world = world_;
-    double& number = m == 0   ? world.material.E1_Pa
-                     : m == 1 ? world.material.E2_Pa
-                              : world.material.eta2_Pa_s;
-    number *= std::exp(kStep);
-    moved[m] = BarForward().readings(world);
+  if (!beside_) {
+    beside_.emplace();
+    for (std::size_t m = 0; m < beside_->moved.size(); ++m) {
+      BarWorld world = world_;
+      double& number = m == 0   ? world.material.E1_Pa
+                       : m == 1 ? world.material.E2_Pa
+                                : world.material.eta2_Pa_s;
+      number *= std::exp(kStep);
+      beside_->moved[m] = BarForward().readings(world);
+    }
+    beside_->responses = BarForward().sensor_responses(world_, world_.shots.front());
   }
   const Whitener whitener(colour, world_.timing);
-  const FreeOfSources free(world_, whitener);
+  const FreeOfSources free(world_, beside_->responses, whitener);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3 + 2 * gauges, 3 + 2 * gauges);
   for (std::size_t s = 0; s < readings_.size(); ++s) {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(gauges * samples, 3 + 2 * gauges);
     const Eigen::VectorXd at = stacked(readings_[s]);
     for (Eigen::Index m = 0; m < 3; ++m) {
-      columns.col(m) = (stacked(moved[static_cast<std::size_t>(m)][s]) - at) / kStep;
+      columns.col(m) = (stacked(beside_->moved[static_cast<std::size_t>(m)][s]) - at) / kStep;
     }
     for (Eigen::Index g = 0; g < gauges; ++g) {
       const auto rows = Eigen::seqN(g * samples, samples);

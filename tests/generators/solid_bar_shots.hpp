@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "tests/generators/bar_world.hpp"
 #include "tests/generators/noise.hpp"
 #include "tests/generators/table4.hpp"
+#include "tests/generators/unit_source.hpp"
 
 namespace kolsky::testing {
 
@@ -35,15 +37,22 @@ class SolidBarShots {
 
   /// The bound of Cramer and Rao on the relative deviations of E1, E2, eta2 from all shots: sources
   /// (a bell every 4 us) and offsets free, gains and places known within their tolerances. From the
-  /// records' own differences by the moduli, four solutions in all.
+  /// records' own differences by the moduli: four solutions, the first time it is asked for.
   /// @param colour  its covariance is taken for known; not measured
   [[nodiscard]] std::array<double, 3> bound(const Tolerances& tolerances,
                                             NoiseColour colour = NoiseColour::white) const;
 
  private:
   BarWorld world_;  ///< three stations a gauge: before, at and behind its place
+  /// What bounds are made from.
+  struct Beside {
+    std::array<Readings, 3> moved;  ///< E1, E2, eta2 each by a little
+    Responses responses;
+  };
+
   std::array<double, 3> truth_{};
   Readings readings_;
+  mutable std::optional<Beside> beside_;
 };
 
 }  // namespace kolsky::testing

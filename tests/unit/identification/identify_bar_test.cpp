@@ -9,11 +9,13 @@
 #include <complex>
 #include <cstdio>
 #include <numbers>
+#include <ranges>
 #include <thread>
 
 #include "processing/base/error.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/campaign.hpp"
+#include "tests/generators/spectrum_coverage.hpp"
 #include "tests/generators/table4.hpp"
 
 namespace kolsky {
@@ -97,25 +99,22 @@ TEST(IdentifyBar, ShotsOfSeveralTemperaturesAreSaidToBe) {
   EXPECT_THROW((void)identify_bar(shots, {.compare_solids = false}), InputError);
 }
 
+/// Ten shots' mean by what is stated of the mean, over several sets (of forty, 95.0 % were inside):
+/// neighbouring frequencies share their noise and are out together.
 TEST(IdentifyBar, TheSpectrumHoldsTheTruthTo15kHz) {
-  const auto result = identify_bar(draw(paper_bar(), 10, 3), {.compare_solids = false});
   const RodMaterial& m = paper_bar().setup().material;
-  const BarSpectrum& s = result.spectrum;
-  double chi2 = 0.0;
-  double count = 0.0;
-  for (std::size_t k = 0; k < s.frequency_Hz.size() && s.frequency_Hz[k] <= 15e3; ++k) {
-    const double wt = kTwoPi * s.frequency_Hz[k] * m.eta2_Pa_s / m.E2_Pa;
-    const double J1 = 1.0 / m.E1_Pa + 1.0 / (m.E2_Pa * (1.0 + wt * wt));
-    const double J2 = wt / (m.E2_Pa * (1.0 + wt * wt));
-    EXPECT_NEAR(s.J1_per_Pa.mean[k], J1, 3.0 * s.J1_per_Pa.sd[k]) << s.frequency_Hz[k];
-    EXPECT_NEAR(s.J2_per_Pa.mean[k], J2, 3.0 * s.J2_per_Pa.sd[k]) << s.frequency_Hz[k];
-    chi2 += std::pow((s.J1_per_Pa.mean[k] - J1) / s.J1_per_Pa.sd_of_mean[k], 2) +
-            std::pow((s.J2_per_Pa.mean[k] - J2) / s.J2_per_Pa.sd_of_mean[k], 2);
-    count += 2.0;
+  testing::SpectrumCoverage coverage;
+  for (const unsigned seed : std::views::iota(3U, 23U)) {
+    const auto shots = draw(paper_bar(), 10, seed);
+    coverage.take(identify_bar(shots, {.compare_solids = false}).spectrum, m, 15e3);
   }
-  EXPECT_GT(count, 60.0);
-  EXPECT_GT(chi2 / count, 0.5);
-  EXPECT_LT(chi2 / count, 1.8);
+  std::printf("J1, J2 to 15 kHz: %.1f %% of %zu inside 1.96 deviations, mean square %.2f\n",
+              100.0 * coverage.inside_share(), coverage.count(), coverage.mean_square());
+  EXPECT_GT(coverage.count(), 2000U);
+  EXPECT_GE(coverage.inside_share(), 0.92);
+  EXPECT_LE(coverage.inside_share(), 0.98);
+  EXPECT_GT(coverage.mean_square(), 0.8);
+  EXPECT_LT(coverage.mean_square(), 1.25);
 }
 
 TEST(IdentifyBar, ThePapersAnalysisComesOutBesideIt) {
@@ -393,7 +392,7 @@ std::vector<double> cramer_rao(const BarShots& bar, std::size_t shots, double no
 }
 
 TEST(FitBar, IsNearlyAsGoodAsCanBe) {
-  constexpr int kRepeats = 30;
+  constexpr int kRepeats = 100;
   const std::vector<double> bound = cramer_rao(paper_bar(), 10, 4e-6);
   const RodMaterial& m = paper_bar().setup().material;
   const double truth[3] = {m.E1_Pa, m.E2_Pa, m.eta2_Pa_s};
@@ -409,8 +408,8 @@ TEST(FitBar, IsNearlyAsGoodAsCanBe) {
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    // 30 repeats: the rms itself is known to 13 %.
-    EXPECT_LT(std::sqrt(squares[i]), 1.3 * 1.3 * bound[i]) << i;
+    // 100 repeats: the rms itself is known to 7 %.
+    EXPECT_LT(std::sqrt(squares[i]), 1.3 * bound[i]) << i;
     RecordProperty("rms_over_bound_" + std::to_string(i),
                    std::to_string(std::sqrt(squares[i]) / bound[i]));
     std::printf("parameter %zu: rms %.5f %%, bound %.5f %%\n", i, 100.0 * std::sqrt(squares[i]),
@@ -519,6 +518,39 @@ TEST(IdentifyBar, TwoBranchesAreNotTakenForThree) {
   const std::vector<Shot> shots = spread_creep("second-relaxation=6e-12,tau=3e-4");
   const BarIdentification result = identify_bar(shots, {.solid = std::nullopt});
   EXPECT_EQ(result.fit.solid, SolidKind::two_kelvin);
+}
+
+/// Each is what makes the records, and has two numbers fewer than two Kelvin branches or none more.
+TEST(IdentifyBar, AFluidAndAFractionalSolidWinWhereTheyAreTrue) {
+  EXPECT_EQ(identify_bar(spread_creep("series-dashpot=5e-9"), {.solid = std::nullopt}).fit.solid,
+            SolidKind::four_element_fluid);
+  EXPECT_EQ(identify_bar(spread_creep("fractional-damping=0.8"), {.solid = std::nullopt}).fit.solid,
+            SolidKind::fractional);
+}
+
+/// What gauge 0 foretells for the others (Fig. 21) is off by the noise of both, low-passed.
+TEST(Foretell, LeavesNoise) {
+  constexpr double kNoise = 4e-6;
+  const auto shots = draw(paper_bar(), 3, 9);
+  const BarIdentification result = identify_bar(shots, {.compare_solids = false});
+  const std::vector<ForetoldShot> foretold = foretell(shots, result.fit);
+  ASSERT_EQ(foretold.size(), shots.size());
+  const double share = std::sqrt(result.fit.band_limit_Hz / 0.5e6);
+  for (const ForetoldShot& shot : foretold) {
+    ASSERT_EQ(shot.gauges.size(), 3U);
+    for (const ForetoldGauge& gauge : shot.gauges) {
+      double squares = 0.0;
+      for (std::size_t n = 0; n < gauge.measured.size(); ++n) {
+        squares += std::pow(gauge.measured[n] - gauge.foretold[n], 2);
+      }
+      const double rms = std::sqrt(squares / static_cast<double>(gauge.measured.size()));
+      std::printf("%s %s: residual %.2f microstrain, noise in the band %.2f\n", shot.id.c_str(),
+                  gauge.name.c_str(), 1e6 * rms, 1e6 * kNoise * share);
+      // Its own, and gauge 0's carried there and back from the end, hardly less.
+      EXPECT_GT(rms, kNoise * share);
+      EXPECT_LT(rms, 2.5 * kNoise * share);
+    }
+  }
 }
 
 /// Two loud shots of a bar from whose end nothing comes back. Where that end was sought only from
