@@ -37,7 +37,7 @@ LayerNonlinearity::LayerNonlinearity(const std::string& name, BallLayer BallScen
               .stage = Stage::specimen,
               .definition =
                   "instantaneous deviatoric stress x (1 + b strain), equivalent Hencky strain",
-              .reference = "effects.md; docs/impact.md",
+              .reference = "docs/methods/effects.md; docs/impact.md",
               .kinds = {BenchKind::impact},
               .parameters = {{"b", "-", 0.0, -2.0, 20.0, 0.1, {}, false, 0.5}},
           },
@@ -55,7 +55,7 @@ LayerSecondRelaxation::LayerSecondRelaxation(const std::string& name, BallLayer 
               .id = name + "-second-relaxation",
               .stage = Stage::specimen,
               .definition = "uniaxial J += D / (1 + s tau), in the chosen reading",
-              .reference = "effects.md; docs/impact.md",
+              .reference = "docs/methods/effects.md; docs/impact.md",
               .kinds = {BenchKind::impact},
               .parameters = {{"D", "1/Pa", 0.0, 0.0, 1e-6, typical_per_Pa, {}, false, 0.5},
                              {"tau", "s", 0.0, 1e-6, 2e-2, 2e-5, {5e-6, 2e-5, 6e-5, 2e-4, 6e-4}}},

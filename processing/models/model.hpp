@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +19,8 @@ struct ModelValue {
   bool free = true;         ///< a fit may move it
   double prior_sd = 0.0;    ///< how far a filed number may be off; 0: nothing is known beforehand
   double prior_mean = 0.0;  ///< the filed number; means nothing without a prior_sd
+  /// Narrower than the parameter's own: least and most that a fit may make of it.
+  std::optional<std::array<double, 2>> bounds{};
 };
 
 /// One effect as a model uses it.

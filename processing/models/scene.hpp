@@ -65,7 +65,7 @@ struct GaugeScene {
   double position_m = 0.0;
   double length_m = 0.0;             ///< over which it takes the mean; 0: a point
   std::vector<Complex> factor{};     ///< reading over that mean, on the path
-  double offset_m = 0.0;             ///< chi of bending (effects.md)
+  double offset_m = 0.0;             ///< chi of bending (`kolsky effects`)
   bool bends_as_deflection = false;  ///< its strain follows w'', not the rotation's slope
   std::vector<std::pair<std::size_t, double>> picks_up{};  ///< crosstalk: gauge and its share
 };

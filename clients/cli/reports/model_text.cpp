@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -86,6 +87,15 @@ double band_limit_of(std::optional<double> asked_Hz) {
   return asked_Hz.value_or(0.0);
 }
 
+namespace {
+
+/// Where a fit may take a number: the model file's bounds, else the effect's own.
+std::array<double, 2> bounds_of(const ModelValue& value, const EffectParameter& parameter) {
+  return value.bounds.value_or(std::array{parameter.lower, parameter.upper});
+}
+
+}  // namespace
+
 JsonValue describe_effects(const Model& model) {
   JsonList list;
   for (const EffectUse& use : model.effects) {
@@ -93,12 +103,14 @@ JsonValue describe_effects(const Model& model) {
     JsonObject parameters;
     for (std::size_t p = 0; p < about.parameters.size(); ++p) {
       const ModelValue& value = use.values[p];
+      const auto [least, most] = bounds_of(value, about.parameters[p]);
       parameters.push_back(
           {about.parameters[p].name, JsonObject{{"value", value.value},
                                                 {"sd", value.sd},
                                                 {"unit", about.parameters[p].unit},
                                                 {"free", value.free},
-                                                {"null", about.parameters[p].null_value}}});
+                                                {"null", about.parameters[p].null_value},
+                                                {"bounds", JsonList{least, most}}}});
     }
     list.push_back(
         JsonObject{{"id", use.id()},
@@ -146,9 +158,13 @@ std::string effect_text(const EffectUse& use) {
   for (std::size_t p = 0; p < about.parameters.size(); ++p) {
     const ModelValue& value = use.values[p];
     const std::string& unit = about.parameters[p].unit;
-    const std::string held = value.prior_sd > 0.0
-                                 ? "  filed within " + number_text(value.prior_sd, 0.0, unit)
-                                 : (value.free ? "" : "  held");
+    std::string held = value.prior_sd > 0.0
+                           ? "  filed within " + number_text(value.prior_sd, 0.0, unit)
+                           : (value.free ? "" : "  held");
+    if (value.bounds) {
+      held += "  between " + number_text(value.bounds->front(), 0.0, unit) + " and " +
+              number_text(value.bounds->back(), 0.0, unit);
+    }
     text += fmt::format("      {} = {}{}\n", about.parameters[p].name,
                         number_text(value.value, value.sd, unit), held);
   }
@@ -191,6 +207,10 @@ BenchKind bench_kind(const std::string& name) {
     return BenchKind::bar;
   }
   return name == "shpb" ? BenchKind::shpb : BenchKind::impact;
+}
+
+std::string counted(std::size_t count, const std::string& of) {
+  return std::to_string(count) + " " + of + (count == 1 ? "" : "s");
 }
 
 }  // namespace kolsky::cli

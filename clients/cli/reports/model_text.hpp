@@ -32,6 +32,9 @@ namespace kolsky::cli {
 /// (sd 0) to four digits.
 [[nodiscard]] std::string number_text(double value, double sd, const std::string& unit);
 
+/// "1 effect", "2 effects".
+[[nodiscard]] std::string counted(std::size_t count, const std::string& of);
+
 /// One effect for people: id, stage, definition, its numbers.
 [[nodiscard]] std::string effect_text(const EffectUse& use);
 /// All of a model's effects.

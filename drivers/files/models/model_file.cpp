@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <optional>
 #include <span>
 
 #include "drivers/files/models/model_expressions.hpp"
@@ -23,8 +24,24 @@ namespace {
 constexpr std::int64_t kFormat = 1;
 constexpr std::size_t kMostCaptureBytes = std::size_t{1} << 32U;
 
+std::optional<std::array<double, 2>> read_bounds(const TomlTable& table,
+                                                 const EffectParameter& parameter) {
+  if (!table.has("bounds")) {
+    return std::nullopt;
+  }
+  const std::vector<double> bounds = table.numbers("bounds");
+  if (bounds.size() != 2 || !(bounds[0] < bounds[1]) || bounds[0] < parameter.lower ||
+      bounds[1] > parameter.upper) {
+    throw table.error(
+        "bounds", "are not two numbers in rising order that " + parameter.name + " can be between",
+        fmt::format("give them within {} to {} {}", parameter.lower, parameter.upper,
+                    parameter.unit));
+  }
+  return std::array{bounds[0], bounds[1]};
+}
+
 ModelValue read_value(const TomlTable& table, const EffectParameter& parameter) {
-  table.expect({"value", "sd", "unit", "free", "prior_sd", "prior_mean"});
+  table.expect({"value", "sd", "unit", "free", "prior_sd", "prior_mean", "bounds"});
   ModelValue value;
   value.value = table.number("value");
   value.sd = table.optional_number("sd").value_or(0.0);
@@ -36,11 +53,12 @@ ModelValue read_value(const TomlTable& table, const EffectParameter& parameter) 
                       "is \"" + *unit + "\" and " + parameter.name + " is in " + parameter.unit,
                       "give the value in " + parameter.unit);
   }
-  if (value.value < parameter.lower || value.value > parameter.upper) {
+  value.bounds = read_bounds(table, parameter);
+  const auto [least, most] = value.bounds.value_or(std::array{parameter.lower, parameter.upper});
+  if (value.value < least || value.value > most) {
     throw table.error("value",
                       fmt::format("{} is out of bounds for {}", value.value, parameter.name),
-                      fmt::format("give a number from {} to {} {}", parameter.lower,
-                                  parameter.upper, parameter.unit));
+                      fmt::format("give a number from {} to {} {}", least, most, parameter.unit));
   }
   if (value.sd < 0.0) {
     throw table.error("sd", "is negative", "give a standard deviation of 0 or more");
@@ -123,8 +141,8 @@ void require_a_model(const TomlTable& table);
 
 ModelFile read(const TomlTable& table) {
   require_a_model(table);
-  table.expect(
-      {"kolsky_model", "kind", "bar_source", "gauges", "expressions", "effects", "history"});
+  table.expect({"kolsky_model", "kind", "bar_source", "gauges", "ledger", "expressions", "effects",
+                "history"});
   if (table.integer("kolsky_model") != kFormat) {
     throw table.error("kolsky_model", "is a format that this version does not know",
                       "make the model anew with `kolsky model new`");
@@ -156,6 +174,12 @@ ModelFile read(const TomlTable& table) {
   for (const TomlTable& own : table.tables("history")) {
     file.history.push_back(read_step(own));
   }
+  // Versions up to 0.1.0 wrote none.
+  if (const auto ledger = table.optional_text("ledger");
+      ledger && *ledger != ledger_digest(file.history)) {
+    throw table.error("ledger", "is not the SHA-256 of the history as it stands here",
+                      "the history was edited or cut: take the file from a copy that was not");
+  }
   table.finish();
   return file;
 }
@@ -186,6 +210,10 @@ std::string format_use(const EffectUse& use) {
     if (value.prior_sd > 0.0) {
       text += "prior_mean = " + toml_number(value.prior_mean) +
               "\nprior_sd = " + toml_number(value.prior_sd) + "\n";
+    }
+    if (value.bounds) {
+      text += "bounds = [" + toml_number(value.bounds->front()) + ", " +
+              toml_number(value.bounds->back()) + "]\n";
     }
     text += "unit = " + toml_quoted(parameters[p].unit) + "\n";
     text += std::string("free = ") + (value.free ? "true" : "false") + "\n";
@@ -242,6 +270,9 @@ std::string format_model(const ModelFile& file, bool with_history) {
     text += (i == 0 ? "gauges = [" : ", ") + toml_quoted(file.gauges[i]);
   }
   text += file.gauges.empty() ? "" : "]\n";
+  if (with_history && !file.history.empty()) {
+    text += "ledger = " + toml_quoted(ledger_digest(file.history)) + "\n";
+  }
   for (const auto& expression : file.model.expressions) {
     text += format_expression(expression->text());
   }

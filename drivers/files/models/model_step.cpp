@@ -143,4 +143,12 @@ std::string format_step(const ModelStep& step) {
   return text;
 }
 
+std::string ledger_digest(const std::vector<ModelStep>& history) {
+  std::string text;
+  for (const ModelStep& step : history) {
+    text += format_step(step);
+  }
+  return sha256_hex(std::as_bytes(std::span(text)));
+}
+
 }  // namespace kolsky

@@ -61,4 +61,8 @@ struct ModelStep {
 /// One [[history]] table of a model file.
 [[nodiscard]] std::string format_step(const ModelStep& step);
 
+/// SHA-256 of a whole history as a model file holds it: none of its steps can be altered or cut off
+/// without it showing.
+[[nodiscard]] std::string ledger_digest(const std::vector<ModelStep>& history);
+
 }  // namespace kolsky

@@ -68,8 +68,7 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
     list.push_back(filed("output-bar-length", {bench.output->length_m.sd}));
   }
   if (bench.output && bench.output->density_kg_m3.sd > 0.0) {
-    list.push_back(filed("output-bar-density", {beside(relative_sd(bench.input.density_kg_m3),
-                                                       bench.output->density_kg_m3)}));
+    list.push_back(filed("output-bar-density", {relative_sd(bench.output->density_kg_m3)}));
   }
   // What waves in one bar alone do depends on it only where they are dispersed, as a strength of
   // that dispersion does.
@@ -77,14 +76,17 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
     list.push_back(filed("bar-diameter", {relative_sd(bench.input.diameter_m)}));
   }
   if (bench.output && bench.output->diameter_m.sd > 0.0) {
-    list.push_back(filed("output-bar-diameter",
-                         {beside(relative_sd(bench.input.diameter_m), bench.output->diameter_m)}));
+    list.push_back(filed("output-bar-diameter", {relative_sd(bench.output->diameter_m)}));
   }
-  if (bench.input.youngs_modulus_Pa && bench.input.youngs_modulus_Pa->sd > 0.0) {
-    const double sd = relative_sd(*bench.input.youngs_modulus_Pa);
-    list.push_back(filed("bar-modulus", {sd}));
-    if (bench.output && bench.output->youngs_modulus_Pa) {
-      list.push_back(filed("output-bar-modulus", {beside(sd, *bench.output->youngs_modulus_Pa)}));
+  const double modulus_sd =
+      bench.input.youngs_modulus_Pa ? relative_sd(*bench.input.youngs_modulus_Pa) : 0.0;
+  if (modulus_sd > 0.0) {
+    list.push_back(filed("bar-modulus", {modulus_sd}));
+  }
+  if (bench.output && bench.output->youngs_modulus_Pa) {
+    const double sd = beside(modulus_sd, *bench.output->youngs_modulus_Pa);
+    if (sd > 0.0) {
+      list.push_back(filed("output-bar-modulus", {sd}));
     }
   }
   if (bench.specimen &&
@@ -154,8 +156,10 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
       if (value.free && !parameter.chosen) {
         slot.number = static_cast<std::ptrdiff_t>(numbers_.size());
         const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
-        numbers_.push_back({uses_.size(), p, value.value, scale, parameter.lower, parameter.upper,
-                            value.prior_mean, value.prior_sd,
+        const auto [least, most] =
+            value.bounds.value_or(std::array{parameter.lower, parameter.upper});
+        numbers_.push_back({uses_.size(), p, value.value, scale, least, most, value.prior_mean,
+                            value.prior_sd,
                             by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1,
                             parameter.difference, parameter.power});
       }

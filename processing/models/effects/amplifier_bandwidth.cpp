@@ -11,7 +11,7 @@ class AmplifierBandwidth final : public Effect {
             .id = "amplifier-bandwidth",
             .stage = Stage::sensor,
             .definition = "reading / (1 + s tau), tau = 1/(2 pi fc)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"tau", "s", 0.0, 0.0, 1e-4, 5e-7, {}}},
             .per_gauge = true,

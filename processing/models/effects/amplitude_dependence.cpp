@@ -11,7 +11,7 @@ class AmplitudeDependence final : public Effect {
             .id = "amplitude-dependence",
             .stage = Stage::material,
             .definition = "all moduli x (1 + b peak strain of the shot)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = {{"b", "-", 0.0, -200.0, 200.0, 1.0, {}}},
             .shot_facts = true,

@@ -10,7 +10,7 @@ class BarDensity final : public Effect {
       : Effect({
             .id = "bar-density",
             .stage = Stage::bench,
-            .definition = "true density = filed x (1 + delta)",
+            .definition = "true density of the bar, of two the input bar, = filed x (1 + delta)",
             .reference = "bench file",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "-", 0.0, -0.3, 0.3, 1e-3, {}}},
@@ -18,9 +18,7 @@ class BarDensity final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
-    for (BarScene& bar : scene.bars) {
-      bar.density_kg_m3 *= 1.0 + values[0];
-    }
+    scene.bars.front().density_kg_m3 *= 1.0 + values[0];
   }
 };
 

@@ -10,7 +10,7 @@ class BarDiameter final : public Effect {
       : Effect({
             .id = "bar-diameter",
             .stage = Stage::bench,
-            .definition = "true diameter = filed x (1 + delta)",
+            .definition = "true diameter of the bar, of two the input bar, = filed x (1 + delta)",
             .reference = "bench file",
             .kinds = {BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "-", 0.0, -0.3, 0.3, 1e-3, {}}},
@@ -18,10 +18,8 @@ class BarDiameter final : public Effect {
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
-    for (BarScene& bar : scene.bars) {
-      bar.radius_m *= 1.0 + values[0];
-      bar.area_m2 *= (1.0 + values[0]) * (1.0 + values[0]);
-    }
+    scene.bars.front().radius_m *= 1.0 + values[0];
+    scene.bars.front().area_m2 *= (1.0 + values[0]) * (1.0 + values[0]);
   }
 };
 

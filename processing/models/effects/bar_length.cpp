@@ -11,7 +11,7 @@ class BarLength final : public Effect {
             .id = "bar-length",
             .stage = Stage::bench,
             .definition = "true length = filed + delta",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "m", 0.0, -0.2, 0.2, 1e-3, {}}},
         }) {}

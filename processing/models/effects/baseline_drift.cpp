@@ -12,7 +12,7 @@ class BaselineDrift final : public Effect {
             .id = "baseline-drift",
             .stage = Stage::record,
             .definition = "reading += b1 (t - t_trigger)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"b1", "1/s", 0.0, -10.0, 10.0, 1e-2, {}}},
             .per_gauge = true,

@@ -13,7 +13,7 @@ class Bending final : public Effect {
             .definition =
                 "reading += chi a w''/e0 of a Timoshenko beam struck off its axis; w'' is "
                 "the rotation's slope, or the deflection's curvature",
-            .reference = "effects.md; Timoshenko 1921",
+            .reference = "docs/methods/effects.md; Timoshenko 1921",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"chi", "m", 0.0, -0.05, 0.05, 1e-5, {}},
                            // A fibre's strain is the slope of the section's rotation; without

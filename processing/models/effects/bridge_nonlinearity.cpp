@@ -11,7 +11,7 @@ class BridgeNonlinearity final : public Effect {
             .id = "bridge-nonlinearity",
             .stage = Stage::record,
             .definition = "reading = e (1 + b e)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Vishay TN-507",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {strength()},
         }) {}

@@ -13,7 +13,7 @@ class ChannelDelay final : public Effect {
             .id = "channel-delay",
             .stage = Stage::sensor,
             .definition = "reading x exp(-s tau), late positive",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"tau", "s", 0.0, -2e-5, 2e-5, 2e-7, {}}},
             .per_gauge = true,

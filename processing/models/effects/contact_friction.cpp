@@ -11,7 +11,7 @@ class ContactFriction final : public Effect {
             .id = "contact-friction",
             .stage = Stage::boundary,
             .definition = "Coulomb friction between ball and bar",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::impact},
             .parameters = {{"mu", "-", 0.0, 0.0, 2.0, 0.1, {}, false, 0.02}},
         }) {}

@@ -11,7 +11,7 @@ class Crosstalk final : public Effect {
             .id = "crosstalk",
             .stage = Stage::sensor,
             .definition = "reading += kappa x its neighbour's",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"kappa", "-", 0.0, -0.5, 0.5, 5e-3, {}},
                            {"neighbour", "-", 0.0, -1.0, 1.0, 1.0, {-1.0, 1.0}, false, 2e-3, true}},

@@ -11,10 +11,10 @@ class EndReflection final : public Effect {
             .id = "end-reflection",
             .stage = Stage::boundary,
             .definition = "the far end sends waves back, stress x (-1 + r)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::impact},
             .parameters = {{"present", "-", 0.0, 0.0, 1.0, 0.02, {}, true},
-                           {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0}}},
+                           {"r", "-", 0.0, 0.0, 2.0, 0.02, {0.0, 2.0}}},
             .strength = 1,
         }) {}
 

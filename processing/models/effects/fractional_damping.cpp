@@ -11,7 +11,7 @@ class FractionalDamping final : public Effect {
             .id = "fractional-damping",
             .stage = Stage::material,
             .definition = "the Kelvin branch 1 / (E2 (1 + (s eta2/E2)^beta))",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Cole and Cole 1941",
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = {{"beta", "-", 1.0, 0.05, 1.0, 0.02, {}}},
         }) {}

@@ -11,7 +11,7 @@ class GaugeFactor final : public Effect {
             .id = "gauge-factor",
             .stage = Stage::sensor,
             .definition = "reading x (1 + kappa)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"kappa", "-", 0.0, -0.9, 9.0, 0.01, {}}},
             .per_gauge = true,

@@ -13,7 +13,7 @@ class GaugeLength final : public Effect {
             .id = "gauge-length",
             .stage = Stage::sensor,
             .definition = "reading x sinh(gamma L/2) / (gamma L/2), beside the length filed",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"L", "m", 0.0, 0.0, 0.5, 5e-3, {}, false, 2e-3, false, 2.0, 0.1}},
             .per_gauge = true,

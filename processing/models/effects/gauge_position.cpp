@@ -11,7 +11,7 @@ class GaugePosition final : public Effect {
             .id = "gauge-position",
             .stage = Stage::bench,
             .definition = "true x = filed x + delta",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"delta", "m", 0.0, -0.2, 0.2, 1e-3, {}}},
             .per_gauge = true,

@@ -12,7 +12,7 @@ class GeometricDispersion final : public Effect {
             .id = "geometric-dispersion",
             .stage = Stage::propagation,
             .definition = "gamma, surface-to-mean += s (exact first mode - elementary)",
-            .reference = "Pochhammer, Chree; physics.md",
+            .reference = "docs/methods/effects.md; Pochhammer 1876, Chree 1889",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"s", "-", 0.0, 0.0, 3.0, 0.1, {}}},
         }) {}

@@ -11,7 +11,7 @@ class InterfaceFriction final : public Effect {
             .id = "interface-friction",
             .stage = Stage::specimen,
             .definition = "stress measured = stress (1 + mu d/3h), current d and h",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Siebel 1923",
             .kinds = {BenchKind::shpb},
             .parameters = {{"mu", "-", 0.0, 0.0, 1.0, 0.02, {}}},
         }) {}

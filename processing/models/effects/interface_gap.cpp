@@ -11,7 +11,7 @@ class InterfaceGap final : public Effect {
             .id = "interface-gap",
             .stage = Stage::specimen,
             .definition = "a gap or soft layer closes before the specimen is loaded",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::shpb},
             // A gap below the noise of the strain before the pulse shows nothing of what one does.
             .parameters = {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}, false, 1.0},

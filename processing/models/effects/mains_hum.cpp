@@ -51,7 +51,7 @@ class MainsHum final : public Effect {
             .id = "mains-hum",
             .stage = Stage::record,
             .definition = "reading of each gauge += c cos(2 pi f t) + d sin(2 pi f t)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb, BenchKind::impact},
             .parameters = {{"c", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},
                            {"d", "strain", 0.0, -1e-2, 1e-2, 1e-6, {}},

@@ -12,7 +12,7 @@ class OffCentreContact final : public Effect {
             .stage = Stage::boundary,
             .definition =
                 "the ball's axis off the bar's by delta: what overhangs yields, an estimate",
-            .reference = "effects.md; docs/impact.md",
+            .reference = "docs/methods/effects.md; docs/impact.md",
             .kinds = {BenchKind::impact},
             .parameters = {{"delta", "m", 0.0, 0.0, 0.01, 1e-3, {}, false, 1.0}},
         }) {}

@@ -10,7 +10,7 @@ class OutputBarDensity final : public Effect {
       : Effect({
             .id = "output-bar-density",
             .stage = Stage::bench,
-            .definition = "true density of the output bar x (1 + delta), beside bar-density",
+            .definition = "true density of the output bar = filed x (1 + delta)",
             .reference = "bench file",
             .kinds = {BenchKind::shpb},
             .parameters = {{"delta", "-", 0.0, -0.3, 0.3, 1e-3, {}}},

@@ -10,7 +10,7 @@ class OutputBarDiameter final : public Effect {
       : Effect({
             .id = "output-bar-diameter",
             .stage = Stage::bench,
-            .definition = "true diameter of the output bar x (1 + delta), beside bar-diameter",
+            .definition = "true diameter of the output bar = filed x (1 + delta)",
             .reference = "bench file",
             .kinds = {BenchKind::shpb},
             .parameters = {{"delta", "-", 0.0, -0.3, 0.3, 1e-3, {}}},

@@ -11,7 +11,7 @@ class OutputBarLength final : public Effect {
             .id = "output-bar-length",
             .stage = Stage::bench,
             .definition = "true length of the output bar = filed + delta",
-            .reference = "effects.md, bar-length",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::shpb},
             .parameters = {{"delta", "m", 0.0, -0.2, 0.2, 1e-3, {}}},
         }) {}

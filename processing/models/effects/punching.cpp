@@ -11,7 +11,7 @@ class Punching final : public Effect {
             .id = "punching",
             .stage = Stage::specimen,
             .definition = "shortening += s sum over faces of k F (1 - nu^2) J_bar / d_s",
-            .reference = "physics.md; effects.md",
+            .reference = "docs/methods/effects.md; Safa and Gary 2010",
             .kinds = {BenchKind::shpb},
             .parameters = {{"s", "-", 0.0, 0.0, 100.0, 0.2, {}}},
         }) {}

@@ -11,7 +11,7 @@ class RadialInertia final : public Effect {
             .id = "radial-inertia",
             .stage = Stage::specimen,
             .definition = "stress += s (2 nu)^2 rho a^2 (strain''/8 + strain'^2/16)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Kolsky 1949, Samanta 1971",
             .kinds = {BenchKind::shpb},
             .parameters = {{"s", "-", 0.0, 0.0, 100.0, 0.2, {}}},
         }) {}

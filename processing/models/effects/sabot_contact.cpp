@@ -12,7 +12,7 @@ class SabotContact final : public Effect {
             .stage = Stage::boundary,
             .definition =
                 "a rigid mass m follows at the speed of incidence and touches the rear pole",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::impact},
             .parameters = {{"m", "kg", 0.0, 0.0, 0.5, 1e-3, {}, false, 0.5}},
         }) {}

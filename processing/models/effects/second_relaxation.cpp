@@ -11,7 +11,7 @@ class SecondRelaxation final : public Effect {
             .id = "second-relaxation",
             .stage = Stage::material,
             .definition = "J += D / (1 + s tau)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Ferry 1980",
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = {{"D", "1/Pa", 0.0, 0.0, 1e-6, 1e-12, {}},
                            {"tau",

@@ -11,7 +11,7 @@ class SeriesDashpot final : public Effect {
             .id = "series-dashpot",
             .stage = Stage::material,
             .definition = "J += phi / s",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Burgers' fluid",
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = {{"phi", "1/(Pa s)", 0.0, 0.0, 1e-2, 1e-9, {}}},
         }) {}

@@ -11,7 +11,7 @@ class SpecimenDimensions final : public Effect {
             .id = "specimen-dimensions",
             .stage = Stage::bench,
             .definition = "true length and diameter = filed + delta",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::shpb},
             .parameters = {{"delta_length", "m", 0.0, -2e-3, 2e-3, 5e-5, {}},
                            {"delta_diameter", "m", 0.0, -5e-3, 5e-3, 1e-4, {}}},

@@ -11,7 +11,7 @@ class SpecimenInertia final : public Effect {
             .id = "specimen-inertia",
             .stage = Stage::specimen,
             .definition = "waves cross the specimen, of density s rho",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Davies and Hunter 1963",
             .kinds = {BenchKind::shpb},
             .parameters = {{"s", "-", 0.0, 0.0, 4.0, 0.2, {}}},
         }) {}

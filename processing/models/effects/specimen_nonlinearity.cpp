@@ -11,7 +11,7 @@ class SpecimenNonlinearity final : public Effect {
             .id = "specimen-nonlinearity",
             .stage = Stage::specimen,
             .definition = "spring E1 -> E1 (1 + b strain)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::shpb},
             .parameters = {{"b", "-", 0.0, -20.0, 50.0, 0.2, {}}},
         }) {}

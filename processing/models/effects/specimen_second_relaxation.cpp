@@ -11,7 +11,7 @@ class SpecimenSecondRelaxation final : public Effect {
             .id = "specimen-second-relaxation",
             .stage = Stage::specimen,
             .definition = "J_s += D / (1 + s tau)",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Ferry 1980",
             .kinds = {BenchKind::shpb},
             .parameters = {{"D", "1/Pa", 0.0, 0.0, 1e-3, 1e-10, {}},
                            {"tau",

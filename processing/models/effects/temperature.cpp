@@ -11,7 +11,7 @@ class Temperature final : public Effect {
             .id = "temperature",
             .stage = Stage::material,
             .definition = "E1, E2 x (1 - c dT), dT logged per shot",
-            .reference = "effects.md",
+            .reference = "docs/methods/effects.md; Ferry 1980",
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = {{"c", "1/K", 0.0, -0.1, 0.1, 1e-3, {}}},
             .shot_facts = true,

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "drivers/files/models/model_file.hpp"
@@ -167,6 +169,25 @@ TEST(EffectLibrary, HoldsTheReferencesEffectsOnce) {
   }
 }
 
+// A bench files each bar's numbers and how far they may be off; one without a deviation is exact.
+TEST(EffectLibrary, AFiledNumberOfOneBarMovesNothingOfTheOther) {
+  for (const auto& [id, moved] : std::map<std::string, std::size_t>{{"bar-density", 0},
+                                                                    {"output-bar-density", 1},
+                                                                    {"bar-diameter", 0},
+                                                                    {"output-bar-diameter", 1}}) {
+    const Scene filed(bench_of(BenchKind::shpb), {}, {});
+    Scene scene = filed;
+    use_named(id).effect->apply(scene, std::vector<double>{0.01}, 0);
+    ASSERT_EQ(scene.bars.size(), 2U);
+    for (std::size_t b = 0; b < 2; ++b) {
+      const bool same = scene.bars[b].density_kg_m3 == filed.bars[b].density_kg_m3 &&
+                        scene.bars[b].radius_m == filed.bars[b].radius_m &&
+                        scene.bars[b].area_m2 == filed.bars[b].area_m2;
+      EXPECT_EQ(same, b != moved) << id << ", bar " << b;
+    }
+  }
+}
+
 TEST(EffectLibrary, CorrectionsWithoutAFreeParameterAreNotSoughtBelowNothing) {
   std::size_t corrections = 0;
   for (const Effect* effect : effect_library()) {
@@ -314,6 +335,62 @@ TEST(ModelFile, RefusesAHistoryThatWasEdited) {
     FAIL() << "an edited history was taken";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("history"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ModelFile, RefusesALedgerOfWhichAnyNumberWasEditedOrAStepCutOff) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  begin_step(file, "diagnose", "2026-01-02T03:04:05Z");
+  ModelStep& step = file.history.back();
+  step.note = "after lunch";
+  step.data_sha256 = "0123456789abcdef";
+  step.verdict = "named";
+  step.fit = StepFit{6, 1.25, 2600.0, 1e-6, 2e-6};
+  step.held_out = StepHeldOut{1.75, 1.125, 1.0625};
+  step.tests = {{"temperature", 0.375, 0.0625, "1/K", -31.5, 62.5, "named", {}}};
+  begin_step(file, "add crosstalk:g1", "2026-01-02T03:05:05Z");
+  const std::string sound = format_model(file);
+  EXPECT_EQ(format_model(parse_model(sound, "m.toml")), sound);
+
+  const auto refused = [](const std::string& text) {
+    try {
+      (void)parse_model(text, "m.toml");
+    } catch (const InputError& error) {
+      return std::string(error.what()).find("ledger") != std::string::npos;
+    }
+    return false;
+  };
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"1.25", "1.0"},
+           {"1.125", "1.0"},
+           {"-31.5", "-41.5"},
+           {"0.375", "0.5"},
+           {"62.5", "72.5"},
+           {"after lunch", "before lunch"},
+           {"0123456789abcdef", "0123"},
+           {"verdict = \"named\"", "verdict = \"tied\""}}) {
+    std::string text = sound;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    EXPECT_TRUE(refused(text.replace(text.find(from), from.size(), to))) << from;
+  }
+  EXPECT_TRUE(refused(sound.substr(0, sound.rfind("\n[[history]]"))));
+}
+
+TEST(ModelFile, HoldsBoundsOfItsOwnWithinTheEffectsOwn) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  file.model.find("three-element-bar")->values[0].bounds = std::array{5e9, 6e9};
+  const std::string text = format_model(file);
+  const ModelFile back = parse_model(text, "m.toml");
+  ASSERT_TRUE(back.model.effects[0].values[0].bounds);
+  EXPECT_EQ(*back.model.effects[0].values[0].bounds, (std::array{5e9, 6e9}));
+  EXPECT_EQ(format_model(back), text);
+  for (const char* wrong : {"[6e+09, 5e+09]", "[-1.0, 6e+09]", "[5e+09]", "[5.8e+09, 6e+09]"}) {
+    std::string own = text;
+    const std::size_t at = own.find("bounds = [") + 9;
+    own.replace(at, own.find(']', at) + 1 - at, wrong);
+    EXPECT_THROW((void)parse_model(own, "m.toml"), InputError) << wrong;
   }
 }
 
