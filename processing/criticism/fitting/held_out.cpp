@@ -146,6 +146,15 @@ double held_out_misfit(const std::vector<double>& squares, double penalty, doubl
   return (std::accumulate(squares.begin(), squares.end(), 0.0) + penalty) / residuals;
 }
 
+double floor_of(const Studied& after, bool remains, std::size_t shots) {
+  if (shots < 2) {
+    return 1.0;
+  }
+  return remains ? after.misfit.noise_scale
+                 : (after.fit.objective() + static_cast<double>(after.fit.theta.size())) /
+                       static_cast<double>(after.fit.residual.size());
+}
+
 Certification certification(const std::vector<double>& before, const std::vector<double>& after,
                             double relief, std::vector<double> weight) {
   double all = std::accumulate(weight.begin(), weight.end(), 0.0);

@@ -304,7 +304,9 @@ void WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
   const auto noise = [&](std::size_t a, std::size_t b) { return noise_.covariance(bin, a, b); };
   const std::size_t reference = campaign_.reference;
   const bool means = carried.ratio.size() > rows;
-  const Complex mean = means ? carried.ratio[rows] : Complex(1.0);
+  // Of what a window of the same length keeps of everything, so that a length of next to nothing
+  // is one of nothing.
+  const Complex mean = means ? carried.ratio[rows] / carried.ratio[rows + 1] : Complex(1.0);
   cross.resize(gauges, rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < gauges; ++j) {

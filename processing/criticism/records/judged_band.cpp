@@ -1,5 +1,7 @@
 #include "processing/criticism/records/judged_band.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -127,7 +129,10 @@ JudgedBand judged_band(const Campaign& campaign, double asked_Hz) {
                                                      rate_Hz / static_cast<double>(d)));
   const std::size_t samples = shortest(campaign);
   if (samples < 2 * band.edge + kFewestJudged * d) {
-    throw InputError("samples", "are too few for the band", "give longer records");
+    throw InputError(
+        "samples",
+        fmt::format("are too few: {} for a band up to {:.3g} Hz", samples, band.limit_Hz),
+        asked_Hz > 0.0 ? "ask for a higher band limit" : "give longer records");
   }
   band.judged = judged_samples(samples, band);
   band.bin_width_Hz = rate_Hz / static_cast<double>(d * band.judged);

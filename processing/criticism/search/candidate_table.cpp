@@ -10,7 +10,7 @@
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
-#include "processing/criticism/search/common_amplitude.hpp"
+#include "processing/criticism/search/amplitude_over_shots.hpp"
 #include "processing/criticism/search/search_trials.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 
@@ -159,35 +159,6 @@ void set_chances(const Tried& tried, const std::vector<std::size_t>& variants,
   result.log_p = std::min(0.0, least + std::max(std::log(trials), tried.log_trials));
 }
 
-/// An amplitude that is the same at all gauges is the same in all shots, too.
-void set_common_amplitude(const Studied& studied, const std::string& id, CandidateResult& result) {
-  std::map<std::ptrdiff_t, std::array<std::size_t, 2>> places;
-  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
-    const FreeNumber& number = studied.composition.numbers()[i];
-    if (number.parameter < 2 && studied.composition.uses()[number.use].id() == id) {
-      places[number.shot][number.parameter] = i;
-    }
-  }
-  std::vector<QuadratureParts> shots;
-  double scale = 1.0;
-  for (const auto& [shot, place] : places) {
-    const std::array at{static_cast<Eigen::Index>(place[0]), static_cast<Eigen::Index>(place[1])};
-    const Eigen::MatrixXd covariance = studied.fit.covariance(at, at);
-    const Eigen::Vector2d parts(studied.fit.theta[place[0]], studied.fit.theta[place[1]]);
-    QuadratureParts own{Eigen::Vector2d::Zero(), inverse_of(covariance)};
-    own.pull = own.information * parts;  // of the prior, none: it is one about nothing
-    const FreeNumber& number = studied.composition.numbers()[place[0]];
-    scale = number.scale;
-    if (number.prior_sd > 0.0) {
-      own.information.diagonal().array() -= scale * scale / (number.prior_sd * number.prior_sd);
-    }
-    shots.push_back(own);
-  }
-  const Amplitude amplitude = common_amplitude(shots);
-  result.strength = scale * amplitude.value;
-  result.sd = scale * amplitude.sd;
-}
-
 /// A candidate's column less what the model's own numbers take up of it.
 Eigen::VectorXd clear_column(const Tried& tried, const Direction& direction) {
   const ModelFit& fit = tried.base.fit;
@@ -257,6 +228,13 @@ void set_amplitude(const Studied& studied, const std::string& id, CandidateResul
 
 namespace {
 
+/// A size of a strength that its bounds allow; infinite: none that they allow is as large.
+double within_reach(const Candidate& candidate, double size) {
+  const EffectParameter& own = candidate.use.effect->about().parameters.front();
+  const double reach = std::max(own.upper - own.null_value, own.null_value - own.lower);
+  return candidate.frees_prior || size <= reach ? size : INFINITY;
+}
+
 /// Strength of an effect as one of its variants has it. One of several numbers counts by their root
 /// mean square, and is as uncertain as all of them tell together.
 CandidateResult first_order_result(const Tried& tried, std::size_t i) {
@@ -286,6 +264,8 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
   result.sd = scale * root(sd, parameter.power);
   result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
   set_identifiable(tried, i, parameter.power, result);
+  result.detectable = within_reach(candidate, result.detectable);
+  result.identifiable = within_reach(candidate, result.identifiable);
   result.verdict = "not needed";
   return result;
 }
@@ -334,7 +314,7 @@ void note_refits(const Search& search, const std::vector<Refit>& refits,
     result->gain = refit.over_noise;
     result->log_p = search.with_search(refit.log_p);
     result->own_log_p = search.without_search(refit);
-    result->held_out_gain = held_out[i].gain;
+    result->held_out_gain = refit.beside * held_out[i].gain;
     result->refitted = true;
     result->per_shot = candidate.use.per_shot;
     set_strength(refit.studied, result->effect, residuals_per_shot, *result);
@@ -355,7 +335,10 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
   if (use->effect->about().quadrature) {
     result.parameter = "A";
     if (use->alike && use->per_shot) {
-      set_common_amplitude(studied, id, result);
+      // One that is the same at all gauges is the same in all shots, too.
+      const Amplitude amplitude = amplitude_over_shots(studied, id);
+      result.strength = amplitude.value;
+      result.sd = amplitude.sd;
     } else {
       set_amplitude(studied, id, result);
     }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "processing/algebra/algebra.hpp"
+#include "processing/criticism/search/amplitude_over_shots.hpp"
 #include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/search_trials.hpp"
 
@@ -76,6 +77,7 @@ bool are_products(const ProductTest& test, Claim claim) {
 struct Slopes {
   std::vector<double> found;
   std::vector<double> before;
+  SlopesByShot found_by_gauge;
 };
 
 Slopes slopes_of(const Studied& studied, const std::string& id, const Campaign& campaign) {
@@ -94,9 +96,11 @@ Slopes slopes_of(const Studied& studied, const std::string& id, const Campaign& 
     }
     double found = 0.0;
     double before = 0.0;
+    std::vector<double>& by_gauge = slopes.found_by_gauge.emplace_back(campaign.gauges());
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
       if (!scene.record.additions[j].empty()) {
-        found += slope_before(shot, scene.record.additions[j]);
+        by_gauge[j] = slope_before(shot, scene.record.additions[j]);
+        found += by_gauge[j];
         before += slope_before(shot, shot.strain[j]);
       }
     }
@@ -141,6 +145,23 @@ bool seen_at_all_gauges(const Slopes& slopes, const Campaign& campaign, Claim cl
          log_chance_of_common_slopes(campaign) < share * kChance;
 }
 
+/// A record is a fraction of a hum's period, in which a slope of each shot's own is nearly all of
+/// it: with phases free, whatever wanders slowly and alike at all gauges is a hum of some
+/// amplitude, but none that is well known.
+bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim) {
+  const double share = claim == Claim::fresh ? 1.0 : 0.5;
+  constexpr double kSigma = 5.0;
+  const Amplitude amplitude = amplitude_over_shots(studied, id);
+  return amplitude.value > share * kSigma * amplitude.sd;
+}
+
+/// Less the hum that was found in all of a record, what came before the pulse slopes no longer as
+/// gauges do together. What wanders turns otherwise there than a hum would.
+bool wanders_on(const Slopes& slopes, const Campaign& campaign) {
+  constexpr double kChance = -5.8;
+  return log_chance_of_common_slopes(campaign, slopes.found_by_gauge) < kChance;
+}
+
 }  // namespace
 
 bool own_strengths_confirmed(const Studied& studied, const std::string& id,
@@ -149,10 +170,16 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
   if (use == nullptr || !use->per_shot) {
     return true;
   }
+  if (use->effect->about().quadrature && !amplitude_stands(studied, id, claim)) {
+    return false;
+  }
+  const Slopes slopes = slopes_of(studied, id, campaign);
+  if (use->effect->about().quadrature && wanders_on(slopes, campaign)) {
+    return false;
+  }
   if (const auto test = product_test_of(studied, id, campaign)) {
     return are_products(*test, claim);
   }
-  const Slopes slopes = slopes_of(studied, id, campaign);
   if (use->alike && seen_at_all_gauges(slopes, campaign, claim)) {
     return true;
   }

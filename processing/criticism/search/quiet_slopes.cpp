@@ -132,7 +132,8 @@ struct Scatter {
 };
 
 /// @return nothing where a gauge is silent
-std::optional<Scatter> scatter_of(const Campaign& campaign, const QuietParts& parts) {
+std::optional<Scatter> scatter_of(const Campaign& campaign, const QuietParts& parts,
+                                  const SlopesByShot& less) {
   Scatter scatter;
   for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
     double weight = 0.0;
@@ -144,7 +145,8 @@ std::optional<Scatter> scatter_of(const Campaign& campaign, const QuietParts& pa
         return std::nullopt;
       }
       const double variance = slope_variance(covariance, parts.weights[n]);
-      const double slope = slope_before(campaign.shots[n], campaign.shots[n].strain[j]);
+      const double slope = slope_before(campaign.shots[n], campaign.shots[n].strain[j]) -
+                           (less.empty() ? 0.0 : less[n][j]);
       scatter.white_share += covariance.front() * parts.weights[n].squaredNorm() / variance /
                              static_cast<double>(campaign.gauges() * campaign.shots.size());
       weight += 1.0 / variance;
@@ -170,12 +172,12 @@ double slope_before(const CampaignShot& shot, const std::vector<double>& record)
   return weights.dot(Eigen::Map<const Eigen::VectorXd>(record.data(), weights.size()));
 }
 
-double log_chance_of_common_slopes(const Campaign& campaign) {
+double log_chance_of_common_slopes(const Campaign& campaign, const SlopesByShot& less) {
   if (!long_enough(campaign)) {
     return 0.0;
   }
   const QuietParts parts = quiet_parts(campaign);
-  const std::optional<Scatter> scatter = scatter_of(campaign, parts);
+  const std::optional<Scatter> scatter = scatter_of(campaign, parts, less);
   if (!scatter) {
     return 0.0;
   }

@@ -9,13 +9,17 @@ namespace kolsky {
 /// Least-squares slope over time of what came before a shot's pulse, 1/s.
 [[nodiscard]] double slope_before(const CampaignShot& shot, const std::vector<double>& record);
 
+using SlopesByShot = std::vector<std::vector<double>>;  ///< by shot and gauge, 1/s
+
 /// ln of the chance that noise slopes as much before the pulses as the gauges do together. What is
 /// alike at all gauges of a shot adds to their mean slope alone, whatever phase it has there; noise
 /// of a gauge's own adds as much to the differences between gauges. An F test of N shots' means
 /// against those N (G - 1) differences and what the samples' spectrum says of a slope, which counts
 /// the less the slower the noise is. Noise that gauges share is allowed for as far as the samples
 /// about their slopes are correlated.
+/// @param less  slopes that are taken off those before the pulses; empty: none
 /// @return 0 with one gauge, or where a shot has fewer than sixteen samples before its pulse
-[[nodiscard]] double log_chance_of_common_slopes(const Campaign& campaign);
+[[nodiscard]] double log_chance_of_common_slopes(const Campaign& campaign,
+                                                 const SlopesByShot& less = {});
 
 }  // namespace kolsky

@@ -63,6 +63,14 @@ bool astray(const Studied& studied) {
 
 /// The material's effects take each other's places at a finite size: what a dashpot does, the
 /// material's own branch and a further one can do together.
+/// The same hum but for its frequency, neither a harmonic.
+bool is_other_mains(const Candidate& one, const Candidate& other) {
+  const EffectUse& a = one.use;
+  const EffectUse& b = other.use;
+  return a.effect->about().quadrature && a.id() == b.id() && a.per_shot == b.per_shot &&
+         a.alike == b.alike && !is_harmonic(a) && !is_harmonic(b);
+}
+
 bool of_material(const Candidate& candidate) {
   return candidate.use.effect->about().stage == Stage::material;
 }
@@ -327,6 +335,15 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       chosen.push_back(i);
     }
   }
+  // Of a hum the mains' other frequency: a record that is short beside both knows neither.
+  const std::vector<std::size_t> sought = chosen;
+  for (const std::size_t i : sought) {
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      if (is_other_mains(candidates_[k], candidates_[i]) && !is_chosen(k)) {
+        chosen.push_back(k);
+      }
+    }
+  }
   // Of the material, what can say nothing at first order for standing at its bound.
   const bool material = std::any_of(chosen.begin(), chosen.end(),
                                     [&](std::size_t i) { return of_material(candidates_[i]); });
@@ -468,12 +485,47 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
       fit = std::move(other);
     }
   }
+  constexpr double kFallsShort = 0.5;
+  if (base_.fit.objective() - fit.objective() < kFallsShort * direction.gain) {
+    from_other_starts(index, composition, worker, fit);
+  }
   if (put_branches_in_order(composition, fit.theta)) {
     fit = fit_model(composition, study_.residuals(), serial_on(worker), fit.theta);
   }
   Refit out = described(index, model, std::move(composition), std::move(fit), worker);
   out.rough = chord.has_value();
   return out;
+}
+
+/// A fit that gains much less than first order has led elsewhere: it is begun where the effect's
+/// other variants would begin, those that promise most first. @param fit  takes what is better
+void Search::from_other_starts(std::size_t index, const Composition& composition,
+                               std::size_t worker, ModelFit& fit) {
+  constexpr std::size_t kStarts = 3;
+  const EffectUse& own = candidates_[index].use;
+  std::vector<std::size_t> variants;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const EffectUse& use = candidates_[i].use;
+    if (i != index && use.id() == own.id() && use.per_shot == own.per_shot &&
+        use.alike == own.alike && candidates_[i].frees_prior == candidates_[index].frees_prior) {
+      variants.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(variants, std::greater{},
+                           [&](std::size_t i) { return directions_[i].gain; });
+  variants.resize(std::min(variants.size(), kStarts));
+  for (const std::size_t i : variants) {
+    const Composition other(with(base_.model, candidates_[i], true), study_.campaign());
+    if (other.numbers().size() != composition.numbers().size()) {
+      continue;
+    }
+    ModelFit found = fit_model(
+        composition, study_.residuals(), serial_on(worker),
+        carry(other, begin_near(candidates_[i], directions_[i], other, worker), composition));
+    if (found.objective() < fit.objective()) {
+      fit = std::move(found);
+    }
+  }
 }
 
 Refit Search::described(std::size_t index, const Model& model, Composition composition,
@@ -509,8 +561,9 @@ void Search::rate(std::vector<Refit>& list) const {
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
   for (Refit& refit : list) {
     double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
-    over_noise *= share_beside_unconfirmed(
+    refit.beside = share_beside_unconfirmed(
         refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.one_sided)));
+    over_noise *= refit.beside;
     refit.noise = noise;
     refit.over_noise = over_noise;
     refit.gain = over_noise / refit.scatter;

@@ -24,6 +24,7 @@ struct Refit {
   std::optional<ProductTest> products = std::nullopt;
   double noise = 1.0;       ///< what the objective has of it per residual: of all refits the best's
   double over_noise = 0.0;  ///< gain of the objective, over the noise
+  double beside = 1.0;      ///< share of it beside something slow that nothing confirms
   double gain = 0.0;        ///< the same over the shots' scatter, too
   double evidence = 0.0;    ///< as a square of a normal deviate, the search not counted
   double doubt = 1.0;       ///< the scatter, where the evidence is that over the noise alone
@@ -67,6 +68,8 @@ class Search {
   [[nodiscard]] const std::map<std::string, std::string>& dismissed() const { return dismissed_; }
 
  private:
+  void from_other_starts(std::size_t index, const Composition& composition, std::size_t worker,
+                         ModelFit& fit);
   [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
   [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const;
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;

@@ -1,5 +1,7 @@
 #include "processing/criticism/selftest/selftest.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -106,7 +108,7 @@ class Run {
     for (const CandidateResult& candidate : untouched.candidates) {
       limits[candidate.effect] = {candidate.detectable, candidate.identifiable};
       const EffectUse use = use_named(candidate.effect);
-      if (options_.effects.empty() && std::isfinite(candidate.identifiable) &&
+      if (options_.effects.empty() && std::isfinite(candidate.detectable) &&
           (use.gauge.empty() || use.gauge == last_gauge_)) {
         ids.push_back(candidate.effect);
       }
@@ -262,6 +264,22 @@ std::vector<Selftest::Power> Selftest::power() const {
   return list;
 }
 
+namespace {
+
+/// Before any work: that one of the sizes asked for can be planted.
+void require_size_in_bounds(const EffectUse& use, const std::vector<double>& sizes) {
+  const EffectParameter& own = use.effect->about().parameters.front();
+  const double room = std::max(own.upper - own.null_value, own.null_value - own.lower);
+  if (!sizes.empty() && *std::ranges::min_element(sizes) > room) {
+    throw InputError("sizes",
+                     fmt::format("are all beyond what {} can be: {:g} {} to {:g} {}", use.id(),
+                                 own.lower, own.unit, own.upper, own.unit),
+                     "give sizes within");
+  }
+}
+
+}  // namespace
+
 Selftest selftest(const std::vector<Shot>& shots, const Model& model,
                   const SelftestOptions& options, const Workers& workers) {
   for (const double size : options.sizes) {
@@ -275,7 +293,7 @@ Selftest selftest(const std::vector<Shot>& shots, const Model& model,
                      [](const ModelValue& value) { return value.prior_sd > 0.0; })) {
       throw InputError("effect " + id, "is in the model already", "plant one that it lacks");
     }
-    (void)use_named(id);
+    require_size_in_bounds(use_named(id), options.sizes);
   }
   return Run(shots, model, options, workers)();
 }

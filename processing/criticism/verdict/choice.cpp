@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "processing/criticism/search/amplitude_over_shots.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
@@ -18,6 +19,29 @@ namespace {
 constexpr double kTie = 7.5;
 /// A rival may be so much likelier to be chance than what may be named.
 constexpr double kRivalChance = 10.0;
+
+double strength_of(const Studied& studied, const std::string& id) {
+  const EffectUse& use = *studied.model.find(id);
+  if (use.effect->about().quadrature && use.per_shot) {
+    return amplitude_over_shots(studied, id).value;
+  }
+  CandidateResult result;
+  set_strength(studied, id, result);
+  return result.strength;
+}
+
+/// Whether two fits of an effect differ in what is chosen among a few, as a hum's frequency is.
+bool chosen_apart(const Studied& one, const Studied& other, const std::string& id) {
+  const EffectUse& a = *one.model.find(id);
+  const EffectUse& b = *other.model.find(id);
+  const auto& parameters = a.effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].chosen && a.values[p].value != b.values[p].value) {
+      return true;
+    }
+  }
+  return false;
+}
 
 std::string id_of(const Search& search, const Refit& refit) {
   return search.candidates()[refit.candidate].id();
@@ -48,10 +72,14 @@ void Chooser::note_all(const Found& found) {
   std::iota(all.begin(), all.end(), std::size_t{0});
   note_refits(found.search, found.refits, found.held_out, all, study_.residuals().per_shot(),
               diagnosis_.candidates);
-  for (const auto& [id, verdict] : found.search.dismissed()) {
-    if (std::ranges::none_of(found.refits,
-                             [&](const Refit& own) { return id_of(found.search, own) == id; })) {
-      set_verdict(diagnosis_, id, verdict);
+  for (CandidateResult& result : diagnosis_.candidates) {
+    const auto dismissed = found.search.dismissed().find(result.effect);
+    // What gains no more than noise does came into no question that it could fail.
+    if (dismissed != found.search.dismissed().end() && result.log_p <= least_plausible() &&
+        std::ranges::none_of(found.refits, [&](const Refit& own) {
+          return id_of(found.search, own) == result.effect;
+        })) {
+      result.verdict = dismissed->second;
     }
   }
 }
@@ -79,7 +107,26 @@ Chooser::Places Chooser::places_of(const Found& found) {
     places.confirmed.push_back(i);
     places.best = may_be_named && !places.best ? i : places.best;
   }
+  prefer_library(found, places);
   return places;
+}
+
+/// A formula of the user's own can be made to fit anything: it stands for no tie that an effect of
+/// the library is in.
+void Chooser::prefer_library(const Found& found, Places& places) const {
+  const auto own_formula = [&](std::size_t i) {
+    const Effect* effect = found.search.candidates()[found.refits[i].candidate].use.effect;
+    return std::ranges::count(effect_library(), effect) == 0;
+  };
+  if (!places.best || !own_formula(*places.best)) {
+    return;
+  }
+  for (const std::size_t i : places.confirmed) {
+    if (!own_formula(i) && claimable(found.search, found.refits[i])) {
+      places.best = i;
+      return;
+    }
+  }
 }
 
 bool Chooser::sound(const Found& found, std::size_t i) const {
@@ -113,11 +160,19 @@ Choice Chooser::chosen(Found& found, Places places) {
   const std::size_t best = *places.best;
   const std::string id = id_of(found.search, found.refits[best]);
   std::vector<std::string> ties;
+  double variants_differ = 0.0;
   for (const std::size_t i : places.confirmed) {
     const std::string other = id_of(found.search, found.refits[i]);
+    if (!(lead(found.refits[i], found.refits[best]) < kTie)) {
+      continue;
+    }
     // One and the same may stand there twice, with its strengths alike or each shot's own.
-    if (other != id && lead(found.refits[i], found.refits[best]) < kTie) {
+    if (other != id) {
       ties.push_back(other);
+    } else if (chosen_apart(found.refits[i].studied, found.refits[best].studied, id)) {
+      variants_differ =
+          std::max(variants_differ, std::abs(strength_of(found.refits[i].studied, id) -
+                                             strength_of(found.refits[best].studied, id)));
     }
   }
   // An effect's variant that is confirmed stands for it, wherever it stands among them.
@@ -125,7 +180,8 @@ Choice Chooser::chosen(Found& found, Places places) {
   note_refits(found.search, found.refits, found.held_out, places.confirmed,
               study_.residuals().per_shot(), diagnosis_.candidates);
   Refit& refit = found.refits[best];
-  return Choice{id, refit.candidate, std::move(refit.studied), std::move(ties)};
+  return Choice{id,    refit.candidate, std::move(refit.studied), std::move(ties),
+                false, variants_differ};
 }
 
 bool Chooser::claimable(const Search& search, const Refit& refit) const {
@@ -134,8 +190,11 @@ bool Chooser::claimable(const Search& search, const Refit& refit) const {
 
 /// Too little to be named by itself, enough not to be told from what is named with hardly more.
 bool Chooser::plausible(const Search& search, const Refit& refit) const {
-  return search.with_search(std::min(refit.log_p, refit.rival_log_p)) <=
-         options_.log_alpha + std::log(kRivalChance);
+  return search.with_search(std::min(refit.log_p, refit.rival_log_p)) <= least_plausible();
+}
+
+double Chooser::least_plausible() const {
+  return options_.log_alpha + std::log(kRivalChance);
 }
 
 /// Exact for those that may be named; of the others first order tells enough.

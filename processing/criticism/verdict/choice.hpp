@@ -17,6 +17,9 @@ struct Choice {
   std::vector<std::string> ties;
   /// The shots do not agree on it, as they may not while another is missing.
   bool on_trial = false;
+  /// By how much its strength is another in a variant of it that fits as well: of a hum that is as
+  /// well of 50 as of 60 Hz.
+  double variants_differ = 0.0;
 };
 
 /// Chooses what is claimed of what searches find, on chance, on shots that were held out, on what
@@ -48,12 +51,15 @@ class Chooser {
 
   void note_all(const Found& found);
   [[nodiscard]] Places places_of(const Found& found);
+  void prefer_library(const Found& found, Places& places) const;
   [[nodiscard]] bool sound(const Found& found, std::size_t i) const;
   [[nodiscard]] bool foretold(const Found& found, std::size_t i) const;
   [[nodiscard]] bool agreed(const Found& found, std::size_t i) const;
   [[nodiscard]] Choice chosen(Found& found, Places places);
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const;
   [[nodiscard]] bool plausible(const Search& search, const Refit& refit) const;
+  /// ln of the chance, the search counted, above which nothing comes into question.
+  [[nodiscard]] double least_plausible() const;
   [[nodiscard]] std::vector<Certification> certify(const Search& search,
                                                    const std::vector<Refit>& refits,
                                                    const Studied& base) const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kolsky {
@@ -67,6 +68,10 @@ void settle_claims(Diagnosis& diagnosis,
   for (CandidateResult& result : diagnosis.candidates) {
     if (std::ranges::count(diagnosis.effects, result.effect) > 0) {
       set_strength(result);
+      if (result.verdict == "named") {
+        // First order does not see what sets some effects apart; the refits did, at this size.
+        result.identifiable = std::min(result.identifiable, std::abs(result.strength));
+      }
     }
   }
 }

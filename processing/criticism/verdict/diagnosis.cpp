@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -19,25 +20,12 @@ namespace {
 
 constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
 
-/// What the true model would leave of these very records. Where nothing shows that more than noise
-/// is left, it is what the fit left and what its numbers took up, one each: noise that repeats by
-/// chance is in all of them alike, and is nothing that an effect could close. Else noise is what
-/// differs between the shots.
-double floor_of(const Studied& after, bool remains, const Study& study) {
-  if (study.campaign().shots.size() < 2) {
-    return 1.0;
-  }
-  return remains ? after.misfit.noise_scale
-                 : (after.fit.objective() + static_cast<double>(after.fit.theta.size())) /
-                       static_cast<double>(after.fit.residual.size());
-}
-
 HeldOut held_out(const Studied& before, const Studied& after, bool remains, Study& study) {
   const auto mean = [&](const Studied& studied) {
     return held_out_misfit(held_out_squares(studied, study), studied.fit.penalty,
                            static_cast<double>(study.residuals().size()));
   };
-  return {mean(before), mean(after), floor_of(after, remains, study)};
+  return {mean(before), mean(after), floor_of(after, remains, study.campaign().shots.size())};
 }
 
 }  // namespace
@@ -73,13 +61,12 @@ class Diagnostician {
         study_.fit(model, options_.safeguards.fitted_noise ? LearnNoise::yes : LearnNoise::no);
     diagnosis_.before = first.misfit;
     Studied current = first;
-    while (diagnosis_.effects.size() < options_.most_effects && add_one(current)) {
-    }
+    const bool settled = seek(current);
     if (diagnosis_.effects.size() == 1 && any_beyond_belief(current)) {
       // Nothing was found beside it that takes its part.
       drop(0, "rejected", without(current, diagnosis_.effects[0]), current);
     }
-    if (options_.safeguards.backward && diagnosis_.effects.size() > 1) {
+    if (options_.safeguards.backward && diagnosis_.effects.size() > 1 && !settled) {
       go_back(current);
     }
     if (on_trial_ && std::ranges::count(diagnosis_.effects, *on_trial_) > 0) {
@@ -93,6 +80,24 @@ class Diagnostician {
   }
 
  private:
+  /// One effect after another. Two are sought again beside each other before a third is: that may
+  /// explain no more than what the first of them was chosen wrongly for.
+  /// @return that nothing was added to two that stand beside each other
+  bool seek(Studied& current) {
+    bool gone_back = false;
+    while (diagnosis_.effects.size() < options_.most_effects) {
+      const bool two = diagnosis_.effects.size() == 2;
+      if (two && !gone_back && options_.safeguards.backward) {
+        go_back(current);
+        gone_back = true;
+      }
+      if (!add_one(current)) {
+        return two && gone_back && diagnosis_.effects.size() == 2;
+      }
+    }
+    return false;
+  }
+
   bool add_one(Studied& current) {
     options_.progress(diagnosis_.effects.empty()
                           ? "testing every effect of the library"
@@ -127,6 +132,7 @@ class Diagnostician {
       current = study_.refit(current);
     }
     diagnosis_.tied_with[choice.id] = std::move(choice.ties);
+    variants_differ_[choice.id] = choice.variants_differ;
   }
 
   void go_back(Studied& current) {
@@ -298,9 +304,11 @@ class Diagnostician {
     if (reasons.empty()) {
       settle_claims(diagnosis_, [&](CandidateResult& result) {
         set_strength(current, result.effect, study_.residuals().per_shot(), result);
+        result.sd = std::hypot(result.sd, variants_differ_[result.effect]);
       });
     } else {
-      give_up(diagnosis_, reasons, before.model, floor_of(before, true, study_));
+      give_up(diagnosis_, reasons, before.model,
+              floor_of(before, true, study_.campaign().shots.size()));
     }
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
@@ -328,7 +336,8 @@ class Diagnostician {
 
   Study& study_;
   const DiagnosisOptions& options_;
-  Model start_;                          ///< unfitted, with the effects found so far
+  Model start_;                                    ///< unfitted, with the effects found so far
+  std::map<std::string, double> variants_differ_;  ///< strengths of what is claimed, see `Choice`
   std::optional<std::string> on_trial_;  ///< of these, what is to be certified beside others yet
   Diagnosis diagnosis_;
   Chooser chooser_{study_, options_, diagnosis_};

@@ -200,7 +200,8 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
     before = std::move(left);
   }
   const Misfit& rest = fall.steps.back().misfit;
-  fall.floor = fall.shots > 1 ? rest.noise_scale : 1.0;
+  constexpr double kByChance = -5.8;  // as a diagnosis judges what remains
+  fall.floor = floor_of(last, rest.repeatable_log_p < kByChance, fall.shots);
   fall.signal = study.residuals().signal_energy() / all;
   fall.repeats = rest.repeatable_share * fall.signal;
   for (WaterfallStep& made : fall.steps) {

@@ -77,6 +77,19 @@ TEST(Expression, NamesWhatTheLibraryDoesNotHoldAndFindsItsStrength) {
   EXPECT_NEAR(diagnosis.held_out.after, diagnosis.held_out.floor, 0.06);
 }
 
+// Whichever of the two a fit's last digit favours.
+TEST(Expression, StandsForNoTieThatTheLibraryIsIn) {
+  for (const std::uint64_t seed : {81U, 82U, 83U}) {
+    const Campaign campaign = read_campaign(shots_with(seed, "second-relaxation=2e-12,tau=3e-5"));
+    Study study(campaign, 0.0, Workers{});
+    const Diagnosis diagnosis = diagnose(study, declaring(kBranch), {});
+    ASSERT_EQ(diagnosis.effects.size(), 1U) << seed;
+    EXPECT_NE(diagnosis.effects[0], "my-branch") << seed;
+    const auto& ties = diagnosis.tied_with.at(diagnosis.effects[0]);
+    EXPECT_NE(std::ranges::find(ties, "my-branch"), ties.end()) << seed;
+  }
+}
+
 TEST(Expression, IsFittedLikeTheLibrarysEffectOfTheSameFormula) {
   const Campaign campaign = read_campaign(shots_with(91, ""));
   Study one(campaign, 0.0, Workers{});

@@ -212,8 +212,10 @@ TEST(Selftest, RefusesWhatItCannotPlant) {
   options.effects = {"gauge-positions:g2"};
   EXPECT_THROW((void)selftest(shots, model, options, Workers{}), InputError);
   options.effects = {"gauge-position:g2"};
-  options.sizes = {-1e-3};
-  EXPECT_THROW((void)selftest(shots, model, options, Workers{}), InputError);
+  for (const double size : {-1e-3, 1e3}) {
+    options.sizes = {size};
+    EXPECT_THROW((void)selftest(shots, model, options, Workers{}), InputError) << size;
+  }
   Model holding = model;
   holding.effects.push_back(use_named("gauge-position:g2"));
   options.sizes = {1e-3};
