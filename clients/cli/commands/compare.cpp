@@ -142,7 +142,8 @@ int run(const Settings& settings, Context& context) {
   }
   const std::string strengths = fails_anywhere(comparison) ? strengths_table(groups, campaign) : "";
   context.out << settings.model << ": " << note << "\n"
-              << misfit_text(studied.misfit) << in_words(studied.misfit) << "\n"
+              << misfit_text(studied.misfit) << in_words(studied.misfit, campaign.shots.size())
+              << "\n"
               << strained_text(studied.model) << "\n"
               << (fails_anywhere(comparison) ? places_table(comparison, campaign)
                                              : "  " + nothing_fails_words(studied.model) + "\n")

@@ -64,8 +64,8 @@ int run(const Settings& settings, Context& context) {
     return kDone;
   }
   context.out << settings.output << "\n"
-              << model_table(file.model) << misfit_text(studied.misfit) << in_words(studied.misfit)
-              << "\n"
+              << model_table(file.model) << misfit_text(studied.misfit)
+              << in_words(studied.misfit, campaign.shots.size()) << "\n"
               << strained_text(file.model);
   return kDone;
 }

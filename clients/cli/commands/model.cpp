@@ -38,8 +38,8 @@ void print(const ModelFile& file, const std::string& name, Context& context,
   if (!kept.empty()) {
     context.out << fmt::format("{} had a history; with it, it is {} now\n", name, kept);
   }
-  context.out << name << ": " << name_of(file.model.kind) << ", " << file.model.effects.size()
-              << " effects\n"
+  context.out << name << ": " << name_of(file.model.kind) << ", "
+              << counted(file.model.effects.size(), "effect") << "\n"
               << (file.bar_source.empty()
                       ? ""
                       : (file.model.kind == BenchKind::impact ? "  " : "  bars: ") +
@@ -224,7 +224,8 @@ int add(const EditSettings& settings, Context& context) {
     print(file, output, context);
     return kDone;
   }
-  context.out << output << ": added, to be fitted; " << file.model.effects.size() << " effects\n"
+  context.out << output << ": added, to be fitted; " << counted(file.model.effects.size(), "effect")
+              << "\n"
               << effect_text(use);
   return kDone;
 }
@@ -250,6 +251,11 @@ int remove(const EditSettings& settings, Context& context) {
                      "captures takes it in again",
                      "to hold it where it is, write `free = false` for it in the model file; to "
                      "free it of what is filed, take `prior_sd` and `prior_mean` out there");
+  }
+  if (settings.effect == "elementary-waves" || settings.effect == "three-element-specimen") {
+    throw InputError(settings.model + ": effect " + settings.effect,
+                     "is what a model foretells with: without it there is nothing to compare",
+                     "add effects beside it; `kolsky model new` begins another model");
   }
   begin_step(file, "remove " + settings.effect);
   file.history.back().note = settings.note.value_or("");

@@ -178,8 +178,8 @@ int run(const Settings& settings, Context& context) {
                 << "\n";
     return kDone;
   }
-  context.out << settings.model << ": sound; " << file.model.effects.size() << " effects, "
-              << list.size() << " expressions of its own\n";
+  context.out << settings.model << ": sound; " << counted(file.model.effects.size(), "effect")
+              << ", " << counted(list.size(), "expression") << " of its own\n";
   for (const Checked& own : list) {
     context.out << "\n" << text_of(own);
   }

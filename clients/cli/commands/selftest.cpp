@@ -184,9 +184,11 @@ std::string effects_text(const Selftest& result) {
                               kolsky::name_of(size.outcome));
     }
     const double smallest = effect.smallest_found();
-    text += fmt::format("  {:<28} {:>12.2g} {:>12} {:<8}  {}\n", effect.id, effect.identifiable,
-                        std::isfinite(smallest) ? fmt::format("{:.2g}", smallest) : "none",
-                        effect.unit, outcomes);
+    text += fmt::format(
+        "  {:<28} {:>12} {:>12} {:<8}  {}\n", effect.id,
+        std::isfinite(effect.identifiable) ? fmt::format("{:.2g}", effect.identifiable)
+                                           : "at no size",
+        std::isfinite(smallest) ? fmt::format("{:.2g}", smallest) : "none", effect.unit, outcomes);
   }
   return text;
 }

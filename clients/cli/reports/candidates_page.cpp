@@ -15,6 +15,11 @@ std::string number_text(double value) {
   return !std::isfinite(value) ? "" : value == 0.0 ? "0" : fmt::format("{:.3g}", value);
 }
 
+std::string size_text(double size, const std::string& unit) {
+  const std::string number = number_text(size);
+  return number.empty() || unit == "-" ? number : number + " " + unit;
+}
+
 std::string to_a_tenth(double value) {
   // Rounded first, so that no "-0.0" comes out.
   return std::isfinite(value) ? fmt::format("{:.1f}", std::round(10.0 * value) / 10.0 + 0.0) : "";
@@ -32,8 +37,8 @@ PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_o
     const std::string strength =
         c.verdict == "untestable" ? "" : strength_text(c.strength, c.sd, c.unit);
     table.rows.push_back({c.effect, c.verdict, strength, to_a_tenth(c.log_p), to_a_tenth(c.gain),
-                          to_a_tenth(c.held_out_gain), number_text(c.detectable),
-                          number_text(c.identifiable), c.nearest_rival});
+                          to_a_tenth(c.held_out_gain), size_text(c.detectable, c.unit),
+                          size_text(c.identifiable, c.unit), c.nearest_rival});
   }
   return table;
 }

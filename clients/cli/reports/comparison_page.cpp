@@ -179,9 +179,9 @@ std::vector<std::size_t> shots_by_misfit(const Comparison& comparison, std::size
   return order;
 }
 
-PageSection misfit_section(const std::string& title, const Misfit& misfit) {
+PageSection misfit_section(const std::string& title, const Misfit& misfit, std::size_t shots) {
   return {title,
-          {in_words(misfit),
+          {in_words(misfit, shots),
            fmt::format("Chi-square per degree of freedom: {:.4g} over {:.0f}; 1 is noise alone.",
                        misfit.chi2_reduced, misfit.degrees_of_freedom)},
           {{"signal", 1.0},
@@ -315,9 +315,11 @@ Page comparison_page(const std::string& title, const std::string& note, Study& s
   page.title = title;
   page.headline = headline(comparison, studied.model, campaign);
   page.good = !fails_anywhere(comparison) && !is_strained(studied.model);
-  page.notes = {note, fmt::format("{} shots, {} gauges, judged up to {}", campaign.shots.size(),
-                                  campaign.gauges(), with_unit(band.limit_Hz, "Hz"))};
-  page.sections.push_back(misfit_section("How large the misfit is", studied.misfit));
+  page.notes = {note,
+                fmt::format("{}, {}, judged up to {}", counted(campaign.shots.size(), "shot"),
+                            counted(campaign.gauges(), "gauge"), with_unit(band.limit_Hz, "Hz"))};
+  page.sections.push_back(
+      misfit_section("How large the misfit is", studied.misfit, campaign.shots.size()));
   page.sections.push_back(where_section("Where it is", comparison, campaign));
   page.sections.push_back(records_section(study, studied, comparer, comparison));
   if (fails_anywhere(comparison)) {

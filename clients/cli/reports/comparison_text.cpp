@@ -48,8 +48,14 @@ std::string band_text(const ComparedBand& band) {
                      unit.name);
 }
 
-std::string in_words(const Misfit& misfit) {
+std::string in_words(const Misfit& misfit, std::size_t shots) {
   const double floor = misfit.noise_floor_share;
+  if (shots == 1) {
+    return fmt::format(
+        "Of the signal's energy {:.2g} % is noise and {:.2g} % more than that is left unexplained; "
+        "whether it would come again one shot cannot say.",
+        100.0 * floor, 100.0 * misfit.repeatable_share);
+  }
   if (misfit.scatter_share > floor / 2.0) {
     return fmt::format(
         "Of the signal's energy {:.2g} % is noise; the model does not explain {:.2g} % that "
@@ -210,11 +216,11 @@ std::string places_table(const Comparison& comparison, const Campaign& campaign)
       continue;
     }
     ++shown;
-    text +=
-        fmt::format("  {:<8} {:<18} {:<18} {:>6.1f} % {:>8.2f} {:>8.2f} % {:>6} of {:<3} {}\n",
-                    campaign.bench.gauges[region.gauge].name, region.window,
-                    band_text(comparison.bands[region.band]), 100.0 * region.share, region.sigma(),
-                    percent, shots, campaign.shots.size(), region.repeats ? "yes" : "no");
+    text += fmt::format("  {:<8} {:<18} {:<18} {:>6.1f} % {:>8.2f} {:>8.2f} % {:>6} of {:<3} {}\n",
+                        campaign.bench.gauges[region.gauge].name, region.window,
+                        band_text(comparison.bands[region.band]), 100.0 * region.share,
+                        region.sigma(), percent, shots, campaign.shots.size(),
+                        campaign.shots.size() == 1 ? "one shot" : (region.repeats ? "yes" : "no"));
   }
   if (shown == 0) {
     return "";

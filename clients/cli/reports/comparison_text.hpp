@@ -13,7 +13,7 @@ namespace kolsky::cli {
 [[nodiscard]] std::string band_text(const ComparedBand& band);
 
 /// What a misfit's numbers mean, in a sentence or two.
-[[nodiscard]] std::string in_words(const Misfit& misfit);
+[[nodiscard]] std::string in_words(const Misfit& misfit, std::size_t shots);
 
 /// Members `where` (significant tiles, largest share first) and `regions` (all places, shots taken
 /// together) of what `kolsky compare --json` prints.

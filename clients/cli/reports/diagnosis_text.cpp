@@ -62,10 +62,15 @@ std::vector<CandidateResult> ranked(const Diagnosis& diagnosis) {
   return list;
 }
 
+std::string size_text(double size) {
+  return std::isfinite(size) ? fmt::format("{:.2g}", size) : "-";
+}
+
 std::string row_text(const CandidateResult& c) {
-  return fmt::format("  {:<27} {:>28} {:>9} {:>10.1f} {:>10.1f} {:>11.2g} {:>10.2g}  {}\n",
-                     c.effect, strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p),
-                     c.gain, c.held_out_gain, c.detectable, c.identifiable, c.verdict);
+  return fmt::format("  {:<27} {:>28} {:>9} {:>10.1f} {:>10.1f} {:>11} {:>10}  {}\n", c.effect,
+                     strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p), c.gain,
+                     c.held_out_gain, size_text(c.detectable), size_text(c.identifiable),
+                     c.verdict);
 }
 
 /// Only of the verdicts that are there.
@@ -74,7 +79,7 @@ std::string legend_text(const std::vector<CandidateResult>& shown) {
       "\n  by chance: how often noise alone does as well, the search over all effects counted;\n"
       "  gain: of chi-square, and of that on shots which the strength was not found in;\n"
       "  detectable: the smallest change that stands at 6 deviations here; told apart: and at 5\n"
-      "  beside the effect that resembles it most.\n";
+      "  beside the effect that resembles it most; -: none does within its bounds.\n";
   constexpr std::array<std::array<const char*, 2>, 3> kMeanings{
       {{"rejected",
         "it gains, but other shots do not foretell it, the shots disagree on it, the quiet before "

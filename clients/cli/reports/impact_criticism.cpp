@@ -170,7 +170,7 @@ JsonValue describe_speeds(const ImpactComparison& comparison) {
 }
 
 std::string impact_words(const ImpactStudy& study, const Studied& studied) {
-  std::string text = in_words(studied.misfit);
+  std::string text = in_words(studied.misfit, study.campaign().shots.size());
   if (studied.misfit.repeatable_share > studied.misfit.noise_floor_share) {
     text.pop_back();  // the full stop
     // The places below count what is allowed once, a verdict what such an error may mimic.
