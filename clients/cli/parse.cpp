@@ -45,8 +45,13 @@ std::string broken_into_lines(const std::string& text) {
   return lines;
 }
 
-std::string refuse_negative(const std::string& count) {
-  return count.starts_with("-") ? "a count is not negative" : "";
+std::string refuse_no_count(const std::string& count) {
+  if (count.starts_with("-")) {
+    return "a count is not negative";  // it would wrap round
+  }
+  return count.find_first_not_of("0123456789") != std::string::npos
+             ? "\"" + count + "\" is not a whole number"
+             : "";
 }
 
 CLI::Option* add(CLI::App& app, const Argument& argument) {
@@ -59,8 +64,7 @@ CLI::Option* add(CLI::App& app, const Argument& argument) {
         } else {
           CLI::Option* taker = app.add_option(argument.name, *target, help);
           taker->type_name(is_option(argument.name) ? argument.value : "");
-          // A negative count would wrap round.
-          return std::is_same_v<Value, std::optional<std::uint64_t>> ? taker->check(refuse_negative)
+          return std::is_same_v<Value, std::optional<std::uint64_t>> ? taker->check(refuse_no_count)
                                                                      : taker;
         }
       },

@@ -106,6 +106,10 @@ class Body {
   [[nodiscard]] ElementIndex most_squeezed() const;
   /// The element that a wave crosses soonest as it is made: the one that bounds the step.
   [[nodiscard]] ElementIndex soonest_crossed() const;
+  /// Of the solids, the one that an element is of: the layer, from the inside.
+  [[nodiscard]] std::size_t layer_of(ElementIndex element) const {
+    return range_of(element).region.solid;
+  }
   /// "element 12 of row 3 of block 1, at R 2.1 mm, Z 0.4 mm": places in the undeformed body.
   [[nodiscard]] std::string describe(ElementIndex element) const;
 

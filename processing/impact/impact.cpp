@@ -15,6 +15,7 @@ namespace kolsky::impact {
 namespace {
 
 constexpr double kSafety = 0.85;          // of the critical step; results are the same to 0.95
+constexpr double kMostSteps = 2e5;        // of a contact: 4400 on 32768 elements
 constexpr double kFinest = 1e-4;          // of the critical step: what is asked for must end
 constexpr double kLeastStep = 1e-3;       // of the first: a ball that is crushed takes for ever
 constexpr double kPenalty = 0.4;          // of the ball's highest mode, for the nodes in contact
@@ -32,17 +33,21 @@ std::string millimetres(double length_m) {
   return in_words(1e-2 * std::round(1e5 * length_m), "mm");
 }
 
-Body make_ball(const ImpactModel& model) {
+std::string place_of(std::size_t layer) {
+  return "layers[" + std::to_string(layer) + "]";
+}
+
+Body make_ball(const ImpactModel& model, const ElementKernel& kernel) {
   std::vector<double> diameters_m;
   std::vector<Solid> solids;
   for (const Layer& layer : model.layers) {
     diameters_m.push_back(layer.outer_diameter_m);
     solids.push_back(layer.solid);
   }
-  return {ball_mesh(diameters_m, model.elements), std::move(solids)};
+  return {ball_mesh(diameters_m, model.elements), std::move(solids), kernel};
 }
 
-std::optional<Body> make_bar(const ImpactModel& model) {
+std::optional<Body> make_bar(const ImpactModel& model, const ElementKernel& kernel) {
   const Target& target = model.target;
   if (target.kind != TargetKind::bar) {
     return std::nullopt;
@@ -50,10 +55,10 @@ std::optional<Body> make_bar(const ImpactModel& model) {
   const auto across = static_cast<double>(model.bar_elements_across);
   const double size_m = 0.5 * target.diameter_m / across;
   const auto along = static_cast<std::size_t>(std::lround(target.length_m / size_m));
-  return Body(
-      bar_mesh(target.diameter_m, target.length_m, model.bar_elements_across,
-               std::max<std::size_t>(along, 2)),
-      {elastic_solid(target.density_kg_m3, target.youngs_modulus_Pa, target.poisson_ratio)});
+  return Body(bar_mesh(target.diameter_m, target.length_m, model.bar_elements_across,
+                       std::max<std::size_t>(along, 2)),
+              {elastic_solid(target.density_kg_m3, target.youngs_modulus_Pa, target.poisson_ratio)},
+              kernel);
 }
 
 // The half of the surface that faces the target, and the one that faces away.
@@ -80,10 +85,10 @@ Edge edge_of(const ImpactModel& model) {
 
 class Run {
  public:
-  explicit Run(const ImpactModel& model)
+  Run(const ImpactModel& model, const ElementKernel& kernel)
       : model_(model),
-        ball_(make_ball(model)),
-        bar_(make_bar(model)),
+        ball_(make_ball(model, kernel)),
+        bar_(make_bar(model, kernel)),
         contact_(ball_, half_surface(ball_, true), model.friction, edge_of(model)),
         rear_contact_(ball_, half_surface(ball_, false), 0.0),
         observer_(model, ball_, longest_s()) {
@@ -92,6 +97,7 @@ class Run {
     rear_.z_m = ball_.z_m(ball_.mesh().surface.back());
     sabot_speed_ = -model.speed_m_per_s;
     find_stable_step();
+    refuse_endless();
     energy_.dissipated_by_difference =
         std::any_of(model.layers.begin(), model.layers.end(), [](const Layer& layer) {
           return layer.solid.nonlinearity != 0.0 || layer.solid.law != FiniteStrain::kirchhoff;
@@ -138,6 +144,32 @@ class Run {
     }
   }
 
+  // As long as a sphere of the core's relaxed solid would touch by Hertz: within a factor of two.
+  [[nodiscard]] double about_contact_s() const {
+    const double radius_m = 0.5 * model_.layers.back().outer_diameter_m;
+    const double stiffness =
+        4.0 / 3.0 * model_.layers.front().solid.plane_modulus_relaxed_Pa() * std::sqrt(radius_m);
+    const double speed = model_.speed_m_per_s;
+    const double depth_m = std::pow(1.25 * ball_.mass_kg() * speed * speed / stiffness, 0.4);
+    return std::min(2.943 * depth_m / speed, longest_s());
+  }
+
+  // A layer as thin as paint makes a step that no contact ends by. Who gives the step has chosen.
+  void refuse_endless() const {
+    const double steps = about_contact_s() / first_s_;
+    if (model_.time_step_s > 0.0 || steps < kMostSteps) {
+      return;
+    }
+    const bool by_bar = ball_share_ < 1.0;
+    throw InputError(by_bar
+                         ? "target.diameter_m"
+                         : place_of(ball_.layer_of(ball_.soonest_crossed())) + ".outer_diameter_m",
+                     "takes about " + in_words(std::round(1e-4 * steps) * 1e4, "steps") + " of " +
+                         in_words(first_s_, "s") + ", as " + narrowest() + " is crossed that soon",
+                     by_bar ? "give a thicker bar, or take target dashpot"
+                            : "make that layer thicker or less stiff, or take fewer elements");
+  }
+
   // The step that is stable as deformed now, by the ball's steepest element.
   void follow_deformation() {
     if (first_steepness_ == 0.0) {
@@ -168,7 +200,7 @@ class Run {
   }
 
   void refuse_crushed() const {
-    throw InputError("impact",
+    throw InputError(squeezed_solid(),
                      ball_.describe(ball_.most_squeezed()) + " is crushed at " + when() +
                          ": the stable step is below a thousandth of the first",
                      std::string(model_.sabot_mass_kg > 0.0 ? "take a lighter sabot, " : "") +
@@ -177,17 +209,26 @@ class Run {
 
   [[nodiscard]] std::string when() const { return in_words(time_s_, "s"); }
 
-  [[nodiscard]] bool softens() const {
-    return std::any_of(model_.layers.begin(), model_.layers.end(),
-                       [](const Layer& layer) { return layer.solid.nonlinearity < 0.0; });
+  [[nodiscard]] std::string squeezed_solid() const {
+    return place_of(ball_.layer_of(ball_.most_squeezed())) + ".solid";
   }
 
+  // What softens gives way, whichever layer's element it turns.
   void refuse_inverted() const {
-    throw InputError("impact",
-                     ball_.describe(ball_.most_squeezed()) + " turned inside out at " + when(),
-                     softens() ? "soften the solid less or lower the speed"
-                               : "lower the speed, stiffen the solid or change the number of "
-                                 "elements");
+    const auto softens = [](const Layer& layer) { return layer.solid.nonlinearity < 0.0; };
+    const std::size_t own = ball_.layer_of(ball_.most_squeezed());
+    const auto softest = softens(model_.layers[own])
+                             ? model_.layers.begin() + static_cast<std::ptrdiff_t>(own)
+                             : std::find_if(model_.layers.begin(), model_.layers.end(), softens);
+    const std::string problem =
+        ball_.describe(ball_.most_squeezed()) + " turned inside out at " + when();
+    if (softest != model_.layers.end()) {
+      throw InputError(place_of(static_cast<std::size_t>(softest - model_.layers.begin())) +
+                           ".solid.nonlinearity",
+                       problem, "soften the solid less or lower the speed");
+    }
+    throw InputError(squeezed_solid(), problem,
+                     "lower the speed, stiffen the solid or change the number of elements");
   }
 
   void step() {
@@ -411,14 +452,9 @@ class Run {
             ": outside of what the law allows, and what is calculated hangs on the mesh");
       }
     }
-    for (std::size_t i = 0; !energy_.dissipated_by_difference && i < history.strained_share.size();
-         ++i) {
-      if (history.strained_share[i] > 0.05) {
-        history.remarks.push_back(in_words(std::round(100.0 * history.strained_share[i]), "%") +
-                                  " of " + layer(i) +
-                                  " is beyond a strain of 0.1 at the largest deformation: "
-                                  "agreement here does not validate the linear "
-                                  "law at small strains, nor its failure refute it");
+    for (std::size_t i = 0; i < history.strained_share.size(); ++i) {
+      if (history.strained_share[i] > kStrainedShareToTell) {
+        history.remarks.push_back(strained_words(history.strained_share[i], layer(i)));
       }
     }
   }
@@ -455,10 +491,17 @@ class Run {
 
 }  // namespace
 
+std::string strained_words(double share, const std::string& layer) {
+  return in_words(std::round(100.0 * share), "%") + " of " + layer +
+         " is beyond a strain of 0.1 at the largest deformation: agreement here does not validate "
+         "the law at small strains, nor its failure refute it";
+}
+
 ImpactHistory simulate(const ImpactModel& model,
-                       const std::function<void(const Progress&)>& progress) {
+                       const std::function<void(const Progress&)>& progress,
+                       const ElementKernel& kernel) {
   check(model);
-  Run run(model);
+  Run run(model, kernel);
   return run.go(progress);
 }
 

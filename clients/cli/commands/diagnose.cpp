@@ -97,7 +97,8 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
   ImpactStudy study(campaign, judges_whole(model), band_limit_of(settings.band_limit_Hz),
                     all_cores());
   ImpactsSeen seen;
-  Diagnosis diagnosis = diagnose_impacts(study, model, options, &seen);
+  Diagnosis diagnosis =
+      naming_model(settings.model, [&] { return diagnose_impacts(study, model, options, &seen); });
   if (settings.report) {
     replace_file(*settings.report, render_html(impact_diagnosis_page(
                                        "What " + settings.model + " lacks",

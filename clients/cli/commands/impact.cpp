@@ -107,6 +107,11 @@ impact::BallMaterial material(const std::string& file, const Settings& settings,
       (core ? settings.core_nonlinearity : settings.cover_nonlinearity).value_or(0.0);
   part.second = core ? kelvin_unit(settings.core_relaxation, "--core-relaxation")
                      : kelvin_unit(settings.cover_relaxation, "--cover-relaxation");
+  try {
+    static_cast<void>(impact::solid_of(part));
+  } catch (const InputError& error) {
+    throw TomlTable::open(file).located(error);
+  }
   return part;
 }
 
@@ -141,27 +146,57 @@ void refuse_beside_figures(const Settings& settings) {
   }
 }
 
-// What the simulation names by its members, as the user gave it.
-std::string option_for(const std::string& member) {
-  const std::pair<const char*, const char*> options[] = {
-      {"speed_m_per_s", "--speed"},
-      {"friction", "--friction"},
-      {"sabot_mass_kg", "--sabot-mass"},
-      {"offset_m", "--offset"},
-      {"elements", "--elements"},
-      {"time_step_s", "--time-step"},
-      {"layers[0].solid.nonlinearity", "--core-nonlinearity"},
-      {"layers[1].solid.nonlinearity", "--cover-nonlinearity"},
-      {"field_times_s", "--field"}};
-  for (const auto& [name, option_name] : options) {
+// Where the user gave what the simulation names by a member of its model; none where it is no
+// member.
+std::optional<std::string> place_of(const std::string& member, const Settings& settings) {
+  const std::string options = kPlace;
+  const std::pair<const char*, std::string> places[] = {
+      {"impact", "kolsky impact"},  // the run as a whole
+      {"speed_m_per_s", options + "--speed"},
+      {"friction", options + "--friction"},
+      {"sabot_mass_kg", options + "--sabot-mass"},
+      {"offset_m", options + "--offset"},
+      {"elements", options + "--elements"},
+      {"time_step_s", options + "--time-step"},
+      {"layers[0].solid", settings.core_relaxation ? options + "--core-relaxation" : settings.core},
+      {"layers[1].solid",
+       settings.cover_relaxation ? options + "--cover-relaxation" : settings.cover},
+      {"layers[0].solid.nonlinearity", options + "--core-nonlinearity"},
+      {"layers[1].solid.nonlinearity", options + "--cover-nonlinearity"},
+      {"field_times_s", options + "--field"}};
+  for (const auto& [name, place] : places) {
     if (member == name) {
-      return option_name;
+      return place;
     }
   }
   if (member.starts_with("probes[")) {
-    return "--probe";  // its numbers are in the line
+    return options + "--probe";  // its numbers are in the line
   }
-  return member;
+  return std::nullopt;
+}
+
+// The bench's key of a member of the model, or the key itself.
+std::optional<std::string> bench_key(const std::string& place) {
+  const std::pair<const char*, const char*> keys[] = {
+      {"layers[0].outer_diameter_m", "ball.core_diameter_m"},
+      {"layers[1].outer_diameter_m", "ball.outer_diameter_m"},
+      {"target.diameter_m", "bars.input.diameter_m"},
+      {"gauge_positions_m", "gauges"}};
+  for (const auto& [member, key] : keys) {
+    if (place == member) {
+      return key;
+    }
+  }
+  return place.starts_with("bars.") || place.starts_with("ball.") ? std::optional(place)
+                                                                  : std::nullopt;
+}
+
+// An error of the simulation as the user can mend it: an option, a file, a line of the bench.
+InputError as_given(const InputError& error, const Settings& settings) {
+  if (const auto key = bench_key(error.place())) {
+    return TomlTable::open(settings.bench).located({*key, error.problem(), error.mend()});
+  }
+  return {place_of(error.place(), settings).value_or(error.place()), error.problem(), error.mend()};
 }
 
 void prepare(ImpactRun& run, const Settings& settings, bool json) {
@@ -172,13 +207,7 @@ void prepare(ImpactRun& run, const Settings& settings, bool json) {
         impact::check_mass(run.bench.ball.value_or(Ball{}), run.core.material, run.cover.material);
     run.model = impact_on(run.bench, run.core, run.cover, target, speed_of(settings));
   } catch (const InputError& error) {
-    if (error.place().starts_with(kPlace)) {
-      throw;
-    }
-    const std::string file = error.place().starts_with("core")    ? settings.core
-                             : error.place().starts_with("cover") ? settings.cover
-                                                                  : settings.bench;
-    throw file == settings.bench ? TomlTable::open(file).located(error) : error.inside(file);
+    throw as_given(error, settings);
   }
   run.model.friction = settings.friction.value_or(run.model.friction);
   run.model.sabot_mass_kg = settings.sabot_mass.value_or(0.0);
@@ -229,14 +258,14 @@ class ProgressLine {
   double every_s_;
 };
 
-void simulate(ImpactRun& run) {
+void simulate(ImpactRun& run, const Settings& settings) {
   const Clock::time_point start = Clock::now();
   ProgressLine line(start);
   try {
     run.history = impact::simulate(
         run.model, [&line](const impact::Progress& progress) { line.show(progress); });
   } catch (const InputError& error) {
-    throw InputError(kPlace + option_for(error.place()), error.problem(), error.mend());
+    throw as_given(error, settings);
   }
   if (run.history.fields.size() < run.model.field_times_s.size()) {
     throw InputError(std::string(kPlace) + "--field",
@@ -244,6 +273,21 @@ void simulate(ImpactRun& run) {
                      "give times up to " + in_words(run.history.time_s.back(), "s"));
   }
   run.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+int draw_figures(const ImpactRun& run, const Settings& settings, Context& context) {
+  std::string text;
+  try {
+    text = write_paper_figures(run.bench, run.core, run.cover, *settings.figures);
+  } catch (const InputError& error) {
+    throw as_given(error, settings);
+  }
+  if (context.json) {
+    context.out << to_text(JsonObject{{"folder", *settings.figures}, {"table", text}}) << "\n";
+  } else {
+    context.out << text;
+  }
+  return kDone;
 }
 
 int run_command(const Settings& settings, Context& context) {
@@ -258,16 +302,10 @@ int run_command(const Settings& settings, Context& context) {
   run.core = material(settings.core, settings, true);
   run.cover = material(settings.cover, settings, false);
   if (settings.figures.has_value()) {
-    const std::string text = write_paper_figures(run.bench, run.core, run.cover, *settings.figures);
-    if (context.json) {
-      context.out << to_text(JsonObject{{"folder", *settings.figures}, {"table", text}}) << "\n";
-    } else {
-      context.out << text;
-    }
-    return kDone;
+    return draw_figures(run, settings, context);
   }
   prepare(run, settings, context.json);
-  simulate(run);
+  simulate(run, settings);
   if (settings.svg.has_value()) {
     NewFile file(*settings.svg);
     file.write(page(run));

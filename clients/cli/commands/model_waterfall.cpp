@@ -67,7 +67,7 @@ Waterfall fall_of(const Settings& settings, const ModelFile& file) {
       return judges_whole(step.model);
     });
     ImpactStudy study(campaign, whole, band_limit_Hz, all_cores());
-    return waterfall(study, steps);
+    return naming_model(settings.model, [&] { return waterfall(study, steps); });
   }
   Study study(campaign, band_limit_Hz, all_cores());
   return waterfall(study, steps);

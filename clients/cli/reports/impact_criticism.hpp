@@ -5,6 +5,7 @@
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/report/html.hpp"
 #include "clients/terminal/terminal.hpp"
+#include "processing/base/error.hpp"
 #include "processing/criticism/impact/impact_diagnosis.hpp"
 #include "processing/criticism/impact/impact_study.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
@@ -13,6 +14,16 @@ namespace kolsky::cli {
 
 /// @throws InputError where the captures are of another kind of bench than the model
 void require_kind(const Model& model, const Campaign& campaign);
+
+/// What `act` returns; what the solver refuses of the model's ball is told with the model's file.
+template <typename Act>
+auto naming_model(const std::string& file, const Act& act) {
+  try {
+    return act();
+  } catch (const InputError& error) {
+    throw error.inside(file);
+  }
+}
 
 /// Members `where` (significant tiles, largest share first) and `speeds` of what `kolsky compare
 /// --json` prints of impacts.

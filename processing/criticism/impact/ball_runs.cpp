@@ -1,7 +1,11 @@
 #include "processing/criticism/impact/ball_runs.hpp"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/impact/bench_impact.hpp"
 #include "processing/impact/impact.hpp"
 
@@ -38,6 +42,36 @@ void append(const BallLayer& layer, std::vector<double>& key) {
   key.insert(key.end(), {D_per_Pa, tau_s});
 }
 
+/// The effect whose number the solver refuses by a member of its model; others as they are.
+std::string effect_at(const std::string& member) {
+  const std::pair<const char*, const char*> effects[] = {
+      {"layers[0].solid.nonlinearity", "core-nonlinearity"},
+      {"layers[1].solid.nonlinearity", "cover-nonlinearity"},
+      {"layers[0].solid", "three-element-core"},
+      {"layers[1].solid", "three-element-cover"},
+      {"layers[0].outer_diameter_m", "ball.core_diameter_m"},
+      {"layers[1].outer_diameter_m", "ball.outer_diameter_m"},
+      {"friction", "contact-friction"},
+      {"offset_m", "off-centre-contact"}};
+  for (const auto& [name, effect] : effects) {
+    if (member == name) {
+      return effect;
+    }
+  }
+  return member;
+}
+
+/// Of a campaign's many speeds the one at which the model's ball is refused is to be known.
+impact::ImpactHistory thrown(const impact::ImpactModel& model) {
+  try {
+    return impact::simulate(model);
+  } catch (const InputError& error) {
+    throw InputError(effect_at(error.place()),
+                     error.problem() + ", thrown at " + in_words(model.speed_m_per_s, "m/s"),
+                     error.mend());
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed_m_per_s,
@@ -62,10 +96,11 @@ std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed
   model.sabot_mass_kg = ball.sabot_mass_kg;
   model.elements = elements;
   model.output_interval_s = kRunStep_s;
-  impact::ImpactHistory history = impact::simulate(model);
+  impact::ImpactHistory history = thrown(model);
   auto own = std::make_shared<BallRun>();
   own->force_N = std::move(history.force_N);
   own->rebound_m_per_s = history.rebound_speed_m_per_s;
+  own->strained_share = history.strained_share.front();
   own->falling_share = *std::ranges::max_element(history.falling_share);
   const std::scoped_lock held(lock_);
   return known_.emplace(std::move(key), std::move(own)).first->second;

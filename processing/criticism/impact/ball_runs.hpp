@@ -14,7 +14,8 @@ namespace kolsky {
 struct BallRun {
   std::vector<double> force_N;  ///< from first touch, kRunStep_s apart, to the end of the contact
   double rebound_m_per_s = 0.0;
-  double falling_share = 0.0;  ///< of the core or the cover: where its law's stress falls
+  double strained_share = 0.0;  ///< of the core: beyond a strain of 0.1 at the turn
+  double falling_share = 0.0;   ///< of the core or the cover: where its law's stress falls
 };
 
 constexpr double kRunStep_s = 1e-6;
@@ -35,7 +36,7 @@ class BallRuns {
   explicit BallRuns(const Bench& bench) : bench_(bench) {}
 
   /// @param cauchy  the law's finite-strain form; the scene's share of it is not looked at
-  /// @throws InputError what the solver refuses
+  /// @throws InputError what the solver refuses, place the effect, with the speed
   [[nodiscard]] std::shared_ptr<const BallRun> run(const BallScene& ball, double speed_m_per_s,
                                                    std::size_t elements, bool cauchy = false);
 

@@ -240,6 +240,18 @@ TEST(Impact, RefusesWhatCannotBe) {
     EXPECT_TRUE(refused(scene::kolsky(words), named)) << named.front();
   };
   refuses(with_core(folder / "active.toml"), {"active.toml", "E2_Pa"});
+  core = text_of(kBenches + "../materials/golf-core.toml");
+  const std::size_t ratio = core.find("0.376");
+  folder.write("rubber.toml", core.replace(ratio, 5, "0.500"));
+  const auto line =
+      1 + std::count(core.begin(), core.begin() + static_cast<std::ptrdiff_t>(ratio), '\n');
+  refuses(with_core(folder / "rubber.toml"),
+          {"rubber.toml:" + std::to_string(line) + ": poisson_ratio: 0.5 has no finite bulk"});
+  // So soft that it turns inside out without an option that says so: its file is to blame.
+  core = text_of(kBenches + "../materials/golf-core.toml");
+  core.replace(core.find("121e6"), 5, "1e5");
+  folder.write("jelly.toml", core.replace(core.find("143e6"), 5, "1e5"));
+  refuses(with_core(folder / "jelly.toml"), {"jelly.toml: element", "turned inside out"});
   refuses(with_core(folder / "none.toml"), {"none.toml"});
   refuses(impact({}), {"--speed", "is missing"});
   refuses(impact({"--speed", "0"}), {"--speed", "0 m/s"});
@@ -259,9 +271,20 @@ TEST(Impact, RefusesWhatCannotBe) {
           {"--core-relaxation: ", "-1e-9,1e-4", "compliance"});
   refuses(impact({"--speed", "40", "--cover-relaxation", "1e-9,0"}),
           {"--cover-relaxation: ", "time"});
+  refuses(impact({"--speed", "40", "--core-relaxation", "1e300,1e-4"}), {"--core-relaxation: "});
+  refuses(impact({"--speed", "40", "--elements", "4.5"}), {"--elements", "not a whole number"});
   refuses(impact({"--speed", "40", "--offset", "0.02"}), {"--offset", "edge"});
-  refuses(impact({"--speed", "51", "--core-nonlinearity", "-2"}),
-          {"element", "turned inside out", "soften the solid less"});
+  const std::vector<std::string> softened = impact({"--speed", "51", "--core-nonlinearity", "-2"});
+  refuses(softened, {"kolsky impact: --core-nonlinearity: element", "turned inside out",
+                     "soften the solid less"});
+  std::string bench = text_of(kBenches + "paper-impact.toml");
+  const std::size_t core_key = bench.find("core_diameter_m");
+  bench.replace(core_key, bench.find('\n', core_key) - core_key, "core_diameter_m = 0.042695");
+  folder.write("painted.toml", bench + "scale_density = true\n");
+  std::vector<std::string> painted = impact({"--speed", "40.3"});
+  painted[2] = folder / "painted.toml";
+  refuses(painted, {"painted.toml:", "ball.outer_diameter_m: takes about", "steps",
+                    "make that layer thicker"});
   const std::vector<std::string> creeping = impact({"--speed", "1e-9", "--elements", "300"});
   refuses(creeping, {"has not left the target", "raise the speed"});
   EXPECT_EQ(scene::kolsky(creeping).err.find("duration"), std::string::npos)
