@@ -22,6 +22,7 @@ namespace {
 struct Outcome {
   ContactNumbers contact;
   double restitution = 0.0;
+  double strained_share = 0.0;
 };
 
 struct Draw {
@@ -141,6 +142,7 @@ Foretold foretold(const Runs& runs, const Value& value) {
 BallPrediction summary_of(const ForetoldSpeed& asked, const Runs& runs, double interval_s) {
   BallPrediction prediction;
   prediction.asked = asked;
+  prediction.strained_share = runs.fine->strained_share;
   prediction.failed = static_cast<std::size_t>(std::count_if(
       runs.draws.begin(), runs.draws.end(), [](const auto& outcome) { return !outcome; }));
   if (runs.draws.size() < prediction.failed + 2) {
@@ -194,7 +196,7 @@ std::vector<BallPrediction> foretell_impacts(
     std::vector<double> force = history.force_N;
     force.resize(force.size() + static_cast<std::size_t>(100e-6 / interval_s), 0.0);
     return Outcome{contact_numbers(force, interval_s, asked.low_pass_Hz, asked.contact_threshold),
-                   history.restitution};
+                   history.restitution, history.strained_share.front()};
   };
   std::vector<Runs> runs(speeds.size());
   for (Runs& speed : runs) {

@@ -58,7 +58,8 @@ struct BallPrediction {
   std::vector<double> time_s;   ///< from first touch as a measurement would find it
   std::vector<double> force_N;  ///< low-passed as the measurement
   std::vector<double> force_sd_N;
-  std::size_t failed = 0;  ///< draws that no ball survives
+  double strained_share = 0.0;  ///< of the core's volume: beyond a strain of 0.1
+  std::size_t failed = 0;       ///< draws that no ball survives
 };
 
 /// Carries two specimens' joint posterior through the finite elements: draws of log moduli with the

@@ -20,6 +20,7 @@
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
+#include "processing/impact/impact.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -383,7 +384,20 @@ std::vector<ForetoldSpeed> measure(const Settings& settings, const std::vector<S
   return speeds;
 }
 
-/// A line on stderr now and then.
+/// What a ball that is foretold as it was measured does not say.
+void add_not_constrained(ChainRun& run) {
+  double share = 0.0;
+  for (const ChainSpeed& speed : run.speeds) {
+    share = std::max(share, speed.foretold.strained_share);
+  }
+  if (share > impact::kStrainedShareToTell) {
+    run.remarks.push_back("at the highest speed " + impact::strained_words(share, "the core"));
+  }
+  run.remarks.emplace_back(
+      "an impact holds some two of a material's three numbers: what agrees here says little of "
+      "each modulus by itself; kolsky compare says which");
+}
+
 void add_remarks(ChainRun& run) {
   double largest = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -398,6 +412,9 @@ void add_remarks(ChainRun& run) {
                   largest));
   run.remarks.emplace_back(
       "the deviations hold if the linear model does: they are no allowance for a wrong one");
+  if (!run.impacts.empty()) {
+    add_not_constrained(run);
+  }
   for (const auto& [part, fit] : {std::pair("core", &run.core), std::pair("cover", &run.cover)}) {
     for (const std::string& warning : fit->warnings) {
       run.remarks.push_back(std::string(part) + ": " + warning);

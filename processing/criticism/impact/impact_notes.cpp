@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "processing/criticism/impact/flat_effects.hpp"
 
@@ -180,8 +181,7 @@ std::vector<std::string> impact_notes(ImpactStudy& study, const Studied& current
   note_flat(study, current, scale, flat, lines);
   note_falling(residuals, lines);
   note_speeds(residuals, lines);
-  const Lines held = what_records_hold(study, current);
-  lines.insert(lines.end(), held.begin(), held.end());
+  std::ranges::move(not_constrained(study, current), std::back_inserter(lines));
   return lines;
 }
 

@@ -37,9 +37,9 @@ inline constexpr double kPressed = 2.0;
 /// Restitution, foretold and measured, at each speed.
 [[nodiscard]] std::vector<std::string> restitution_notes(const ImpactComparison& comparison);
 
-/// What the records hold of each material's three numbers, in a line each: how many combinations
-/// are known to a tenth, and the one that is known least.
-[[nodiscard]] std::vector<std::string> what_records_hold(ImpactStudy& study,
-                                                         const Studied& studied);
+/// What impacts leave open, whatever they agree with: the law at small strains, where much of the
+/// core is beyond them; of each material's three numbers, how many combinations the records know to
+/// a tenth, and the one that they know least.
+[[nodiscard]] std::vector<std::string> not_constrained(ImpactStudy& study, const Studied& studied);
 
 }  // namespace kolsky

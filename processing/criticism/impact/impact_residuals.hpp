@@ -59,6 +59,8 @@ class ImpactResiduals : public ShotResiduals {
   /// Of the core or the cover where the fine forces were taken last, at the highest speed: the
   /// share that is strained beyond what the law of a solid that softens allows.
   [[nodiscard]] double falling_share() const { return anchors_.back()[1].fine.falling_share; }
+  /// There, of the core: the share beyond a strain of 0.1.
+  [[nodiscard]] double strained_share() const { return anchors_.back()[1].fine.strained_share; }
   /// Allows for this share of what the force's calculation is commonly off by, and for twice what
   /// the meshes show at least.
   void allow(double share, const Composition& composition, const std::vector<double>& theta);

@@ -6,8 +6,11 @@
 #include "processing/criticism/impact/impact_notes.hpp"
 
 #include "processing/algebra/algebra.hpp"
+#include "processing/impact/impact.hpp"
 
 namespace kolsky {
+
+namespace {
 
 std::vector<std::string> what_records_hold(ImpactStudy& study, const Studied& studied) {
   std::vector<std::string> lines;
@@ -57,6 +60,18 @@ std::vector<std::string> what_records_hold(ImpactStudy& study, const Studied& st
         "{}: the records by themselves hold {} of its three numbers to a tenth; least known is "
         "{:+.2f} ln E1 {:+.2f} ln E2 {:+.2f} ln eta2, to a factor of {:.3g}",
         part, known, weakest[0], weakest[1], weakest[2], std::exp(std::min(sd, 10.0))));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> not_constrained(ImpactStudy& study, const Studied& studied) {
+  std::vector<std::string> lines = what_records_hold(study, studied);
+  const double strained = study.residuals().strained_share();
+  if (strained > impact::kStrainedShareToTell) {
+    lines.insert(lines.begin(),
+                 "at the highest speed " + impact::strained_words(strained, "the core"));
   }
   return lines;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <string>
 
@@ -52,6 +53,38 @@ TEST(Effects, AStiffeningCoreRaisesThePeakAndShortensTheContact) {
   }
 }
 
+// J(0) = 1/E1 + 1/E2 and the loss at low frequency, eta2/E2^2, as filed; E1 in between goes
+// unseen.
+TEST(Effects, AnImpactHoldsTwoOfTheCoresThreeNumbers) {
+  const Material filed = paper_core();
+  const double softness_per_Pa = 1.0 / filed.E1_Pa + 1.0 / filed.E2_Pa;
+  const auto with = [&](double E1_Pa) {
+    Material core = filed;
+    core.E1_Pa = {E1_Pa};
+    core.E2_Pa = {1.0 / (softness_per_Pa - 1.0 / E1_Pa)};
+    core.eta2_Pa_s = {filed.eta2_Pa_s * std::pow(core.E2_Pa / filed.E2_Pa, 2)};
+    ImpactModel model =
+        impact_on(paper_bench(), {core}, {paper_cover()}, TargetKind::dashpot, 51.0);
+    model.elements = 240;
+    return simulate(model);
+  };
+  const ImpactHistory plain = with(filed.E1_Pa);
+  for (const double E1_Pa : {90e6, 400e6}) {
+    const ImpactHistory moved = with(E1_Pa);
+    double squares = 0.0;
+    for (std::size_t n = 0; n < plain.force_N.size(); ++n) {
+      const double force_N = n < moved.force_N.size() ? moved.force_N[n] : 0.0;
+      squares += std::pow(force_N - plain.force_N[n], 2);
+    }
+    const double rms_N = std::sqrt(squares / static_cast<double>(plain.force_N.size()));
+    std::printf("E1 %.0f MPa: peak %+.2f %%, rms %.2f %% of the peak\n", 1e-6 * E1_Pa,
+                100.0 * (moved.peak_force_N / plain.peak_force_N - 1.0),
+                100.0 * rms_N / plain.peak_force_N);
+    EXPECT_NEAR(moved.peak_force_N, plain.peak_force_N, 0.02 * plain.peak_force_N);
+    EXPECT_LT(rms_N, 0.02 * plain.peak_force_N);
+  }
+}
+
 TEST(Effects, NonlinearityShowsLessAtLowSpeed) {
   const auto change = [](double speed) {
     ImpactModel model = small(speed);
@@ -98,9 +131,10 @@ TEST(Effects, FrictionMakesThePeakEarlierAndRestitutionSmaller) {
   const ImpactHistory without = simulate(model);
   model.friction = 0.3;
   const ImpactHistory with = simulate(model);
-  EXPECT_LE(with.peak_time_s, without.peak_time_s);
-  EXPECT_LE(with.contact_time_s, without.contact_time_s);
-  EXPECT_NEAR(with.restitution - without.restitution, -0.0115, 0.006);
+  EXPECT_LT(with.peak_time_s, without.peak_time_s);
+  EXPECT_LT(with.contact_time_s, without.contact_time_s);
+  // On 2048 elements -0.0092 and on 8192 -0.0091: less than prototypes had, -0.010 to -0.013.
+  EXPECT_NEAR(with.restitution - without.restitution, -0.0092, 0.0006);
   EXPECT_EQ(without.energy.friction_J, 0.0);
 }
 
