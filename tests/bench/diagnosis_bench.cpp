@@ -120,13 +120,15 @@ Model known_ball() {
   return model;
 }
 
-void diagnose_fifteen_impacts(benchmark::State& state, double core_b, double bridge_b) {
+void diagnose_fifteen_impacts(benchmark::State& state, double core_b, double bridge_b,
+                              double core_damage) {
   testing::ImpactWishes wishes;
   wishes.seed = 77;
   wishes.speed_error = 1e-3;
   wishes.across = 15;
   wishes.core_b = core_b;
   wishes.bridge_b = bridge_b;
+  wishes.core_damage = core_damage;
   const Campaign campaign = read_campaign(testing::impact_shots(wishes));
   std::string found;
   for (auto _ : state) {
@@ -140,15 +142,20 @@ void diagnose_fifteen_impacts(benchmark::State& state, double core_b, double bri
   hold_to(state, 60.0);
   state.SetLabel(found);
 }
-BENCHMARK_CAPTURE(diagnose_fifteen_impacts, nothing_hidden, 0.0, 0.0)
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, nothing_hidden, 0.0, 0.0, 0.0)
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->UseRealTime();
-BENCHMARK_CAPTURE(diagnose_fifteen_impacts, one_effect, 0.9, 0.0)
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, one_effect, 0.9, 0.0, 0.0)
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->UseRealTime();
-BENCHMARK_CAPTURE(diagnose_fifteen_impacts, two_effects, 0.6, 240.0)
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, two_effects, 0.6, 240.0, 0.0)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->UseRealTime();
+// Damage is no effect of the library.
+BENCHMARK_CAPTURE(diagnose_fifteen_impacts, effect_not_in_library, 0.0, 0.0, 0.6)
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->UseRealTime();
