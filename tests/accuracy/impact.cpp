@@ -110,6 +110,13 @@ void add_spheres(Section& section) {
                           "1", fmt::format("{:.4f}", none), agreed(1.0, none)});
   section.rows.push_back(
       {"its slope by a/R", "-0.29", fmt::format("{:.3f}", slope), agreed(-0.29, slope)});
+  const double peak_by_patch = (large.peak - small.peak) / (large.patch - small.patch);
+  const double peak = small.peak - peak_by_patch * small.patch;
+  section.rows.push_back({"its largest force over Hertz's as a/R goes to 0", "1",
+                          fmt::format("{:.3f}", peak), agreed(1.0, peak)});
+  section.rows.push_back(
+      {fmt::format("its largest contact radius over Hertz's, a/R {:.2f}", small.patch), "1",
+       fmt::format("{:.3f}", small.radius), agreed(1.0, small.radius)});
   section.rows.push_back({"its impulse over 2 m V", "1", fmt::format("{:.5f}", small.impulse),
                           agreed(1.0, small.impulse)});
 }
@@ -144,8 +151,16 @@ void add_balls(Section& section) {
   add("ball, gauge at 250 mm against contact force: impulse [N s]", bar.impulse_N_s,
       force_per_strain_N * interval_s * std::accumulate(strain.begin(), strain.end(), 0.0),
       "{:.4f}");
-  add("ball, energy at the end over that at the start", 1.0, 1.0 + dashpot.energy.closure,
+  add("ball, impulse on the target over m (Vi + Vr)", 1.0,
+      dashpot.impulse_N_s / (dashpot.mass_kg * (40.3 + dashpot.rebound_speed_m_per_s)), "{:.6f}");
+  add("ball, energy where it closes worst over that at the start", 1.0,
+      1.0 + dashpot.energy.worst_closure, "{:.4f}");
+  model = testing::paper_impact(40.3, impact::TargetKind::rigid);
+  model.elements = 512;
+  add("the same on a rigid target", 1.0, 1.0 + impact::simulate(model).energy.worst_closure,
       "{:.4f}");
+  model.elements = 2048;
+  add("the same, 2048 elements", 1.0, 1.0 + impact::simulate(model).energy.worst_closure, "{:.4f}");
 }
 
 }  // namespace

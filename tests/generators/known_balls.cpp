@@ -78,6 +78,7 @@ HertzRun hertz(double speed_m_per_s, std::size_t elements) {
   return {std::sqrt(depth_m / kRadius_m),
           history.release_time_s / (2.943 * depth_m / speed_m_per_s),
           history.peak_force_N / (stiffness * std::pow(depth_m, 1.5)),
+          history.largest_contact_radius_m / std::sqrt(kRadius_m * depth_m),
           history.impulse_N_s / (2.0 * history.mass_kg * speed_m_per_s)};
 }
 

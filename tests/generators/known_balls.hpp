@@ -15,6 +15,7 @@ struct HertzRun {
   double patch;    // largest contact radius over the ball's, by Hertz
   double ratio;    // contact time over Hertz's
   double peak;     // largest force over Hertz's
+  double radius;   // largest contact radius over Hertz's
   double impulse;  // over 2 m V
 };
 

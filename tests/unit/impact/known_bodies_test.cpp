@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "tests/generators/known_balls.hpp"
 #include "tests/unit/impact/fine_meshes.hpp"
@@ -26,6 +27,14 @@ TEST(HertzImpact, IsApproachedAsThePatchShrinks) {
   EXPECT_NEAR(small.ratio - slope * small.patch, 1.0, fine ? 0.005 : 0.02)
       << small.ratio << " " << large.ratio;
   EXPECT_NEAR(slope, -0.29, 0.08);
+  const double by_patch = (large.peak - small.peak) / (large.patch - small.patch);
+  const double peak = small.peak - by_patch * small.patch;
+  std::printf("a/R %.3f and %.3f: force over Hertz's %.4f, %.4f, to none %.4f; radius %.3f, %.3f\n",
+              large.patch, small.patch, large.peak, small.peak, peak, large.radius, small.radius);
+  EXPECT_NEAR(peak, 1.0, 0.02);
+  // To a third of an element's width, a seventh of these patches.
+  EXPECT_NEAR(large.radius, 1.0, 0.05);
+  EXPECT_NEAR(small.radius, 1.0, 0.05);
   // What does not come back rings in the sphere.
   EXPECT_NEAR(small.impulse, 1.0, 2e-3);
 }
