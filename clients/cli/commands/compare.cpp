@@ -13,6 +13,7 @@
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/captures/new_file.hpp"
+#include "processing/criticism/impact/impact_notes.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -67,12 +68,15 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
   ImpactStudy study(campaign, judges_whole(file.model), band_limit_of(settings.band_limit_Hz),
                     all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
-  const Studied studied = fit_first ? study.fit(file.model) : study.as_it_is(file.model);
+  const Studied studied = naming_model(settings.model, [&] {
+    return fit_first ? study.fit(file.model) : study.as_it_is(file.model);
+  });
   const ImpactComparison comparison = study.compare(studied);
-  const std::string note = how(settings, file);
+  std::vector<std::string> notes = not_constrained(study, studied);
+  notes.insert(notes.begin(), how(settings, file));
   if (settings.report) {
     replace_file(*settings.report,
-                 render_html(impact_page(settings.model + " against the measurements", note,
+                 render_html(impact_page(settings.model + " against the measurements", notes,
                                          comparison, study, studied)));
   }
   if (context.json) {
@@ -86,11 +90,11 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
                                       {"parameters", describe_parameters(studied.model)},
                                       {"effects", describe_effects(studied.model)},
                                       {"strained", describe_strained(studied.model)},
-                                      {"notes", std::vector<std::string>{note}}})
+                                      {"notes", std::move(notes)}})
                 << "\n";
     return kDone;
   }
-  context.out << settings.model << ": " << note << "\n"
+  context.out << settings.model << ": " << notes.front() << "\n"
               << misfit_text(studied.misfit) << impact_words(study, studied) << "\n"
               << strained_text(studied.model) << "\n"
               << speeds_table(comparison) << "\n"
@@ -100,6 +104,9 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
                       : "")
               << "\n"
               << worst_plot(comparison, study.residuals().times_s(), context.terminal);
+  for (std::size_t i = 1; i < notes.size(); ++i) {
+    context.out << "  note: " << notes[i] << "\n";
+  }
   return kDone;
 }
 

@@ -27,12 +27,13 @@ struct Settings {
   std::optional<double> band_limit_Hz;
 };
 
-Studied fit(const Model& model, const Campaign& campaign, double band_limit_Hz,
+Studied fit(const Settings& settings, const Model& model, const Campaign& campaign,
             const Workers& executor) {
+  const double band_limit_Hz = band_limit_of(settings.band_limit_Hz);
   if (model.kind == BenchKind::impact) {
     require_kind(model, campaign);
     ImpactStudy study(campaign, judges_whole(model), band_limit_Hz, executor);
-    return study.settled(study.fit(model));
+    return naming_model(settings.model, [&] { return study.settled(study.fit(model)); });
   }
   Study study(campaign, band_limit_Hz, executor);
   return study.beside_quiet(study.fit(model));
@@ -44,7 +45,7 @@ int run(const Settings& settings, Context& context) {
   const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.captures));
   require_model_of(campaign.bench, file.model, settings.model);
-  const Studied studied = fit(file.model, campaign, band_limit_of(settings.band_limit_Hz), workers);
+  const Studied studied = fit(settings, file.model, campaign, workers);
   begin_step(file, fmt::format("fit {} captures", campaign.shots.size()));
   file.history.back().data_sha256 = digest_of_files(files_of(settings.captures));
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());

@@ -223,7 +223,7 @@ std::string worst_plot(const ImpactComparison& comparison, const std::vector<dou
                    {std::min(terminal.columns, kPlotColumns), kPlotRows}, terminal.colour);
 }
 
-Page impact_page(const std::string& title, const std::string& note,
+Page impact_page(const std::string& title, const std::vector<std::string>& notes,
                  const ImpactComparison& comparison, ImpactStudy& study, const Studied& studied) {
   Page page;
   page.title = title;
@@ -231,7 +231,7 @@ Page impact_page(const std::string& title, const std::string& note,
   page.headline = page.good ? "What the model foretells differs from the impacts" +
                                   std::string(within(study.allowance(studied)))
                             : "The model fails; below is at which speeds and when.";
-  page.notes = {note};
+  page.notes = notes;
   page.sections.push_back(
       speeds_section("Speed by speed", comparison, study.residuals().times_s()));
   page.sections.push_back(places_section(comparison, study.campaign()));

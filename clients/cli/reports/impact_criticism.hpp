@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/report/html.hpp"
@@ -44,7 +45,7 @@ auto naming_model(const std::string& file, const Act& act) {
                                      const std::vector<double>& times_s, const Terminal& terminal);
 
 /// What `kolsky compare --report` writes of impacts.
-[[nodiscard]] Page impact_page(const std::string& title, const std::string& note,
+[[nodiscard]] Page impact_page(const std::string& title, const std::vector<std::string>& notes,
                                const ImpactComparison& comparison, ImpactStudy& study,
                                const Studied& studied);
 /// What `kolsky diagnose --report` writes of impacts.
