@@ -28,6 +28,7 @@ std::string name_of(CaseKind kind) {
 CaseFiles write_case(const Case& drawn, const std::filesystem::path& root) {
   CaseFiles files;
   files.folder = root / "cases" / drawn.id;
+  std::filesystem::remove_all(files.folder);  // what an earlier run left of the same case
   files.bench = files.folder / "bench.toml";
   files.truth = root / "truth" / (drawn.id + ".json");
   if (drawn.campaign.filed_bars) {

@@ -165,6 +165,7 @@ CaseFiles write_impacts(const Draw& own, const Settings& settings) {
   const std::filesystem::path root = settings.out;
   CaseFiles files;
   files.folder = root / "cases" / own.drawn.id;
+  std::filesystem::remove_all(files.folder);  // what an earlier run left of the same case
   files.bench = files.folder / "bench.toml";
   files.truth = root / "truth" / (own.drawn.id + ".json");
   files.kind = "impact";
