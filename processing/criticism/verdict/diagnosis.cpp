@@ -266,7 +266,10 @@ class Diagnostician {
     constexpr double kMissed = 16.0;  // as a square of a normal deviate
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double loss = (left.fit.objective() - current.fit.objective()) / noise;
-    return equivalent_square(log_gain_tail(loss, 1.0, false)) >= kMissed;
+    // A hum of every gauge's own takes a dozen numbers along, each of which fits some noise.
+    const double freedom = left.fit.degrees_of_freedom(left.composition) -
+                           current.fit.degrees_of_freedom(current.composition);
+    return equivalent_square(log_gain_tail(loss, std::max(1.0, freedom), false)) >= kMissed;
   }
 
   /// @param left  the fit without it
