@@ -59,12 +59,11 @@ struct Coverage {
 };
 
 testing::Campaign draw(std::uint64_t seed, const Case& wanted, const Wishes& asked) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = asked.shots;
-  wishes.samples = asked.samples;
-  wishes.rate_Hz = 5e5;
-  wishes.tolerances = testing::Tolerances::filed;
+  testing::CampaignWishes wishes{.seed = seed,
+                                 .shots = asked.shots,
+                                 .tolerances = testing::Tolerances::filed,
+                                 .samples = asked.samples,
+                                 .rate_Hz = 5e5};
   testing::Campaign made = testing::draw_campaign(wishes);
   if (!asked.silent) {
     testing::hide(made, testing::parse_effect("end-reflection=0"));

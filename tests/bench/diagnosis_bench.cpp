@@ -21,13 +21,12 @@ namespace {
 enum class Kind { bar, shpb };
 
 std::vector<Shot> shots_with(Kind kind, int shots, const char* effect) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 77;
-  wishes.shots = shots;
-  wishes.gauges = kind == Kind::bar ? 4 : 3;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
-  wishes.split = kind == Kind::shpb;
+  testing::CampaignWishes wishes{.seed = 77,
+                                 .shots = shots,
+                                 .gauges = kind == Kind::bar ? 4 : 3,
+                                 .samples = 2048,
+                                 .rate_Hz = 1e6,
+                                 .split = kind == Kind::shpb};
   testing::Campaign made = testing::draw_campaign(wishes);
   if (effect != nullptr) {
     testing::hide(made, testing::parse_effect(effect));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -11,6 +12,15 @@ namespace kolsky {
 /// much beside as chance does to the share of so many repeats (two of a binomial's deviations).
 class HeldCoverage {
  public:
+  /// @param hold  takes what `--hold 94,96` gives
+  static void add_option(CLI::App& app, std::vector<double>& hold) {
+    app.add_option("--hold", hold,
+                   "least and most percent inside, as 94,96: fails where a share is outside by "
+                   "more\nthan two deviations of that many repeats")
+        ->delimiter(',')
+        ->expected(2);
+  }
+
   /// @param least_and_most_percent  empty: nothing is held
   HeldCoverage(std::vector<double> least_and_most_percent, double repeats)
       : held_(std::move(least_and_most_percent)),

@@ -91,11 +91,7 @@ int main(int argc, char** argv) {
   app.add_option("--noise", recording.noise_correlation, "from one sample to the next");
   app.add_option("--colour", colour)->check(CLI::IsMember({"white", "coloured", "pink"}));
   std::vector<double> hold;
-  app.add_option("--hold", hold,
-                 "least and most percent inside, as 94,96: fails where a share is outside by more\n"
-                 "than two deviations of that many repeats")
-      ->delimiter(',')
-      ->expected(2);
+  HeldCoverage::add_option(app, hold);
   CLI11_PARSE(app, argc, argv);
   HeldCoverage held(hold, wishes.repeats);
   held.state();

@@ -45,11 +45,7 @@ int main(int argc, char** argv) {
   app.add_option("--shots", shots, "of each")->check(CLI::PositiveNumber);
   app.add_option("--noise", noise_microstrain, "rms")->check(CLI::PositiveNumber);
   app.add_flag("--exact-bench", exact_bench, "nothing of bench and bars is off");
-  app.add_option("--hold", hold,
-                 "least and most percent inside, as 94,96: fails where a share is outside by more\n"
-                 "than two deviations of that many repeats")
-      ->delimiter(',')
-      ->expected(2);
+  HeldCoverage::add_option(app, hold);
   CLI11_PARSE(app, argc, argv);
   const double noise = 1e-6 * noise_microstrain;
   HeldCoverage held(hold, repeats);

@@ -22,10 +22,10 @@ struct CampaignWishes {
   NoiseColour colour = NoiseColour::white;
   std::vector<double> measured_noise{};  ///< for NoiseColour::measured
   Tolerances tolerances = Tolerances::none;
-  std::optional<int> bits;  ///< 0: no quantisation
-  std::optional<std::size_t> samples;
-  std::optional<double> rate_Hz;
-  std::optional<double> radius_m;
+  std::optional<int> bits{};  ///< 0: no quantisation
+  std::optional<std::size_t> samples{};
+  std::optional<double> rate_Hz{};
+  std::optional<double> radius_m{};
   bool split = false;  ///< a split Hopkinson bar in place of a bar
   bool elastic = false;
 };

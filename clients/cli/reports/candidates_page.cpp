@@ -30,8 +30,8 @@ std::string to_a_tenth(double value) {
 PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_out) {
   std::vector<CandidateResult> ranked = diagnosis.candidates;
   std::ranges::stable_sort(ranked, {}, &CandidateResult::log_p);
-  PageTable table{{"effect", "verdict", "strength", "ln p", "chi-square gain",
-                   "on held-out " + held_out, "smallest detectable", "told apart", "nearest rival"},
+  PageTable table{{"effect", "verdict", "strength", "ln p", "gain", "on held-out " + held_out,
+                   "detectable", "told apart", "nearest rival"},
                   {}};
   for (const CandidateResult& c : ranked) {
     const std::string strength =

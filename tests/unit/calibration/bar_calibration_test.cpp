@@ -24,12 +24,8 @@ enum class FarEnd { free, silent };
 testing::Campaign campaign(std::uint64_t seed, testing::Tolerances tolerances, int shots,
                            const std::vector<std::string>& effects = {}, int samples = kShort,
                            FarEnd far_end = FarEnd::free) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = shots;
-  wishes.samples = samples;
-  wishes.rate_Hz = 5e5;
-  wishes.tolerances = tolerances;
+  testing::CampaignWishes wishes{
+      .seed = seed, .shots = shots, .tolerances = tolerances, .samples = samples, .rate_Hz = 5e5};
   testing::Campaign made = testing::draw_campaign(wishes);
   if (far_end == FarEnd::free) {
     testing::hide(made, testing::parse_effect("end-reflection=0"));

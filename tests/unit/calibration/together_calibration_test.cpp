@@ -129,12 +129,8 @@ TEST(BarsTogether, ASpecimenBetweenThemIsNotLaidToTheBench) {
 // Soft enough, and gains of ten and a tenth, the most there are, leave less of it: still no gauge
 // is that far off.
 TEST(BarsTogether, NumbersAtTheirLimitsExplainNothing) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 21;
-  wishes.shots = 2;
-  wishes.gauges = 2;
-  wishes.tolerances = testing::Tolerances::filed;
-  wishes.split = true;
+  testing::CampaignWishes wishes{
+      .seed = 21, .shots = 2, .gauges = 2, .tolerances = testing::Tolerances::filed, .split = true};
   const testing::Campaign made = testing::draw_campaign(wishes);
   CalibrationOptions options;
   Material bars = paper_pmma();

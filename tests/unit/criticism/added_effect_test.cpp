@@ -14,13 +14,7 @@ namespace kolsky {
 namespace {
 
 testing::CampaignWishes wishes(bool split) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 5;
-  wishes.shots = 3;
-  wishes.gauges = split ? 3 : 4;
-  wishes.noise_strain = 4e-6;
-  wishes.split = split;
-  return wishes;
+  return {.seed = 5, .shots = 3, .gauges = split ? 3 : 4, .noise_strain = 4e-6, .split = split};
 }
 
 struct Added {

@@ -88,12 +88,11 @@ TEST(ShareBeside, IsNothingOfWhatAnotherExplainsAlone) {
 // Mains of 40 microstrain under slow noise. An end that returns waves explains a twentieth as much;
 // it was named.
 TEST(ShareBeside, KeepsWhatAHumExplainsFromBeingNamedAsSomethingElse) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 21;
-  wishes.shots = 8;
-  wishes.gauges = 4;
-  wishes.noise_strain = 4e-6;
-  wishes.colour = testing::NoiseColour::coloured;
+  testing::CampaignWishes wishes{.seed = 21,
+                                 .shots = 8,
+                                 .gauges = 4,
+                                 .noise_strain = 4e-6,
+                                 .colour = testing::NoiseColour::coloured};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("mains-hum=4e-5"));
   const Campaign campaign = read_campaign(testing::shots_of(truth));

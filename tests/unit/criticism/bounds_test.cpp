@@ -10,12 +10,8 @@ namespace kolsky {
 namespace {
 
 TEST(Bounds, OfAModelAreWhereItsFitEnds) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 12;
-  wishes.shots = 3;
-  wishes.gauges = 3;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = 12, .shots = 3, .gauges = 3, .samples = 1500, .rate_Hz = 1e6};
   const testing::Campaign truth = testing::draw_campaign(wishes);
   const Campaign campaign = read_campaign(testing::shots_of(truth));
   Study study(campaign, 0.0, Workers{});
@@ -34,12 +30,8 @@ TEST(Bounds, OfAModelAreWhereItsFitEnds) {
 // A gauge with a length holds less of what is carried to the others; one of next to nothing as much
 // as one of none. (A step there, of a thousandth of the noise, stood for 19 deviations of length.)
 TEST(GaugeLength, OfNextToNothingIsNone) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 13;
-  wishes.shots = 3;
-  wishes.gauges = 3;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = 13, .shots = 3, .gauges = 3, .samples = 1500, .rate_Hz = 1e6};
   const Campaign campaign = read_campaign(testing::shots_of(testing::draw_campaign(wishes)));
   Study study(campaign, 0.0, Workers{});
   const Studied base = study.fit(paper_model(BenchKind::bar, false));

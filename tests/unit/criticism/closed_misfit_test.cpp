@@ -21,12 +21,8 @@ class Floor : public ::testing::TestWithParam<std::uint64_t> {};
 
 // Of the same records, noise and all: closure is a share of what an effect could close.
 TEST_P(Floor, IsWhatTheTrueModelLeaves) {
-  testing::CampaignWishes wishes;
-  wishes.seed = GetParam();
-  wishes.shots = 5;
-  wishes.gauges = 4;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = GetParam(), .shots = 5, .gauges = 4, .samples = 1500, .rate_Hz = 1e6};
   testing::Campaign drawn = testing::draw_campaign(wishes);
   const std::string id = "gauge-position:" + drawn.bench.gauges[kAtFault].name;
   testing::hide(drawn, testing::parse_effect(id + "=" + std::to_string(kOff_m)));

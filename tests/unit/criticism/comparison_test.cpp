@@ -21,13 +21,7 @@ struct Made {
 };
 
 testing::CampaignWishes wishes_of(std::uint64_t seed) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
-  wishes.gauges = 4;
-  return wishes;
+  return {.seed = seed, .shots = 6, .gauges = 4, .samples = 2048, .rate_Hz = 1e6};
 }
 
 Made make(const testing::CampaignWishes& wishes, const std::vector<std::string>& effects) {

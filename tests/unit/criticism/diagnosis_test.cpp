@@ -26,13 +26,12 @@ struct Made {
 
 Made make(std::uint64_t seed, const std::vector<std::string>& effects, bool split = false,
           testing::Tolerances tolerances = testing::Tolerances::none) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
-  wishes.split = split;
-  wishes.tolerances = tolerances;
+  testing::CampaignWishes wishes{.seed = seed,
+                                 .shots = 6,
+                                 .tolerances = tolerances,
+                                 .samples = 2048,
+                                 .rate_Hz = 1e6,
+                                 .split = split};
   if (split) {
     wishes.gauges = 3;
   }
@@ -137,12 +136,11 @@ INSTANTIATE_TEST_SUITE_P(Effects, Single,
 // At little noise the material's own branch can turn dashpot and a further relaxation take its
 // place, with the same records to show for it; beside it a dashpot says little at first order.
 TEST(Diagnosis, TellsADashpotFromARelaxationThatTookTheMaterialsPlace) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 31;
-  wishes.shots = 5;
-  wishes.samples = 3000;
-  wishes.noise_strain = 5e-7;
-  wishes.tolerances = testing::Tolerances::filed;
+  testing::CampaignWishes wishes{.seed = 31,
+                                 .shots = 5,
+                                 .noise_strain = 5e-7,
+                                 .tolerances = testing::Tolerances::filed,
+                                 .samples = 3000};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("series-dashpot=3e-8"));
   const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
@@ -157,12 +155,8 @@ TEST(Diagnosis, TellsADashpotFromARelaxationThatTookTheMaterialsPlace) {
 // A relaxation about as quick as the material's own branch can be exchanged for more of that: then
 // its strength is known to less than its own size, and still it is there.
 TEST(Diagnosis, KeepsARelaxationAsQuickAsTheMaterialsOwnAmongWhatMayBeThere) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 7;
-  wishes.shots = 8;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
-  wishes.noise_strain = 1e-6;
+  testing::CampaignWishes wishes{
+      .seed = 7, .shots = 8, .noise_strain = 1e-6, .samples = 2048, .rate_Hz = 1e6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("second-relaxation=3e-12,tau=4e-5"));
   const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
@@ -186,14 +180,8 @@ Model filed_split_bar(const testing::Campaign& truth) {
 }
 
 testing::CampaignWishes split_wishes(std::uint64_t seed, int shots, std::size_t samples) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = shots;
-  wishes.gauges = 3;
-  wishes.samples = samples;
-  wishes.rate_Hz = 1e6;
-  wishes.split = true;
-  return wishes;
+  return {
+      .seed = seed, .shots = shots, .gauges = 3, .samples = samples, .rate_Hz = 1e6, .split = true};
 }
 
 Diagnosis diagnosed_split(const testing::Campaign& truth) {
@@ -262,11 +250,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, BesideASpecimen, ::testing::Values(202, 223));
 // While a gauge's length is missing the shots differ on the dashpot, without which the length does
 // not show: neither passes by itself.
 TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 44;
-  wishes.shots = 6;
-  wishes.gauges = 3;
-  wishes.noise_strain = 4e-6;
+  testing::CampaignWishes wishes{.seed = 44, .shots = 6, .gauges = 3, .noise_strain = 4e-6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("gauge-length:g3=0.02"));
   testing::hide(truth, testing::parse_effect("series-dashpot=2e-8"));
@@ -277,11 +261,7 @@ TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
 
 // A length at the end of what is built comes out beyond it every other time.
 TEST(Diagnosis, NamesAGaugeAsLongAsAnyIsBuilt) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 53;
-  wishes.shots = 6;
-  wishes.gauges = 3;
-  wishes.noise_strain = 4e-6;
+  testing::CampaignWishes wishes{.seed = 53, .shots = 6, .gauges = 3, .noise_strain = 4e-6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("gauge-length:g2=0.1"));
   const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
@@ -303,11 +283,7 @@ TEST(Diagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
 // its phases are common makes it claimable; what it explains weighs against the drifts all the
 // same.
 TEST(Search, AHumWeighsWhatItExplains) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 90;
-  wishes.shots = 4;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{.seed = 90, .shots = 4, .samples = 1500, .rate_Hz = 1e6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("mains-hum=4e-5"));
   truth.world.hum.share = {1.0, 1.2, 1.4, 1.6};
@@ -371,11 +347,7 @@ void ring(std::vector<double>& record, double frequency_Hz, double period_s) {
 
 // A position and lengths of other gauges take up half of it.
 TEST(Diagnosis, CallsUnknownWhatTheOtherGaugesWouldHaveToMakeUpFor) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 79;
-  wishes.shots = 4;
-  wishes.samples = 2048;
-  wishes.elastic = true;
+  testing::CampaignWishes wishes{.seed = 79, .shots = 4, .samples = 2048, .elastic = true};
   const testing::Campaign truth = testing::draw_campaign(wishes);
   const std::vector<Shot> shots = testing::shots_of(truth);
   Campaign campaign = read_campaign(shots);
@@ -439,12 +411,8 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
 // In a metal bar every gauge sees the same wave, and a bridge bends them all alike: nothing but
 // noise is left to tell how much, and asked for a bridge that bends by nine tenths.
 TEST(Diagnosis, DoesNotFitABridgeToNoise) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 5008;
-  wishes.shots = 10;
-  wishes.gauges = 4;
-  wishes.noise_strain = 10e-6;
-  wishes.elastic = true;
+  testing::CampaignWishes wishes{
+      .seed = 5008, .shots = 10, .gauges = 4, .noise_strain = 10e-6, .elastic = true};
   const Campaign campaign = read_campaign(testing::shots_of(testing::draw_campaign(wishes)));
   Study study(campaign, 0.0, Workers{});
   EXPECT_EQ(diagnose(study, paper_model(BenchKind::bar, true), {}).verdict,

@@ -11,12 +11,11 @@ namespace kolsky {
 namespace {
 
 std::vector<Shot> shots_with(std::uint64_t seed, const std::string& effect) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
-  wishes.tolerances = testing::Tolerances::none;
+  testing::CampaignWishes wishes{.seed = seed,
+                                 .shots = 6,
+                                 .tolerances = testing::Tolerances::none,
+                                 .samples = 2048,
+                                 .rate_Hz = 1e6};
   testing::Campaign made = testing::draw_campaign(wishes);
   if (!effect.empty()) {
     testing::hide(made, testing::parse_effect(effect));

@@ -22,12 +22,8 @@ void strike(testing::TrueShot& shot, double peak_strain) {
 
 /// Three weak shots and a strong one, each with its own bend of the bridge.
 std::vector<Shot> shots_with_bridges(const std::string& in_weak, const std::string& in_strong) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 303;
-  wishes.shots = 4;
-  wishes.gauges = 3;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = 303, .shots = 4, .gauges = 3, .samples = 1500, .rate_Hz = 1e6};
   testing::Campaign weak = testing::draw_campaign(wishes);
   for (std::size_t n = 0; n < weak.world.shots.size(); ++n) {
     strike(weak.world.shots[n], n == kStrong ? kStrongPeak : kWeakPeak);
@@ -74,12 +70,8 @@ class LargeEffect : public ::testing::TestWithParam<std::uint64_t> {};
 // A misfit that is large is taken for noise until it is explained: gains over the noise that is
 // left then and gains on shots that were held out are not in one measure by themselves.
 TEST_P(LargeEffect, IsClaimed) {
-  testing::CampaignWishes wishes;
-  wishes.seed = GetParam();
-  wishes.shots = 4;
-  wishes.gauges = 3;
-  wishes.samples = 3000;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = GetParam(), .shots = 4, .gauges = 3, .samples = 3000, .rate_Hz = 1e6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("end-reflection=0.2"));
   const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), {});

@@ -12,10 +12,7 @@ namespace kolsky {
 namespace {
 
 Campaign small() {
-  testing::CampaignWishes wishes;
-  wishes.seed = 11;
-  wishes.shots = 4;
-  wishes.gauges = 4;
+  testing::CampaignWishes wishes{.seed = 11, .shots = 4, .gauges = 4};
   return read_campaign(testing::shots_of(testing::draw_campaign(wishes)));
 }
 

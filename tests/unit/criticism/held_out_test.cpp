@@ -17,12 +17,8 @@ namespace kolsky {
 namespace {
 
 std::vector<Shot> small_campaign(const std::vector<std::string>& effects) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 911;
-  wishes.shots = 4;
-  wishes.gauges = 3;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = 911, .shots = 4, .gauges = 3, .samples = 1500, .rate_Hz = 1e6};
   testing::Campaign campaign = testing::draw_campaign(wishes);
   for (const std::string& effect : effects) {
     testing::hide(campaign, testing::parse_effect(effect));

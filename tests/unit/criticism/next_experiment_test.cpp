@@ -9,12 +9,8 @@ namespace kolsky {
 namespace {
 
 testing::Campaign drawn(std::uint64_t seed, int gauges, const std::string& effect) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.gauges = gauges;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = seed, .shots = 6, .gauges = gauges, .samples = 2048, .rate_Hz = 1e6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect(effect));
   return truth;

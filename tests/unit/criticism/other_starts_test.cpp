@@ -32,12 +32,8 @@ std::vector<std::string> said_of(const testing::CampaignWishes& wishes, const st
 TEST(EndReflection, IsFoundWeakAndOfEitherSign) {
   for (const std::uint64_t seed : {21U, 22U, 23U}) {
     for (const char* r : {"0.96", "1.04"}) {
-      testing::CampaignWishes wishes;
-      wishes.seed = seed;
-      wishes.shots = 4;
-      wishes.gauges = 3;
-      wishes.samples = 3000;
-      wishes.rate_Hz = 1e6;
+      testing::CampaignWishes wishes{
+          .seed = seed, .shots = 4, .gauges = 3, .samples = 3000, .rate_Hz = 1e6};
       EXPECT_EQ(said_of(wishes, std::string("end-reflection=") + r),
                 std::vector<std::string>{"end-reflection"})
           << "seed " << seed << ", r = " << r;
@@ -46,12 +42,8 @@ TEST(EndReflection, IsFoundWeakAndOfEitherSign) {
 }
 
 TEST(SpecimenRelaxation, QuickerThanWhatFirstOrderBeginsWithIsInTheSet) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 5;
-  wishes.shots = 4;
-  wishes.gauges = 3;
-  wishes.split = true;
-  wishes.elastic = true;
+  testing::CampaignWishes wishes{
+      .seed = 5, .shots = 4, .gauges = 3, .split = true, .elastic = true};
   const std::vector<std::string> said =
       said_of(wishes, "specimen-second-relaxation=1.9e-9,tau=4e-6");
   EXPECT_NE(std::ranges::find(said, "specimen-second-relaxation"), said.end())

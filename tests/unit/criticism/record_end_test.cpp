@@ -16,12 +16,8 @@ constexpr double kReturned = 0.2;
 /// Shots on a bar whose far end returns nearly all, recorded until so long after the front of what
 /// returns has reached the gauge nearest to that end. No other gauge sees it.
 std::vector<Shot> shots_that_end_after(std::uint64_t seed, double front_seen_s) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.gauges = 3;
-  wishes.samples = 3000;
-  wishes.rate_Hz = 1e6;
+  testing::CampaignWishes wishes{
+      .seed = seed, .shots = 6, .gauges = 3, .samples = 3000, .rate_Hz = 1e6};
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("end-reflection=" + std::to_string(kReturned)));
   const testing::BarWorld& world = truth.world;

@@ -12,12 +12,11 @@ namespace kolsky {
 namespace {
 
 std::vector<Shot> measured(std::uint64_t seed) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 5;
-  wishes.samples = 1536;
-  wishes.rate_Hz = 1e6;
-  wishes.tolerances = testing::Tolerances::none;
+  testing::CampaignWishes wishes{.seed = seed,
+                                 .shots = 5,
+                                 .tolerances = testing::Tolerances::none,
+                                 .samples = 1536,
+                                 .rate_Hz = 1e6};
   return testing::shots_of(testing::draw_campaign(wishes));
 }
 
@@ -118,12 +117,11 @@ TEST_F(Planting, DrawsNoiseAnewAsItWasBeforeThePulses) {
 
 /// Gains as filed within 0.2 %, and one of them 2 % off: a fit strains the filed numbers.
 std::vector<Shot> strained() {
-  testing::CampaignWishes wishes;
-  wishes.seed = 94;
-  wishes.shots = 5;
-  wishes.samples = 1536;
-  wishes.rate_Hz = 1e6;
-  wishes.tolerances = testing::Tolerances::none;
+  testing::CampaignWishes wishes{.seed = 94,
+                                 .shots = 5,
+                                 .tolerances = testing::Tolerances::none,
+                                 .samples = 1536,
+                                 .rate_Hz = 1e6};
   testing::Campaign campaign = testing::draw_campaign(wishes);
   testing::hide(campaign, testing::parse_effect("gauge-factor:g2=0.02"));
   std::vector<Shot> shots = testing::shots_of(campaign);

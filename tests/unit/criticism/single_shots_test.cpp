@@ -22,14 +22,7 @@ struct Seen {
 class OwnReadings : public ::testing::TestWithParam<Seen> {};
 
 testing::CampaignWishes six_shots(testing::NoiseColour colour, std::uint64_t seed) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.gauges = 4;
-  wishes.samples = 1500;
-  wishes.rate_Hz = 1e6;
-  wishes.colour = colour;
-  return wishes;
+  return {.seed = seed, .shots = 6, .gauges = 4, .colour = colour, .samples = 1500, .rate_Hz = 1e6};
 }
 
 /// Records in which one gauge reads more in two of the shots.

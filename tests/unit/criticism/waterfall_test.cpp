@@ -18,12 +18,8 @@ struct Made {
 };
 
 Made make(std::uint64_t seed, const std::vector<std::string>& effects, bool split = false) {
-  testing::CampaignWishes wishes;
-  wishes.seed = seed;
-  wishes.shots = 6;
-  wishes.samples = 2048;
-  wishes.rate_Hz = 1e6;
-  wishes.split = split;
+  testing::CampaignWishes wishes{
+      .seed = seed, .shots = 6, .samples = 2048, .rate_Hz = 1e6, .split = split};
   if (split) {
     wishes.gauges = 3;
   }

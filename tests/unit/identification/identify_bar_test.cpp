@@ -454,14 +454,13 @@ TEST(FitBar, CoversWhatItStatesInAShortRun) {
 /// By the noise of a theory that carries less of it, an elastic bar looked lossy, 95 and more
 /// ahead.
 TEST(IdentifyBar, AnElasticBarInPinkNoiseIsNotLossy) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 6005;
-  wishes.shots = 2;
-  wishes.gauges = 2;
-  wishes.elastic = true;
-  wishes.noise_strain = 50e-6;
-  wishes.colour = testing::NoiseColour::pink;
-  wishes.tolerances = testing::Tolerances::filed;
+  testing::CampaignWishes wishes{.seed = 6005,
+                                 .shots = 2,
+                                 .gauges = 2,
+                                 .noise_strain = 50e-6,
+                                 .colour = testing::NoiseColour::pink,
+                                 .tolerances = testing::Tolerances::filed,
+                                 .elastic = true};
   const BarIdentification result =
       identify_bar(testing::shots_of(testing::draw_campaign(wishes)), {});
   EXPECT_TRUE(result.three_element.lossless);
@@ -473,13 +472,12 @@ TEST(IdentifyBar, DeviationsHoldInPinkNoise) {
   constexpr int kRepeats = 20;
   double squares = 0.0;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    testing::CampaignWishes wishes;
-    wishes.seed = 9000U + static_cast<unsigned>(repeat);
-    wishes.shots = 4;
-    wishes.gauges = 4;
-    wishes.noise_strain = 4e-6;
-    wishes.colour = testing::NoiseColour::pink;
-    wishes.tolerances = testing::Tolerances::filed;
+    testing::CampaignWishes wishes{.seed = 9000U + static_cast<unsigned>(repeat),
+                                   .shots = 4,
+                                   .gauges = 4,
+                                   .noise_strain = 4e-6,
+                                   .colour = testing::NoiseColour::pink,
+                                   .tolerances = testing::Tolerances::filed};
     const testing::Campaign made = testing::draw_campaign(wishes);
     const auto result = identify_bar(testing::shots_of(made), {.compare_solids = false});
     const FittedNumber& E2 = result.three_element.parameters[1];
@@ -491,9 +489,7 @@ TEST(IdentifyBar, DeviationsHoldInPinkNoise) {
 
 /// A bar whose creep is spread over many times, solved in the time domain with 14 of them.
 std::vector<Shot> spread_creep(const std::string& effect) {
-  testing::CampaignWishes wishes;
-  wishes.seed = 71;
-  wishes.noise_strain = 1e-6;
+  testing::CampaignWishes wishes{.seed = 71, .noise_strain = 1e-6};
   testing::Campaign campaign = testing::draw_campaign(wishes);
   testing::plant(campaign.world, testing::parse_effect(effect));
   return testing::shots_of(campaign);
@@ -557,12 +553,11 @@ TEST(Foretell, LeavesNoise) {
 /// where a free one had led, it was left thousands behind one that returned 0.2 %.
 TEST(IdentifyBar, AWrongFarEndDoesNotLeadAstray) {
   for (const auto& [seed, noise_strain] : {std::pair{374943U, 50e-6}, {370001U, 30e-6}}) {
-    testing::CampaignWishes wishes;
-    wishes.seed = seed;
-    wishes.shots = 2;
-    wishes.gauges = 2;
-    wishes.noise_strain = noise_strain;
-    wishes.tolerances = testing::Tolerances::filed;
+    testing::CampaignWishes wishes{.seed = seed,
+                                   .shots = 2,
+                                   .gauges = 2,
+                                   .noise_strain = noise_strain,
+                                   .tolerances = testing::Tolerances::filed};
     const BarIdentification result =
         identify_bar(testing::shots_of(testing::draw_campaign(wishes)), {});
     EXPECT_EQ(result.fit.far_end, FarEndReturn::none) << seed;

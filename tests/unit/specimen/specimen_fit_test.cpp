@@ -94,12 +94,11 @@ TEST(FitSpecimen, TheDataTellWhetherTheSpecimensMassMatters) {
 TEST(FitSpecimen, TheSearchDoesNotHangOnOneStart) {
   for (const std::uint64_t seed : {102U, 213U, 214U}) {
     SCOPED_TRACE(seed);
-    testing::CampaignWishes wishes;
-    wishes.seed = seed;
-    wishes.shots = 5;
-    wishes.gauges = 2;
-    wishes.tolerances = testing::Tolerances::filed;
-    wishes.split = true;
+    testing::CampaignWishes wishes{.seed = seed,
+                                   .shots = 5,
+                                   .gauges = 2,
+                                   .tolerances = testing::Tolerances::filed,
+                                   .split = true};
     const testing::Campaign campaign = testing::draw_campaign(wishes);
     const SpecimenFit fit =
         fit_specimen(testing::shots_of(campaign), BarPrior(*campaign.filed_bars), {});

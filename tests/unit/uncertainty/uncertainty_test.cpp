@@ -223,12 +223,11 @@ double strain_under(const Reduction& r, const testing::TrueSpecimen& solid) {
 // up to a fifth of the strain is missing.
 TEST(Uncertainty, CountsWhatIsLeftOfThePush) {
   for (const std::uint64_t seed : {78U, 100U, 105U}) {
-    testing::CampaignWishes wishes;
-    wishes.seed = seed;
-    wishes.shots = 5;
-    wishes.gauges = 2;
-    wishes.tolerances = testing::Tolerances::filed;
-    wishes.split = true;
+    testing::CampaignWishes wishes{.seed = seed,
+                                   .shots = 5,
+                                   .gauges = 2,
+                                   .tolerances = testing::Tolerances::filed,
+                                   .split = true};
     const testing::Campaign campaign = testing::draw_campaign(wishes);
     ReductionOptions options;
     options.bar_model = *campaign.filed_bars;
