@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <random>
+#include <vector>
 
 #include "processing/criticism/fitting/study.hpp"
 #include "tests/generators/campaign.hpp"
@@ -27,12 +29,29 @@ TEST(Bounds, OfAModelAreWhereItsFitEnds) {
   EXPECT_NEAR(study.fit(model).model.effects[0].values[0].value, E1_Pa, 0.003 * E1_Pa);
 }
 
+/// With noise that all gauges share, as of one supply, besides their own.
+std::vector<Shot> shots_on_one_supply(std::uint64_t seed) {
+  const testing::Campaign truth = testing::draw_campaign(
+      {.seed = seed, .shots = 3, .gauges = 3, .samples = 1500, .rate_Hz = 1e6});
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(truth);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> shared(0.0, 4e-6);
+  for (auto& shot : readings) {
+    for (std::size_t n = 0; n < shot.front().size(); ++n) {
+      const double strain = shared(random);
+      for (std::vector<double>& gauge : shot) {
+        gauge[n] += strain;
+      }
+    }
+  }
+  return testing::shots_of(truth, readings);
+}
+
 // A gauge with a length holds less of what is carried to the others; one of next to nothing as much
 // as one of none. (A step there, of a thousandth of the noise, stood for 19 deviations of length.)
 TEST(GaugeLength, OfNextToNothingIsNone) {
-  testing::CampaignWishes wishes{
-      .seed = 13, .shots = 3, .gauges = 3, .samples = 1500, .rate_Hz = 1e6};
-  const Campaign campaign = read_campaign(testing::shots_of(testing::draw_campaign(wishes)));
+  const Campaign campaign = read_campaign(shots_on_one_supply(13));
   Study study(campaign, 0.0, Workers{});
   const Studied base = study.fit(paper_model(BenchKind::bar, false));
   Model model = base.model;

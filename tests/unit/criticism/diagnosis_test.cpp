@@ -14,6 +14,7 @@
 #include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/examination.hpp"
 #include "tests/generators/campaign.hpp"
+#include "tests/unit/criticism/filed_bars.hpp"
 
 namespace kolsky {
 namespace {
@@ -161,22 +162,6 @@ TEST(Diagnosis, KeepsARelaxationAsQuickAsTheMaterialsOwnAmongWhatMayBeThere) {
   testing::hide(truth, testing::parse_effect("second-relaxation=3e-12,tau=4e-5"));
   const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
   EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
-}
-
-/// The paper's split bar with the bars' moduli as a campaign files them.
-Model filed_split_bar(const testing::Campaign& truth) {
-  Model model = paper_model(BenchKind::shpb, false);
-  const auto bar = std::find_if(model.effects.begin(), model.effects.end(),
-                                [](const auto& use) { return use.id() == "three-element-bar"; });
-  const Material& filed = *truth.filed_bars;
-  const std::vector<Measured> numbers{filed.E1_Pa, filed.E2_Pa, filed.eta2_Pa_s};
-  for (std::size_t p = 0; p < numbers.size(); ++p) {
-    ModelValue& value = bar->values[p];
-    value.value = value.prior_mean = numbers[p].value;
-    value.prior_sd = numbers[p].sd;
-    value.free = numbers[p].sd > 0.0;
-  }
-  return model;
 }
 
 testing::CampaignWishes split_wishes(std::uint64_t seed, int shots, std::size_t samples) {

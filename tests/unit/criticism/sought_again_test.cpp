@@ -1,0 +1,80 @@
+// What is sought again: from elsewhere, of the other sign, or beside what is known by then.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "processing/criticism/verdict/diagnosis.hpp"
+#include "tests/generators/campaign.hpp"
+#include "tests/unit/criticism/filed_bars.hpp"
+
+namespace kolsky {
+namespace {
+
+/// What is claimed, and what cannot be told from it.
+std::vector<std::string> said_of(const testing::Campaign& truth, const Model& model) {
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(study, model, {});
+  std::vector<std::string> said;
+  for (const std::string& id : diagnosis.effects) {
+    said.push_back(id);
+    const auto& ties = diagnosis.tied_with.at(id);
+    said.insert(said.end(), ties.begin(), ties.end());
+  }
+  return said;
+}
+
+// An echo of the far end may have either sign; first order of one speaks against the other.
+TEST(EndReflection, IsFoundWeakAndOfEitherSign) {
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
+    for (const char* r : {"0.96", "1.04"}) {
+      testing::Campaign truth = testing::draw_campaign(
+          {.seed = seed, .shots = 4, .gauges = 3, .samples = 3000, .rate_Hz = 1e6});
+      testing::hide(truth, testing::parse_effect(std::string("end-reflection=") + r));
+      EXPECT_EQ(said_of(truth, paper_model(BenchKind::bar, false)),
+                std::vector<std::string>{"end-reflection"})
+          << "seed " << seed << ", r = " << r;
+    }
+  }
+}
+
+TEST(SpecimenRelaxation, QuickerThanWhatFirstOrderBeginsWithIsInTheSet) {
+  testing::Campaign truth =
+      testing::draw_campaign({.seed = 5, .shots = 4, .gauges = 3, .split = true});
+  testing::hide(truth, testing::parse_effect("specimen-second-relaxation=1.9e-9,tau=4e-6"));
+  const std::vector<std::string> said = said_of(truth, filed_split_bar(truth));
+  EXPECT_NE(std::ranges::find(said, "specimen-second-relaxation"), said.end())
+      << ::testing::PrintToString(said);
+}
+
+// Beside a drift that explains it all a hum of every gauge's own, found first, fits some noise with
+// each of its twelve numbers.
+TEST(BaselineDrift, LeavesNothingToAHumThatWasFoundFirst) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 956585078,
+                                                    .shots = 9,
+                                                    .gauges = 6,
+                                                    .noise_strain = 5.0881506161970515e-06,
+                                                    .colour = testing::NoiseColour::pink});
+  truth.wishes.seed = 467030489;  // of the noise
+  testing::hide(truth, testing::parse_effect("baseline-drift:g6=0.0634820465"));
+  EXPECT_EQ(said_of(truth, paper_model(BenchKind::bar, false)),
+            std::vector<std::string>{"baseline-drift:g6"});
+}
+
+// Two gauges off the same way are nearly the other two off the other way. What is found first is
+// the wrong one of them, and with a third effect beside it all was unknown.
+TEST(GaugeFactors, OfTwoGaugesAreSoughtBesideEachOtherBeforeAThird) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 216, .shots = 4, .gauges = 4});
+  for (const char* hidden : {"gauge-factor:g3=0.0027", "gauge-factor:g4=0.0035"}) {
+    testing::hide(truth, testing::parse_effect(hidden));
+  }
+  const std::vector<std::string> said = said_of(truth, paper_model(BenchKind::bar, false));
+  for (const char* id : {"gauge-factor:g3", "gauge-factor:g4"}) {
+    EXPECT_NE(std::ranges::find(said, id), said.end()) << ::testing::PrintToString(said);
+  }
+}
+
+}  // namespace
+}  // namespace kolsky
