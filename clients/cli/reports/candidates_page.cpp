@@ -30,7 +30,7 @@ std::string to_a_tenth(double value) {
 PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_out) {
   std::vector<CandidateResult> ranked = diagnosis.candidates;
   std::ranges::stable_sort(ranked, {}, &CandidateResult::log_p);
-  PageTable table{{"effect", "verdict", "strength", "ln p", "gain", "on held-out " + held_out,
+  PageTable table{{"effect", "verdict", "strength", "ln p", "gain", "held-out " + held_out,
                    "detectable", "told apart", "nearest rival"},
                   {}};
   for (const CandidateResult& c : ranked) {
@@ -38,7 +38,7 @@ PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_o
         c.verdict == "untestable" ? "" : strength_text(c.strength, c.sd, c.unit);
     table.rows.push_back({c.effect, c.verdict, strength, to_a_tenth(c.log_p), to_a_tenth(c.gain),
                           to_a_tenth(c.held_out_gain), size_text(c.detectable, c.unit),
-                          size_text(c.identifiable, c.unit), c.nearest_rival});
+                          number_text(c.identifiable), c.nearest_rival});
   }
   return table;
 }
