@@ -248,8 +248,8 @@ void file_split(Campaign& campaign) {
 
 // Stress at the impacted end for a peak of about that strain, less where the specimen would be
 // crushed: rigid bars would shorten it by twice the pulse's displacement.
-void scale_sources(Random& random, BarWorld& world, double specimen_length_m) {
-  constexpr double kMostStrain = 0.35;
+void scale_sources(Random& random, BarWorld& world, const TrueSpecimen& specimen) {
+  const double most_strain = specimen.solid ? 0.05 : 0.35;
   for (TrueShot& shot : world.shots) {
     const double most = *std::ranges::max_element(shot.source);
     double lasting_s = 0.0;
@@ -257,7 +257,7 @@ void scale_sources(Random& random, BarWorld& world, double specimen_length_m) {
       lasting_s += std::max(bell, 0.0) / most * world.timing.knot_s();
     }
     const double crushing =
-        kMostStrain * specimen_length_m / (2.0 * glassy_speed(world.material) * lasting_s);
+        most_strain * specimen.length_m / (2.0 * glassy_speed(world.material) * lasting_s);
     shot.peak_strain = std::min(shot.peak_strain, crushing * uniform(random, 0.6, 1.0));
     for (double& bell : shot.source) {
       bell *= shot.peak_strain * world.material.E1_Pa / most;
@@ -289,10 +289,11 @@ void draw_split(Random& random, Campaign& campaign) {
                               ? world.length_m
                               : filed(world.length_m * uniform(random, 0.7, 1.0), 1e-2);
   split.specimen = draw_specimen(random, world.radius_m, world.material.elastic);
+  split.specimen.solid = wishes.solid_specimen;
   world.gauges = draw_split_gauges(random, wishes.gauges, world.length_m, split.output_length_m);
   campaign.split = split;
   draw_shots(random, world, wishes.shots, uniform(random, 0.0, 1.0) < 0.5, 110e-6);
-  scale_sources(random, world, split.specimen.length_m);
+  scale_sources(random, world, split.specimen);
   file_split(campaign);
   if (wishes.tolerances == Tolerances::filed) {
     loosen(random, world, campaign.bench);

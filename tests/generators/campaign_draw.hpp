@@ -28,6 +28,7 @@ struct CampaignWishes {
   std::optional<double> radius_m{};
   bool split = false;  ///< a split Hopkinson bar in place of a bar
   bool elastic = false;
+  bool solid_specimen = false;  ///< a solid of revolution, shortened by a twentieth at most
 };
 
 /// The other half of a split bar.

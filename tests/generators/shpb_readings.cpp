@@ -8,6 +8,7 @@
 #include "tests/generators/interpolation.hpp"
 #include "tests/generators/sensor_records.hpp"
 #include "tests/generators/shpb_contact.hpp"
+#include "tests/generators/solid_specimen.hpp"
 #include "tests/generators/unit_source.hpp"
 
 namespace kolsky::testing {
@@ -85,6 +86,8 @@ Strains solve(const ShpbWorld& world, const TrueShot& shot, double target_step_s
   std::unique_ptr<ShpbContact> contact;
   if (mesh.specimen > 0) {
     contact = std::make_unique<WavySpecimen>(world, mesh.specimen);
+  } else if (world.specimen.solid) {
+    contact = std::make_unique<SolidSpecimen>(world, input.step_s());
   } else {
     contact = std::make_unique<MasslessSpecimen>(world, input.step_s());
   }
@@ -148,6 +151,11 @@ void plant(ShpbWorld& world, const HiddenEffect& effect) {
   if (const auto found = members.find(effect.id); found != members.end()) {
     world.specimen.*(found->second) = effect.strength;
     world.specimen.relaxation_time_s = effect.detail("tau", world.specimen.relaxation_time_s);
+    if (world.specimen.solid && effect.id != "interface-friction" &&
+        effect.id != "specimen-second-relaxation") {
+      throw InputError("--effect " + effect.id, "is not made of a solid specimen",
+                       "it has its mass and its friction; take a lumped one for others");
+    }
     if (world.specimen.inertia > 0.0 && world.specimen.asks_for_equilibrium()) {
       throw InputError("--effect " + effect.id, "is not made beside specimen-inertia",
                        "hide one of them");
@@ -236,7 +244,8 @@ std::vector<double> key_of(const ShpbWorld& world) {
                           s.gap_m,
                           s.punching,
                           s.permanent_strain,
-                          s.face_layer_m_per_N};
+                          s.face_layer_m_per_N,
+                          s.solid ? 1.0 : 0.0};
   for (const TrueShot& shot : world.base.shots) {
     const KelvinChain chain =
         world.base.material.chain(shot.temperature_K - world.base.reference_K, shot.peak_strain);

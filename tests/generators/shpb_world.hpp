@@ -27,6 +27,8 @@ struct TrueSpecimen {
   double permanent_strain =
       0.0;  ///< withheld: share of the spring's strain that stays when unloading
   double face_layer_m_per_N = 0.0;  ///< withheld: lubricant, shortening = c F/(1 + F/100 N)
+  bool solid = false;  ///< a solid of revolution with its mass and friction at its faces, in place
+                       ///< of what the effects' definitions make of them
 
   [[nodiscard]] double area_m2() const;
   [[nodiscard]] KelvinChain chain() const;

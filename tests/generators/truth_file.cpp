@@ -74,11 +74,9 @@ nlohmann::json truth_of(const Campaign& campaign) {
   if (campaign.split) {
     const TrueSpecimen& specimen = campaign.split->specimen;
     json["output_length_m"] = campaign.split->output_length_m;
-    json["specimen"] = {{"length_m", specimen.length_m},
-                        {"diameter_m", specimen.diameter_m},
-                        {"E1_Pa", specimen.E1_Pa},
-                        {"E2_Pa", specimen.E2_Pa},
-                        {"eta2_Pa_s", specimen.eta2_Pa_s}};
+    json["specimen"] = {{"solid", specimen.solid},           {"length_m", specimen.length_m},
+                        {"diameter_m", specimen.diameter_m}, {"E1_Pa", specimen.E1_Pa},
+                        {"E2_Pa", specimen.E2_Pa},           {"eta2_Pa_s", specimen.eta2_Pa_s}};
   }
   return json;
 }

@@ -14,6 +14,7 @@
 #include "clients/cli/threads.hpp"
 #include "drivers/files/captures/new_file.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
+#include "processing/criticism/records/arrival_order.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -125,10 +126,13 @@ int run(const Settings& settings, Context& context) {
   Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);
   const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
   const ShotGroups groups = by_strength(comparison, studied.model, campaign);
-  const std::string note = how(settings, file);
+  std::vector<std::string> notes{how(settings, file)};
+  if (auto exchanged = out_of_order(campaign)) {
+    notes.push_back(*std::move(exchanged));
+  }
   if (settings.report) {
     replace_file(*settings.report,
-                 render_html(comparison_page(settings.model + " against the measurements", note,
+                 render_html(comparison_page(settings.model + " against the measurements", notes,
                                              study, studied, comparer, comparison)));
   }
   if (context.json) {
@@ -143,12 +147,13 @@ int run(const Settings& settings, Context& context) {
                                       {"parameters", describe_parameters(studied.model)},
                                       {"effects", describe_effects(studied.model)},
                                       {"strained", describe_strained(studied.model)},
-                                      {"notes", std::vector<std::string>{note}}})
+                                      {"notes", notes}})
                 << "\n";
     return kDone;
   }
   const std::string strengths = fails_anywhere(comparison) ? strengths_table(groups, campaign) : "";
-  context.out << settings.model << ": " << note << "\n"
+  context.out << settings.model << ": " << notes.front() << "\n"
+              << (notes.size() > 1 ? "  note: " + notes.back() + "\n" : "")
               << misfit_text(studied.misfit) << in_words(studied.misfit, campaign.shots.size())
               << "\n"
               << strained_text(studied.model) << "\n"

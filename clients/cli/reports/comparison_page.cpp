@@ -307,7 +307,7 @@ PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
 
 }  // namespace
 
-Page comparison_page(const std::string& title, const std::string& note, Study& study,
+Page comparison_page(const std::string& title, std::vector<std::string> notes, Study& study,
                      const Studied& studied, Comparer& comparer, const Comparison& comparison) {
   const Campaign& campaign = study.campaign();
   const JudgedBand& band = study.residuals().band();
@@ -315,9 +315,10 @@ Page comparison_page(const std::string& title, const std::string& note, Study& s
   page.title = title;
   page.headline = headline(comparison, studied.model, campaign);
   page.good = !fails_anywhere(comparison) && !is_strained(studied.model);
-  page.notes = {note,
-                fmt::format("{}, {}, judged up to {}", counted(campaign.shots.size(), "shot"),
-                            counted(campaign.gauges(), "gauge"), with_unit(band.limit_Hz, "Hz"))};
+  page.notes = std::move(notes);
+  page.notes.push_back(
+      fmt::format("{}, {}, judged up to {}", counted(campaign.shots.size(), "shot"),
+                  counted(campaign.gauges(), "gauge"), with_unit(band.limit_Hz, "Hz")));
   page.sections.push_back(
       misfit_section("How large the misfit is", studied.misfit, campaign.shots.size()));
   page.sections.push_back(where_section("Where it is", comparison, campaign));

@@ -10,9 +10,9 @@ namespace kolsky::cli {
 
 /// What `kolsky compare --report` writes: the misfit in words, where the model fails, the model,
 /// prediction over measurement at every gauge.
-/// @param note  how the model came to be as it is compared
-[[nodiscard]] Page comparison_page(const std::string& title, const std::string& note, Study& study,
-                                   const Studied& studied, Comparer& comparer,
+/// @param notes  how the model came to be as it is compared, and what speaks against the bench
+[[nodiscard]] Page comparison_page(const std::string& title, std::vector<std::string> notes,
+                                   Study& study, const Studied& studied, Comparer& comparer,
                                    const Comparison& comparison);
 
 /// What `kolsky diagnose --report` writes: the verdict, every candidate, and the comparison before

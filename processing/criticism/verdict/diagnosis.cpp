@@ -8,6 +8,7 @@
 
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/records/arrival_order.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
@@ -349,7 +350,11 @@ class Diagnostician {
 }  // namespace
 
 Diagnosis diagnose(Study& study, const Model& model, const DiagnosisOptions& options) {
-  return Diagnostician(study, options).run(model);
+  Diagnosis diagnosis = Diagnostician(study, options).run(model);
+  if (auto exchanged = out_of_order(study.campaign())) {
+    diagnosis.notes.insert(diagnosis.notes.begin(), *std::move(exchanged));
+  }
+  return diagnosis;
 }
 
 }  // namespace kolsky
