@@ -50,16 +50,30 @@ TEST_F(MeasuredDiagnosis, NamesNothingThatTheShotsDoNotSupport) {
   EXPECT_GT(diagnosis.held_out.before, 2.0 * diagnosis.held_out.floor);
 }
 
+using Falsify = std::function<void(Shot&)>;
+
 class FalsifiedBench : public MeasuredDiagnosis {
  protected:
-  static double chi2_with(const std::function<void(Shot&)>& falsify) {
+  static Campaign campaign_with(const Falsify& falsify) {
     std::vector<Shot> shots = steel_shots();
     for (Shot& shot : shots) {
       falsify(shot);
     }
-    const Campaign campaign = read_campaign(shots);
+    return read_campaign(shots);
+  }
+  static double chi2_with(const Falsify& falsify) {
+    const Campaign campaign = campaign_with(falsify);
     Study study(campaign, 0.0, Workers{});
     return study.beside_quiet(study.fit(paper_model(BenchKind::shpb, true))).misfit.chi2_reduced;
+  }
+  static Diagnosis said_of(const Falsify& falsify) {
+    const Campaign campaign = campaign_with(falsify);
+    Study study(campaign, 0.0, Workers{});
+    return diagnose(study, paper_model(BenchKind::shpb, true), {});
+  }
+  static void swap_gauges(Shot& shot) {
+    std::swap(shot.channels[kIncident].codes, shot.channels[kTransmitted].codes);
+    std::swap(shot.channels[kIncident].scale, shot.channels[kTransmitted].scale);
   }
   static std::function<void(Shot&)> moved(std::size_t gauge, double by_m) {
     return [=](Shot& shot) { shot.bench.gauges[gauge].position_m.value += by_m; };
@@ -76,11 +90,15 @@ TEST_F(FalsifiedBench, WithWrongBarsOrSwappedGaugesFitsWorse) {
               shot.bench.output->density_kg_m3.value = 2700.0;
             }),
             1.5 * filed);
-  EXPECT_GT(chi2_with([](Shot& shot) {
-              std::swap(shot.channels[kIncident].codes, shot.channels[kTransmitted].codes);
-              std::swap(shot.channels[kIncident].scale, shot.channels[kTransmitted].scale);
-            }),
-            1.5 * filed);
+  EXPECT_GT(chi2_with(swap_gauges), 1.5 * filed);
+}
+
+TEST_F(FalsifiedBench, WithSwappedGaugesIsUnknownAndIsToldOfTheirOrder) {
+  const Diagnosis swapped = said_of(swap_gauges);
+  EXPECT_EQ(name_of(swapped.verdict), "unknown");
+  EXPECT_NE(swapped.notes.front().find("pulses come to transmitted"), std::string::npos)
+      << swapped.notes.front();
+  EXPECT_NE(swapped.notes.front().find("exchanged"), std::string::npos);
 }
 
 // The transmitted front comes 3 to 7 us early by the bench that was filed (its source says so):

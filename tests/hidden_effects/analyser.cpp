@@ -89,6 +89,12 @@ Answer compare_found(const Analyser& analyser, const CaseFiles& files) {
                          quoted(files.folder / "found.toml")));
 }
 
+Answer waterfall(const Analyser& analyser, const CaseFiles& files) {
+  return run(analyser, files, "waterfall",
+             fmt::format("model waterfall {}{} --json", quoted(files.folder / "found.toml"),
+                         captures_of(files)));
+}
+
 Answer refit(const Analyser& analyser, const CaseFiles& files) {
   return run(
       analyser, files, "fit",

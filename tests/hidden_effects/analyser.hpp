@@ -28,6 +28,9 @@ struct Answer {
 /// Compares the model that the diagnosis wrote, as it stands.
 [[nodiscard]] Answer compare_found(const Analyser& analyser, const CaseFiles& files);
 
+/// From the model that it began with to the one that the diagnosis wrote.
+[[nodiscard]] Answer waterfall(const Analyser& analyser, const CaseFiles& files);
+
 /// Fits the model that the diagnosis wrote, with what it found in it. @return fit's answer
 [[nodiscard]] Answer refit(const Analyser& analyser, const CaseFiles& files);
 

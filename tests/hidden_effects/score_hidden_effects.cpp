@@ -18,6 +18,7 @@
 #include "tests/hidden_effects/further_experiment.hpp"
 #include "tests/hidden_effects/plain_faults.hpp"
 #include "tests/hidden_effects/score_table.hpp"
+#include "tests/hidden_effects/stress_curve.hpp"
 
 namespace {
 
@@ -131,6 +132,9 @@ void score_case(const Settings& settings, const Case& drawn, std::optional<Faili
   Verdict verdict = judge(drawn, answer);
   if (settings.refit && verdict.exact) {
     judge_refit(verdict, drawn, refit(settings.analyser, files));
+    if (drawn.campaign.split) {
+      judge_curve(verdict, drawn, waterfall(settings.analyser, files));
+    }
   }
   if (settings.safeguards) {
     score_safeguards(settings, drawn, files, verdict, scores);

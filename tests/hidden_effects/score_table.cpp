@@ -75,10 +75,12 @@ double uniformity(std::vector<double> p) {
   return std::clamp(sum, 0.0, 1.0);
 }
 
-std::vector<double> pooled_moduli(const std::vector<Verdict>& verdicts) {
+/// Of all cases together: whether what is stated lies within its 95 % interval of the truth.
+std::vector<double> pooled(const std::vector<Verdict>& verdicts,
+                           std::vector<double> Verdict::*distances) {
   std::vector<double> inside;
   for (const Verdict& verdict : verdicts) {
-    for (const double distance : verdict.moduli_in_sd) {
+    for (const double distance : verdict.*distances) {
       inside.push_back(std::abs(distance) < 1.96 ? 1.0 : 0.0);
     }
   }
@@ -189,7 +191,10 @@ std::vector<Measure> measures(const std::vector<Verdict>& verdicts) {
               [](const std::vector<double>& c) { return quantile(c, 0.5); }),
       measure("held-out misfit closed, 5th percentile", closures, 0.85, Sense::at_least,
               [](const std::vector<double>& c) { return quantile(c, 0.05); }),
-      measure("moduli inside 95 % after adding", pooled_moduli(verdicts), 0.93, Sense::at_least),
+      measure("moduli inside 95 % after adding", pooled(verdicts, &Verdict::moduli_in_sd), 0.93,
+              Sense::at_least),
+      measure("stress-strain curve inside 95 %", pooled(verdicts, &Verdict::curve_in_sd), 0.93,
+              Sense::at_least),
       measure("95 % interval of the strength holds the truth",
               values(
                   verdicts, [](const Verdict& v) { return v.strength_in_sd.has_value(); },

@@ -19,6 +19,7 @@
 #include "tests/hidden_effects/plain_faults.hpp"
 #include "tests/hidden_effects/score_table.hpp"
 #include "tests/hidden_effects/source_freedom.hpp"
+#include "tests/hidden_effects/stress_curve.hpp"
 #include "tests/hidden_effects/whitening.hpp"
 
 namespace kolsky::scoring {
@@ -402,6 +403,30 @@ TEST(ScoreTable, MarksWhatFallsShort) {
   EXPECT_FALSE(table[1].got.has_value());
   verdicts[0].named.clear();
   EXPECT_TRUE(measures(verdicts)[0].met);
+}
+
+// At a constant rate r: dstress/dt + stress (E1 + E2)/eta = E1 (r + E2 r t/eta).
+TEST(StressCurve, IsTheClosedFormOfALinearSolid) {
+  const testing::TrueSpecimen specimen;
+  constexpr double kLoading_s = 100e-6;
+  constexpr double kRate = 800.0;
+  std::vector<double> strain;
+  for (int i = 0; i <= 50; ++i) {
+    strain.push_back(kRate * kLoading_s * i / 50.0);
+  }
+  const std::vector<double> stress = true_stress_Pa(specimen, strain, kLoading_s);
+  const double lambda = (specimen.E1_Pa + specimen.E2_Pa) / specimen.eta2_Pa_s;
+  const double a = specimen.E1_Pa * kRate;
+  const double b = a * specimen.E2_Pa / specimen.eta2_Pa_s;
+  for (std::size_t i = 1; i < strain.size(); ++i) {
+    const double t = strain[i] / kRate;
+    const double exact =
+        b / lambda * t + (a / lambda - b / (lambda * lambda)) * (1.0 - std::exp(-lambda * t));
+    EXPECT_NEAR(stress[i], exact, 1e-6 * exact) << i;
+  }
+  testing::TrueSpecimen stiffer = specimen;
+  stiffer.nonlinearity = 2.0;
+  EXPECT_GT(true_stress_Pa(stiffer, strain, kLoading_s).back(), 1.03 * stress.back());
 }
 
 }  // namespace

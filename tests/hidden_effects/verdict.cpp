@@ -195,6 +195,7 @@ Json json_of(const Verdict& verdict) {
             {"exact", verdict.exact},
             {"set_size", verdict.set_size},
             {"moduli_in_sd", verdict.moduli_in_sd},
+            {"curve_in_sd", verdict.curve_in_sd},
             {"proposal", verdict.proposal},
             {"seconds", verdict.seconds},
             {"error", verdict.error}};

@@ -22,6 +22,7 @@ struct Verdict {
   std::optional<double> closure;            ///< (before - after)/(before - floor), held out
   std::optional<double> strength_in_sd;     ///< (claimed - true)/sd
   std::vector<double> moduli_in_sd;         ///< after adding: (fitted - true)/sd
+  std::vector<double> curve_in_sd;          ///< likewise of a specimen's stress-strain curve
   std::string proposal;                     ///< what would break the tie, as it says
   std::optional<bool> tie_broken;           ///< by doing that; none where it cannot be made
   std::optional<Localisation> places;       ///< those that `compare` marks
