@@ -71,6 +71,12 @@ bool is_other_mains(const Candidate& one, const Candidate& other) {
          a.alike == b.alike && !is_harmonic(a) && !is_harmonic(b);
 }
 
+bool is_switch(const Candidate& candidate) {
+  const auto& parameters = candidate.use.effect->about().parameters;
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const EffectParameter& parameter) { return parameter.is_switch; });
+}
+
 bool of_material(const Candidate& candidate) {
   return candidate.use.effect->about().stage == Stage::material;
 }
@@ -342,6 +348,12 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       if (is_other_mains(candidates_[k], candidates_[i]) && !is_chosen(k)) {
         chosen.push_back(k);
       }
+    }
+  }
+  // What is there or not, first order takes a share of: far from the records that says nothing.
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (base_.misfit.chi2_reduced > kFarOff && is_switch(candidates_[i]) && !is_chosen(i)) {
+      chosen.push_back(i);
     }
   }
   // Of the material, what can say nothing at first order for standing at its bound.
