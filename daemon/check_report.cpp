@@ -30,6 +30,25 @@ std::string gauges_line(const DaemonConfig& config, const Apparatus& apparatus) 
   return line;
 }
 
+std::string reduction_line(const ReductionRequest& request) {
+  std::string line;
+  const auto add = [&](const std::string& text) { line += (line.empty() ? "" : ", ") + text; };
+  for (const auto& [key, word] : kRequestWords) {
+    if (request.*word) {
+      add(fmt::format("{} {}", key, *(request.*word)));
+    }
+  }
+  for (const auto& [key, number] : kRequestNumbers) {
+    if (request.*number) {
+      add(fmt::format("{} {}", key, *(request.*number)));
+    }
+  }
+  if (request.with_true) {
+    add("true strain and stress too");
+  }
+  return line.empty() ? "as usual" : line;
+}
+
 }  // namespace
 
 std::string check_report(const DaemonConfig& config, const Apparatus& apparatus) {
@@ -56,6 +75,7 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
       "ring       {} samples ({:.4g} s)\n"
       "store      {}\n"
       "model      {}\n"
+      "reduction  {}\n"
       "endpoints  results {}, preview {}, control {}\n",
       config.bench.string(), name_of(apparatus.bench.kind), rate_Hz * 1e-6, model,
       gauges_line(config, apparatus), config.digitiser.uri, block, milliseconds(block),
@@ -64,7 +84,8 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
       milliseconds(trigger.pre_samples), milliseconds(trigger.post_samples), ring,
       1e-3 * milliseconds(ring), config.store.string(),
       config.model ? config.model->string() : "none, shots are not compared",
-      config.endpoints.results, config.endpoints.preview, config.endpoints.control);
+      reduction_line(config.reduction), config.endpoints.results, config.endpoints.preview,
+      config.endpoints.control);
 }
 
 }  // namespace kolsky

@@ -15,6 +15,7 @@
 #include "drivers/files/tables/shot_facts.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/reduction/requested.hpp"
 
 namespace kolsky {
 
@@ -199,6 +200,55 @@ std::map<std::string, std::string> read_meta(const TomlTable& table,
   return meta;
 }
 
+// What `kolsky reduce` takes for one capture means nothing for all to come.
+void refuse_of_one_capture(const TomlTable& table) {
+  for (const char* key : {"arrival", "arrival_s", "uncertainty", "draws", "softening", "bench",
+                          "save", "svg", "csv"}) {
+    if (table.has(key)) {
+      throw table.error(key, "is of one capture, and this is for all to come",
+                        "leave it out here and give it to `kolsky reduce`");
+    }
+  }
+}
+
+ReductionRequest read_reduction(const TomlTable& table) {
+  refuse_of_one_capture(table);
+  table.expect({"dispersion", "separate", "stress", "inertia", "friction", "band_limit_Hz",
+                "duration_s", kRequestTrue});
+  ReductionRequest request;
+  for (const auto& [key, word] : kRequestWords) {
+    request.*word = table.optional_text(key);
+  }
+  for (const auto& [key, number] : kRequestNumbers) {
+    request.*number = table.optional_number(key);
+  }
+  request.with_true = table.optional_flag(kRequestTrue).value_or(false);
+  try {
+    static_cast<void>(options_of(request));
+  } catch (const InputError& error) {
+    throw table.error(error.place(), error.problem(), error.mend());
+  }
+  return request;
+}
+
+void check_reduction(const DaemonConfig& config, const Apparatus& apparatus) {
+  const std::string place = config.file.string() + ": reduction";
+  try {
+    require_suits(config.reduction, apparatus.bench, apparatus.bar_model);
+  } catch (const InputError& error) {
+    throw InputError(error.place().empty() ? place : place + "." + error.place(), error.problem(),
+                     error.mend());
+  }
+  const double window_s =
+      static_cast<double>(config.trigger.pre_samples + config.trigger.post_samples) /
+      apparatus.bench.sampling_frequency_Hz;
+  if (config.reduction.duration_s && *config.reduction.duration_s > window_s) {
+    throw InputError(place + ".duration_s",
+                     fmt::format("is longer than the window of {:.4g} s", window_s),
+                     "give less, or longer trigger.post_samples");
+  }
+}
+
 void check_gauges(const DaemonConfig& config, const Bench& bench) {
   const std::string place = config.bench.string();
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
@@ -268,7 +318,7 @@ std::size_t whole_samples(double duration_s, double sample_rate_Hz) {
 DaemonConfig read_config(const std::filesystem::path& path) {
   const TomlTable root = TomlTable::open(path);
   root.expect({"bench", "bar_model", "auto_arm", "digitiser", "trigger", "store", "endpoints",
-               "ring", "meta", "model"});
+               "ring", "meta", "model", "reduction"});
   DaemonConfig config;
   config.file = path;
   config.bench = beside(path, root.text("bench"));
@@ -305,6 +355,9 @@ DaemonConfig read_config(const std::filesystem::path& path) {
     config.light.amber_share =
         number_within(*model, "amber_share", config.light.amber_share, 0.0, 1.0);
   }
+  if (const auto reduction = root.optional_table("reduction")) {
+    config.reduction = read_reduction(*reduction);
+  }
   if (const auto meta = root.optional_table("meta")) {
     config.meta = read_meta(*meta, path);
   }
@@ -336,6 +389,7 @@ Apparatus read_apparatus(DaemonConfig& config) {
   apparatus.trigger_channel = find_trigger_channel(config, apparatus.bench);
   choose_window(config.trigger, apparatus.bench.sampling_frequency_Hz);
   check_trigger(config, apparatus.bench);
+  check_reduction(config, apparatus);
   return apparatus;
 }
 

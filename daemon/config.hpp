@@ -10,6 +10,7 @@
 #include "drivers/digitiser/open.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/material.hpp"
+#include "processing/base/reduction_request.hpp"
 #include "processing/trigger/incident_trigger.hpp"
 
 namespace kolsky {
@@ -65,6 +66,7 @@ struct DaemonConfig {
   std::optional<std::filesystem::path> bar_model;
   std::optional<std::filesystem::path> model;  ///< what shots are compared with as they come
   LightRule light;
+  ReductionRequest reduction;  ///< how shots are reduced as they come, filed with each of them
   std::filesystem::path store;
   std::int64_t journal_limit_bytes = 16 << 20;  ///< length at which a journal is ended
   DigitiserConfig digitiser;
@@ -89,7 +91,8 @@ struct Apparatus {
 
 /// Reads the bench and the bar's material, and checks what only both files together can show: the
 /// trigger channel is a gauge, as many digitiser channels as gauges, every gauge converts to
-/// strain. A window that was not given gets the samples of its time at the bench's rate.
+/// strain, shots of that bench can be reduced as asked. A window that was not given gets the
+/// samples of its time at the bench's rate.
 /// @throws InputError
 [[nodiscard]] Apparatus read_apparatus(DaemonConfig& config);
 

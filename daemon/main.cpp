@@ -32,6 +32,9 @@ constexpr const char* kAbout =
     "  channel = \"g1\"                        # the gauge that sees the incident pulse\n"
     "  [store]\n"
     "  folder = \"store\"\n"
+    "And, where shots are to be reduced otherwise than `kolsky reduce` does by itself:\n"
+    "  [reduction]\n"
+    "  dispersion = \"exact\"                 # keys are the options of `kolsky reduce`\n"
     "Paths in it are relative to the file. docs/operation.md has the rest.";
 
 constexpr const char* kGoOn =

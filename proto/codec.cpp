@@ -45,6 +45,18 @@ constexpr EnumPair<Separation, v1::Result::Separation> kSeparations[] = {
     {Separation::equilibrium, v1::Result::EQUILIBRIUM},
 };
 
+constexpr EnumPair<WaveTheory, v1::Result::Dispersion> kDispersions[] = {
+    {WaveTheory::elementary, v1::Result::DISPERSION_UNSPECIFIED},
+    {WaveTheory::love, v1::Result::LOVE},
+    {WaveTheory::exact, v1::Result::EXACT},
+};
+
+constexpr EnumPair<StressFrom, v1::Result::StressFrom> kStressesFrom[] = {
+    {StressFrom::both_faces, v1::Result::STRESS_FROM_UNSPECIFIED},
+    {StressFrom::back, v1::Result::ONE_WAVE},
+    {StressFrom::front, v1::Result::TWO_WAVE},
+};
+
 template <class Domain, class Wire, std::size_t N>
 Wire to_wire(Domain value, const EnumPair<Domain, Wire> (&pairs)[N]) {
   for (const auto& pair : pairs) {
@@ -126,6 +138,55 @@ Material decode(const v1::Material& message) {
   return material;
 }
 
+void encode(const ReductionRequest& request, v1::ReductionAsked& message) {
+  message.set_dispersion(request.dispersion.value_or(""));
+  message.set_separate(request.separate.value_or(""));
+  message.set_stress(request.stress.value_or(""));
+  message.set_inertia(request.inertia.value_or(""));
+  if (request.friction) {
+    message.set_friction(*request.friction);
+  }
+  if (request.band_limit_Hz) {
+    message.set_band_limit_hz(*request.band_limit_Hz);
+  }
+  if (request.duration_s) {
+    message.set_duration_s(*request.duration_s);
+  }
+  message.set_with_true(request.with_true);
+}
+
+ReductionRequest decode(const v1::ReductionAsked& message) {
+  const auto word = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional(text);
+  };
+  const auto number = [](bool there, double value) {
+    return there ? std::optional(value) : std::nullopt;
+  };
+  ReductionRequest request;
+  request.dispersion = word(message.dispersion());
+  request.separate = word(message.separate());
+  request.stress = word(message.stress());
+  request.inertia = word(message.inertia());
+  request.friction = number(message.has_friction(), message.friction());
+  request.band_limit_Hz = number(message.has_band_limit_hz(), message.band_limit_hz());
+  request.duration_s = number(message.has_duration_s(), message.duration_s());
+  request.with_true = message.with_true();
+  return request;
+}
+
+void encode(const Corrections& corrections, v1::Corrections& message) {
+  message.set_axial_inertia(corrections.axial_inertia);
+  message.set_radial_inertia(corrections.radial_inertia);
+  if (corrections.friction) {
+    message.set_friction(*corrections.friction);
+  }
+}
+
+Corrections decode(const v1::Corrections& message) {
+  return {message.axial_inertia(), message.radial_inertia(),
+          message.has_friction() ? std::optional(message.friction()) : std::nullopt};
+}
+
 SampleRate decode_rate(const v1::Tick& first, const std::string& place) {
   if (first.rate_numerator() <= 0 || first.rate_denominator() <= 0) {
     throw InputError(place + ".rate_numerator",
@@ -182,6 +243,12 @@ constexpr History kHistories[] = {
     {"strain_rate_per_s", "1/s", &Reduction::strain_rate_per_s},
     {"force_front_N", "N", &Reduction::force_front_N},
     {"force_back_N", "N", &Reduction::force_back_N},
+};
+
+/// Only there where they are asked for.
+constexpr History kTrueHistories[] = {
+    {"strain_true", "1", &Reduction::strain_true},
+    {"stress_true_Pa", "Pa", &Reduction::stress_true_Pa},
 };
 
 constexpr History kWaves[] = {
@@ -418,6 +485,9 @@ void encode(const Shot& shot, const std::string& capture, v1::Shot& message) {
     encode(*shot.bar_model, *message.mutable_bar_model());
   }
   message.set_software_version(shot.software_version);
+  if (shot.reduction.asks()) {
+    encode(shot.reduction, *message.mutable_reduction());
+  }
 }
 
 Shot decode(const v1::Shot& message) {
@@ -442,6 +512,7 @@ Shot decode(const v1::Shot& message) {
     shot.bar_model = decode(message.bar_model());
   }
   shot.software_version = message.software_version();
+  shot.reduction = decode(message.reduction());
   return shot;
 }
 
@@ -481,6 +552,9 @@ void encode(const Reduction& reduction, const std::string& shot_id, v1::Result& 
   message.set_shot_id(shot_id);
   encode(reduction.quality, *message.mutable_quality());
   pack_all(reduction, kHistories, *message.mutable_histories());
+  if (!reduction.strain_true.empty()) {
+    pack_all(reduction, kTrueHistories, *message.mutable_histories());
+  }
   pack_all(reduction, kWaves, *message.mutable_waves());
   message.set_bar_model(reduction.bar_model);
   message.set_arrival_s(reduction.arrival_s);
@@ -488,6 +562,11 @@ void encode(const Reduction& reduction, const std::string& shot_id, v1::Result& 
   message.set_band_limit_hz(reduction.band_limit_Hz);
   message.set_quiet_samples(static_cast<std::uint32_t>(reduction.quiet_samples));
   message.set_separation(to_wire(reduction.separation, kSeparations));
+  message.set_dispersion(to_wire(reduction.theory, kDispersions));
+  message.set_stress_from(to_wire(reduction.stress_from, kStressesFrom));
+  if (reduction.corrections.any()) {
+    encode(reduction.corrections, *message.mutable_corrections());
+  }
   message.set_assumed_from_s(reduction.assumed_from_s);
   message.set_push_left_share(reduction.push_left_share);
   if (reduction.ball) {
@@ -503,11 +582,18 @@ Reduction decode(const v1::Result& message) {
     unpack_all(message.waves(), "waves", kWaves, reduction);
     check_lengths(reduction, "histories", kHistories);
     check_lengths(reduction, "waves", kWaves);
+    unpack_all(message.histories(), "histories", kTrueHistories, reduction);
+    if (!reduction.strain_true.empty() || !reduction.stress_true_Pa.empty()) {
+      check_lengths(reduction, "histories", kTrueHistories);
+    }
     if (message.has_ball()) {
       reduction.ball = within("ball", [&] { return decode(message.ball()); });
     }
     reduction.separation = from_wire(message.separation(), kSeparations, "separation");
+    reduction.theory = from_wire(message.dispersion(), kDispersions, "dispersion");
+    reduction.stress_from = from_wire(message.stress_from(), kStressesFrom, "stress_from");
   });
+  reduction.corrections = decode(message.corrections());
   reduction.bar_model = message.bar_model();
   reduction.arrival_s = message.arrival_s();
   reduction.arrival_sigma_s = message.arrival_sigma_s();

@@ -50,6 +50,7 @@ ReducedShot fetch_shot(ControlClient& client, const std::string& id) {
   reduced.shot.bench = parse_bench(reduced.shot.bench_toml, "bench of shot " + wanted);
   reduced.reduction = wire::decode(answer.result());
   reduced.capture = absolute_name(answer.shot().capture());
+  reduced.request = reduced.shot.reduction;
   reduced.default_bar_model = assumes_bar_model(reduced.shot, {});
   return reduced;
 }

@@ -54,7 +54,7 @@ class Archivist {
   /// Hands over the expected, journaled shot. Waits while `kMostWaiting` others wait.
   void store(std::shared_ptr<const Shot> shot, CatalogueEntry entry);
 
-  /// Reads a capture back and reduces it with default options: what `kolsky reduce` does with that
+  /// Reads a capture back and reduces it as is filed with it: what `kolsky reduce` does with that
   /// file.
   /// @throws InputError where there is no such shot or its capture is damaged
   [[nodiscard]] StoredShot get(const std::string& id);

@@ -17,7 +17,7 @@ ReducingThread::~ReducingThread() {
 
 Reduction ReducingThread::rehearse(const Shot& shot) {
   const std::lock_guard lock(reducer_mutex_);
-  return reducer_.reduce(shot);
+  return reduce_as_filed(reducer_, shot);
 }
 
 void ReducingThread::begin(std::shared_ptr<const Shot> shot) {

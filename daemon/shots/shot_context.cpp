@@ -47,6 +47,7 @@ Shot blank_shot(const DaemonConfig& config, const Apparatus& apparatus, const St
   blank.bench = apparatus.bench;
   blank.bench_toml = apparatus.bench_toml;
   blank.bar_model = apparatus.bar_model;
+  blank.reduction = config.reduction;
   blank.rate = stream.rate;
   blank.meta = config.meta;
   blank.software_version = KOLSKY_VERSION;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "processing/base/error.hpp"
+#include "processing/reduction/requested.hpp"
 
 namespace kolsky {
 
@@ -26,9 +27,14 @@ const char* name_of(Verdict verdict) {
 
 }  // namespace
 
+Reduction reduce_as_filed(Reducer& reducer, const Shot& shot) {
+  reducer.set_options(options_of(shot.reduction));
+  return reducer.reduce(shot);
+}
+
 Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot) {
   try {
-    return reducer.reduce(shot);
+    return reduce_as_filed(reducer, shot);
   } catch (const InputError& error) {
     Reduction reduction;
     reduction.quality.reason = error.what();

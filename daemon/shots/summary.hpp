@@ -8,7 +8,11 @@
 
 namespace kolsky {
 
-/// Reduces what can be reduced. A shot of a bench that has nothing to reduce (a bar to
+/// Reduces a shot as is filed with it: what `kolsky reduce` does with its capture.
+/// @throws InputError, as Reducer
+[[nodiscard]] Reduction reduce_as_filed(Reducer& reducer, const Shot& shot);
+
+/// Reduces likewise what can be reduced. A shot of a bench that has nothing to reduce (a bar to
 /// characterise) gives no histories, and the reason.
 [[nodiscard]] Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot);
 

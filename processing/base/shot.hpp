@@ -8,6 +8,7 @@
 
 #include "processing/base/bench.hpp"
 #include "processing/base/material.hpp"
+#include "processing/base/reduction_request.hpp"
 #include "processing/base/time.hpp"
 
 namespace kolsky {
@@ -62,6 +63,7 @@ struct Shot {
   Bench bench;
   std::string bench_toml;             ///< the text the bench was read from
   std::optional<Material> bar_model;  ///< the one in force at the shot, if any was set
+  ReductionRequest reduction;         ///< in force at the shot: how it is reduced unless told
   SampleRate rate;
   Tick first_tick = 0;                  ///< tick of sample 0
   std::optional<TriggerEvent> trigger;  ///< none for an imported table

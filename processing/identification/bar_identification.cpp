@@ -434,18 +434,6 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
 
 }  // namespace
 
-std::string name_of(WaveTheory theory) {
-  switch (theory) {
-    case WaveTheory::elementary:
-      return "elementary";
-    case WaveTheory::love:
-      return "love";
-    case WaveTheory::exact:
-      break;
-  }
-  return "exact";
-}
-
 BarIdentification identify_bar(const std::vector<Shot>& shots,
                                const BarIdentificationOptions& options, const Workers& workers) {
   if (shots.empty()) {

@@ -71,6 +71,4 @@ struct ForetoldShot {
 };
 [[nodiscard]] std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit);
 
-[[nodiscard]] std::string name_of(WaveTheory theory);
-
 }  // namespace kolsky

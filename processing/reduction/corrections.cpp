@@ -71,17 +71,39 @@ void take_off_inertia(StressFrom from, const Corrections& corrections, const Spe
 }  // namespace
 
 StressFrom stress_from(const std::string& name) {
-  if (name == "three-wave") {
-    return StressFrom::both_faces;
-  }
-  if (name == "one-wave") {
-    return StressFrom::back;
-  }
-  if (name == "two-wave") {
-    return StressFrom::front;
+  for (const StressFrom from : {StressFrom::both_faces, StressFrom::back, StressFrom::front}) {
+    if (name == name_of(from)) {
+      return from;
+    }
   }
   throw InputError("stress", "\"" + name + "\" is not a way to take it",
                    "give three-wave, one-wave or two-wave");
+}
+
+std::string name_of(StressFrom from) {
+  switch (from) {
+    case StressFrom::back:
+      return "one-wave";
+    case StressFrom::front:
+      return "two-wave";
+    case StressFrom::both_faces:
+      break;
+  }
+  return "three-wave";
+}
+
+std::vector<std::string> names_of(const Corrections& corrections) {
+  std::vector<std::string> names;
+  if (corrections.axial_inertia) {
+    names.emplace_back("axial inertia");
+  }
+  if (corrections.radial_inertia) {
+    names.emplace_back("radial inertia");
+  }
+  if (corrections.friction) {
+    names.emplace_back("friction");
+  }
+  return names;
 }
 
 void set_stress(StressFrom from, const Corrections& corrections, const Specimen& specimen,

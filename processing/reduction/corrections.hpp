@@ -1,28 +1,11 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "processing/base/bench.hpp"
 #include "processing/reduction/reduction.hpp"
 
 namespace kolsky {
-
-/// Which forces the specimen's stress is taken from: three-wave, the mean of both faces; one-wave,
-/// the transmitted wave's, at the back; two-wave, that of incident and reflected, at the front.
-enum class StressFrom { both_faces, back, front };
-
-/// @throws InputError for any other name than three-wave, one-wave, two-wave
-[[nodiscard]] StressFrom stress_from(const std::string& name);
-
-/// What is taken off the stress besides. All off unless asked for.
-struct Corrections {
-  bool axial_inertia = false;
-  bool radial_inertia = false;
-  std::optional<double> friction;  ///< coefficient between specimen and bars
-
-  [[nodiscard]] bool any() const { return axial_inertia || radial_inertia || friction; }
-};
 
 /// Sets a reduction's stress from its forces, engineering. With rho the specimen's density, a its
 /// radius, h its length, e the compressive strain's rate and e' that rate's:

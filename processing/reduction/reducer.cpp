@@ -5,7 +5,9 @@
 #include "processing/base/range.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/requested.hpp"
 #include "processing/reduction/shpb_pass.hpp"
+#include "processing/reduction/true_values.hpp"
 
 namespace kolsky {
 
@@ -42,17 +44,6 @@ void require_reducible_bench(const Shot& shot) {
   }
 }
 
-void require_band_of_record(const std::optional<double>& band_limit_Hz, const Shot& shot) {
-  const double most_Hz = shot.rate.Hz() / 2.0;
-  if (band_limit_Hz && !(*band_limit_Hz > 0.0 && *band_limit_Hz <= most_Hz)) {
-    throw InputError("band_limit_Hz",
-                     in_words(*band_limit_Hz, "Hz") +
-                         " is not in the record, which was sampled at " +
-                         in_words(shot.rate.Hz(), "Hz"),
-                     "give at most half of that");
-  }
-}
-
 }  // namespace
 
 struct Reducer::State {
@@ -60,6 +51,9 @@ struct Reducer::State {
   std::unique_ptr<ShpbPlans> plans;
   std::unique_ptr<ShpbTables> tables;
   BallReducer ball{};
+
+  /// Of a specimen.
+  Reduction reduce(const Shot& shot);
 };
 
 Reducer::Reducer(ReductionOptions options) : state_(std::make_unique<State>()) {
@@ -68,6 +62,10 @@ Reducer::Reducer(ReductionOptions options) : state_(std::make_unique<State>()) {
 Reducer::~Reducer() = default;
 Reducer::Reducer(Reducer&&) noexcept = default;
 Reducer& Reducer::operator=(Reducer&&) noexcept = default;
+
+void Reducer::set_options(ReductionOptions options) {
+  state_->options = std::move(options);
+}
 
 void Reducer::set_bar_model(const Material& material) {
   state_->options.bar_model = material;
@@ -78,41 +76,52 @@ void Reducer::set_push_goes_on(double share) {
 }
 
 Reduction Reducer::reduce(const Shot& shot) {
-  require_band_of_record(state_->options.band_limit_Hz, shot);
-  if (shot.bench.kind == BenchKind::impact) {
-    return state_->ball.reduce(shot, state_->options);
+  const ReductionOptions& options = state_->options;
+  require_band_of_record(options.band_limit_Hz, shot.rate.Hz());
+  const bool is_ball = shot.bench.kind == BenchKind::impact;
+  Reduction reduction = is_ball ? state_->ball.reduce(shot, options) : state_->reduce(shot);
+  reduction.theory = options.theory;
+  reduction.stress_from = options.stress;
+  reduction.corrections = options.corrections;
+  if (options.with_true) {
+    reduction.strain_true = true_strain(reduction);
+    reduction.stress_true_Pa = true_stress_Pa(reduction);
   }
+  return reduction;
+}
+
+Reduction Reducer::State::reduce(const Shot& shot) {
   require_reducible_bench(shot);
   const std::string unusable = unusable_because(shot);
   if (!unusable.empty()) {
     return not_reducible(unusable, kRepeatOrLeaveOut);
   }
-  ReductionOptions options = state_->options;
-  const bool assumed = !options.bar_model && !shot.bar_model;
-  const Material material = options.bar_model ? *options.bar_model
-                            : shot.bar_model  ? *shot.bar_model
-                                              : assumed_bars(shot.bench);
-  if (!options.bar_model && shot.bar_model) {
+  ReductionOptions told = options;
+  const bool assumed = !told.bar_model && !shot.bar_model;
+  const Material material = told.bar_model   ? *told.bar_model
+                            : shot.bar_model ? *shot.bar_model
+                                             : assumed_bars(shot.bench);
+  if (!told.bar_model && shot.bar_model) {
     require_bar_model_holds(material, shot, "the capture's bar model");
-    require_band_known(material, options.band_limit_Hz, "the capture's bar model");
+    require_band_known(material, told.band_limit_Hz, "the capture's bar model");
   }
-  if (!options.most_band_Hz && material.identified) {
-    options.most_band_Hz = material.identified->band_limit_Hz;
+  if (!told.most_band_Hz && material.identified) {
+    told.most_band_Hz = material.identified->band_limit_Hz;
   }
   const Station in = station_on(shot.bench, "input");
   const Station out = station_on(shot.bench, "output");
-  std::vector<double> numbers = shpb_numbers(shot.bench, material, options.theory, in, out);
+  std::vector<double> numbers = shpb_numbers(shot.bench, material, told.theory, in, out);
   const ShpbBar input(shot.bench.input, in, material);
   const ShpbBar output(*shot.bench.output, out, material);
   const ShpbPlanKey plan = ShpbPlanKey::of(shot, input, output);
-  if (!state_->plans || !(state_->plans->key == plan)) {
-    state_->plans = std::make_unique<ShpbPlans>(plan);
+  if (!plans || !(plans->key == plan)) {
+    plans = std::make_unique<ShpbPlans>(plan);
   }
-  if (!state_->tables || state_->tables->numbers != numbers || !(state_->tables->plan == plan)) {
-    state_->tables = std::make_unique<ShpbTables>(std::move(numbers), plan, options.theory,
-                                                  shot.bench, material, in, out);
+  if (!tables || tables->numbers != numbers || !(tables->plan == plan)) {
+    tables = std::make_unique<ShpbTables>(std::move(numbers), plan, told.theory, shot.bench,
+                                          material, in, out);
   }
-  Reduction reduction = shpb_pass(shot, in, out, options, *state_->plans, *state_->tables);
+  Reduction reduction = shpb_pass(shot, in, out, told, *plans, *tables);
   reduction.bar_model = describe(shot.bench, material, assumed);
   return reduction;
 }

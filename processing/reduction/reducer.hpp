@@ -5,9 +5,8 @@
 
 #include "processing/base/material.hpp"
 #include "processing/base/shot.hpp"
-#include "processing/reduction/corrections.hpp"
 #include "processing/reduction/reduction.hpp"
-#include "processing/waves/bar_modes.hpp"
+#include "processing/waves/wave_theory.hpp"
 
 namespace kolsky {
 
@@ -32,6 +31,7 @@ struct ReductionOptions {
                                      ///< the specimen from a bar's far end, 2 length / front speed;
                                      ///< where waves are separated at least to the end of the first
                                      ///< loading
+  bool with_true = false;            ///< true strain and stress beside the engineering ones
 };
 
 /// Reduces shots of one bench, keeping transform plans and propagation tables between shots of the
@@ -50,6 +50,9 @@ class Reducer {
   /// the reason in `quality`.
   /// @throws InputError where the bench itself does not suit (no gauge on a bar, no modulus)
   [[nodiscard]] Reduction reduce(const Shot& shot);
+
+  /// Reduces by these options from now on; what still fits of plans and tables is kept.
+  void set_options(ReductionOptions options);
 
   /// Takes viscoelastic bars to be of another material from now on.
   void set_bar_model(const Material& material);

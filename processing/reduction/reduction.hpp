@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processing/reduction/ball/ball_impact.hpp"
+#include "processing/waves/wave_theory.hpp"
 
 namespace kolsky {
 
@@ -47,6 +48,26 @@ enum class Separation { as_needed, never, gauges, equilibrium };
 [[nodiscard]] Separation separation_from(const std::string& name);
 [[nodiscard]] std::string name_of(Separation separation);
 
+/// Which forces the specimen's stress is taken from: three-wave, the mean of both faces; one-wave,
+/// the transmitted wave's, at the back; two-wave, that of incident and reflected, at the front.
+enum class StressFrom { both_faces, back, front };
+
+/// @throws InputError for any other name than three-wave, one-wave, two-wave
+[[nodiscard]] StressFrom stress_from(const std::string& name);
+[[nodiscard]] std::string name_of(StressFrom from);
+
+/// What is taken off the stress besides. All off unless asked for.
+struct Corrections {
+  bool axial_inertia = false;
+  bool radial_inertia = false;
+  std::optional<double> friction;  ///< coefficient between specimen and bars
+
+  [[nodiscard]] bool any() const { return axial_inertia || radial_inertia || friction; }
+};
+
+/// For people: axial inertia, radial inertia, friction.
+[[nodiscard]] std::vector<std::string> names_of(const Corrections& corrections);
+
 /// A specimen's histories, engineering, compression positive, equally spaced; t = 0 when the pulse
 /// arrives at interface A (the input bar's end). All arrays have the same length.
 struct Reduction {
@@ -56,6 +77,8 @@ struct Reduction {
   std::vector<double> strain_rate_per_s;
   std::vector<double> force_front_N;
   std::vector<double> force_back_N;
+  std::vector<double> strain_true;  ///< these two where they are asked for, else empty
+  std::vector<double> stress_true_Pa;
   // The waves behind them, as strain at the interfaces.
   std::vector<double> incident;
   std::vector<double> reflected;
@@ -63,6 +86,9 @@ struct Reduction {
   double arrival_s = 0.0;  ///< of the incident pulse at interface A, from the shot's first sample
   double arrival_sigma_s = 0.0;
   double band_limit_Hz = 0.0;
+  WaveTheory theory = WaveTheory::elementary;       ///< of the bars' waves
+  StressFrom stress_from = StressFrom::both_faces;  ///< and `corrections` are of `stress_Pa`
+  Corrections corrections{};
   Separation separation = Separation::never;  ///< how waves were separated, never as_needed
   /// Where equilibrium was taken for granted: from when it may be (infinite: nothing says from
   /// when). 0 where it was not.

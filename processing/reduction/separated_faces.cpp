@@ -59,15 +59,6 @@ struct BarRecords {
   }
 };
 
-void require_two_places(const Bench& bench) {
-  if (!gauges_at_two_places(bench, "input")) {
-    throw InputError("gauges",
-                     "are at one place of the input bar: two are needed to tell its waves apart",
-                     "file a second gauge there, or separate by equilibrium: the output bar's "
-                     "force in place of the second gauge");
-  }
-}
-
 std::vector<double> times(const std::vector<double>& values, double factor) {
   std::vector<double> scaled(values);
   for (double& value : scaled) {
@@ -98,6 +89,15 @@ std::string name_of(Separation separation) {
   const auto* const known =
       std::ranges::find(kSeparationNames, separation, &std::pair<const char*, Separation>::second);
   return known->first;
+}
+
+void require_two_places(const Bench& bench) {
+  if (!gauges_at_two_places(bench, "input")) {
+    throw InputError("gauges",
+                     "are at one place of the input bar: two are needed to tell its waves apart",
+                     "file a second gauge there, or separate by equilibrium: the output bar's "
+                     "force in place of the second gauge");
+  }
 }
 
 bool gauges_at_two_places(const Bench& bench, const std::string& bar) {

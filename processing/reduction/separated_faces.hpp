@@ -22,6 +22,8 @@ struct SeparatedFaces {
   std::size_t known = 0;  ///< samples up to which the gauges have seen what left the faces
 };
 
+/// @throws InputError where the input bar's are at one place
+void require_two_places(const Bench& bench);
 /// Whether a bar has gauges at two places that are more than a diameter apart.
 [[nodiscard]] bool gauges_at_two_places(const Bench& bench, const std::string& bar);
 

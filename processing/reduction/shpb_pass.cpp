@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "processing/reduction/corrections.hpp"
 #include "processing/reduction/formatted.hpp"
 #include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/pulse.hpp"

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "processing/base/error.hpp"
-
 namespace kolsky {
 
 namespace {
@@ -42,20 +40,6 @@ std::vector<BarMode> love_modes(const Bar& bar, const Compliance& compliance,
 }
 
 }  // namespace
-
-WaveTheory wave_theory(const std::string& name) {
-  if (name == "elementary") {
-    return WaveTheory::elementary;
-  }
-  if (name == "love") {
-    return WaveTheory::love;
-  }
-  if (name == "exact") {
-    return WaveTheory::exact;
-  }
-  throw InputError("dispersion", "\"" + name + "\" is not a wave theory",
-                   "give elementary, love or exact");
-}
 
 std::vector<BarMode> bar_modes(WaveTheory theory, const Bar& bar, const Compliance& compliance,
                                const std::vector<Complex>& path) {

@@ -1,21 +1,14 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "processing/base/bench.hpp"
 #include "processing/waves/compliance.hpp"
 #include "processing/waves/pochhammer_chree.hpp"
+#include "processing/waves/wave_theory.hpp"
 
 namespace kolsky {
-
-/// How waves travel in a bar: one-dimensionally (the paper), with lateral inertia to first order
-/// (Love), or exactly (Pochhammer and Chree, first mode).
-enum class WaveTheory { elementary, love, exact };
-
-/// @throws InputError for any other name
-[[nodiscard]] WaveTheory wave_theory(const std::string& name);
 
 /// gamma and the mean-to-surface ratio along a path of s that starts near zero.
 ///   elementary  gamma = s sqrt(rho J)

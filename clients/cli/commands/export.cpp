@@ -30,7 +30,7 @@ ExportFormat format_of(const std::string& name) {
 ReducedShot exportable(const std::string& capture) {
   Shot shot = read_capture(capture);
   if (shot.bench.kind != BenchKind::bar) {
-    return reduce_capture(capture, {});
+    return reduce_capture(capture);
   }
   ReducedShot bar;
   bar.shot = std::move(shot);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <ostream>
@@ -15,6 +16,7 @@
 #include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/exports/export.hpp"
 #include "processing/base/error.hpp"
+#include "processing/reduction/requested.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -24,15 +26,9 @@ constexpr mode_t kReadableByAll = 0644;
 struct Settings {
   std::vector<std::string> captures;
   std::optional<std::string> bar_model;
-  bool with_true = false;
+  ReductionRequest request;
+  bool defaults = false;
   std::optional<double> arrival_s;
-  std::optional<double> band_limit_Hz;
-  std::optional<double> duration_s;
-  std::optional<std::string> dispersion;
-  std::optional<std::string> separate;
-  std::optional<std::string> stress;
-  std::optional<std::string> inertia;
-  std::optional<double> friction;
   bool uncertainty = false;
   std::optional<std::uint64_t> draws;
   std::optional<double> softening_per_K;
@@ -42,78 +38,41 @@ struct Settings {
   std::optional<std::string> csv;
 };
 
-void refuse_not_positive(std::optional<double> number, const std::string& option_name,
-                         const std::string& unit) {
-  if (number.has_value() && *number <= 0.0) {
-    throw InputError("kolsky reduce: " + option_name, "must be above 0 " + unit,
-                     "give a positive number in " + unit);
+/// By which option a request's key is given: band_limit_Hz by --band-limit.
+std::string option_of(const std::string& key) {
+  std::string name = key.substr(0, key.find(key.ends_with("_Hz") ? "_Hz" : "_s"));
+  std::ranges::replace(name, '_', '-');
+  return "--" + name;
+}
+
+/// Runs a check of the request; what it refuses is named as the user gave it.
+template <class Check>
+void as_given(const Check& check) {
+  try {
+    check();
+  } catch (const InputError& error) {
+    throw InputError("kolsky reduce: " + option_of(error.place()), error.problem(), error.mend());
   }
 }
 
-Corrections corrections_of(const Settings& settings) {
-  Corrections corrections;
-  if (settings.inertia.has_value()) {
-    const std::string& kind = *settings.inertia;
-    if (kind != "axial" && kind != "radial" && kind != "both") {
-      throw InputError("kolsky reduce: --inertia", "\"" + kind + "\" is not one",
-                       "give axial, radial or both");
-    }
-    corrections.axial_inertia = kind != "radial";
-    corrections.radial_inertia = kind != "axial";
-  }
-  if (settings.friction.has_value()) {
-    if (!(*settings.friction >= 0.0 && *settings.friction <= 1.0)) {
-      throw InputError("kolsky reduce: --friction", "is outside 0 to 1",
-                       "give the coefficient between specimen and bars, as 0.1");
-    }
-    corrections.friction = settings.friction;
-  }
-  return corrections;
-}
-
-std::vector<std::string> names_of(const Corrections& corrections) {
-  std::vector<std::string> names;
-  if (corrections.axial_inertia) {
-    names.emplace_back("axial inertia");
-  }
-  if (corrections.radial_inertia) {
-    names.emplace_back("radial inertia");
-  }
-  if (corrections.friction.has_value()) {
-    names.emplace_back("friction");
-  }
-  return names;
-}
-
-ReductionOptions reduction_options(const Settings& settings,
-                                   const std::optional<BarModelFile>& bars) {
-  ReductionOptions options;
+Asked asked_by(const Settings& settings, const std::optional<BarModelFile>& bars) {
+  as_given([&] { static_cast<void>(options_of(settings.request)); });
+  Asked asked;
+  asked.request = settings.request;
+  asked.as_filed = !settings.defaults;
+  asked.arrival_s = settings.arrival_s;
+  asked.bench = settings.bench;
   if (bars.has_value()) {
-    options.bar_model = bars->prior.material;
-    options.most_band_Hz = bars->band_limit_Hz;
-    require_band(*bars, settings.band_limit_Hz);
-  }
-  if (settings.stress.has_value()) {
-    options.stress = stress_from(*settings.stress);
-  }
-  if (settings.separate.has_value()) {
-    options.separation = separation_from(*settings.separate);
+    asked.bar_model = bars->prior.material;
+    asked.most_band_Hz = bars->band_limit_Hz;
+    require_band(*bars, settings.request.band_limit_Hz);
   }
   if (settings.softening_per_K.has_value() &&
       !(*settings.softening_per_K >= 0.0 && *settings.softening_per_K < 1.0)) {
     throw InputError("kolsky reduce: --softening", "is outside 0 to 1 per kelvin",
                      "0.003 is usual: polymers soften as they warm");
   }
-  options.corrections = corrections_of(settings);
-  refuse_not_positive(settings.band_limit_Hz, "--band-limit", "Hz");
-  refuse_not_positive(settings.duration_s, "--duration", "s");
-  options.duration_s = settings.duration_s;
-  if (settings.dispersion.has_value()) {
-    options.theory = wave_theory(*settings.dispersion);
-  }
-  options.arrival_s = settings.arrival_s;
-  options.band_limit_Hz = settings.band_limit_Hz;
-  return options;
+  return asked;
 }
 
 UncertaintyOptions uncertainty_options(const Settings& settings,
@@ -162,22 +121,16 @@ void write_files(const Settings& settings, const ReducedShot& reduced) {
 }
 
 // What asks for a specimen means nothing for a ball.
-void refuse_for_ball(const Settings& settings) {
+void refuse_for_ball(const Settings& settings, const Shot& ball) {
+  as_given([&] { require_suits(settings.request, ball.bench, {}); });
   const std::pair<bool, const char*> specimens[] = {
       {settings.bar_model.has_value(), "--bar-model"},
-      {settings.with_true, "--true"},
-      {settings.separate.has_value(), "--separate"},
-      {settings.stress.has_value(), "--stress"},
-      {settings.inertia.has_value(), "--inertia"},
-      {settings.friction.has_value(), "--friction"},
       {settings.uncertainty, "--uncertainty"},
       {settings.draws.has_value(), "--draws"},
       {settings.softening_per_K.has_value(), "--softening"}};
   for (const auto& [given, name] : specimens) {
     if (given) {
-      throw InputError(std::string("kolsky reduce: ") + name,
-                       "is for specimens, and this is a ball on an elastic bar",
-                       "leave it out; an impact's deviations come by themselves");
+      throw InputError(std::string("kolsky reduce: ") + name, kForSpecimens, kLeaveOutForBall);
     }
   }
 }
@@ -190,19 +143,19 @@ void require_histories(const ReducedShot& reduced) {
   }
 }
 
-int reduce_several(const Settings& settings, const ReductionOptions& options, Context& context) {
+int reduce_several(const Settings& settings, const Asked& asked, Context& context) {
   if (settings.save || settings.svg || settings.csv) {
     throw InputError("kolsky reduce: CAPTURE", "is given more than once beside a file to write",
                      "give one capture for --save, --svg or --csv");
   }
-  refuse_for_ball(settings);
   std::vector<ReducedShot> shots;
   for (const std::string& capture : settings.captures) {
-    shots.push_back(reduce_capture(capture, options, settings.bench));
+    shots.push_back(reduce_capture(capture, asked));
     if (shots.back().shot.bench.kind != BenchKind::impact) {
       throw InputError(capture + ": kind", "is not \"impact\": only impacts are reduced together",
                        "reduce specimens one by one, or `kolsky identify specimen` them together");
     }
+    refuse_for_ball(settings, shots.back().shot);
   }
   context.out << (context.json ? to_text(describe_balls(shots)) + "\n"
                                : balls_report(shots, context.terminal));
@@ -215,13 +168,13 @@ int run(const Settings& settings, Context& context) {
   if (settings.bar_model.has_value()) {
     bars = read_bar_model(*settings.bar_model);
   }
-  const ReductionOptions options = reduction_options(settings, bars);
+  const Asked asked = asked_by(settings, bars);
   if (settings.captures.size() > 1) {
-    return reduce_several(settings, options, context);
+    return reduce_several(settings, asked, context);
   }
-  ReducedShot reduced = reduce_capture(settings.captures.front(), options, settings.bench);
+  ReducedShot reduced = reduce_capture(settings.captures.front(), asked);
   if (reduced.shot.bench.kind == BenchKind::impact) {
-    refuse_for_ball(settings);
+    refuse_for_ball(settings, reduced.shot);
   }
   require_histories(reduced);
   if (bars.has_value()) {
@@ -231,14 +184,12 @@ int run(const Settings& settings, Context& context) {
       reduced.reduction.bar_model += " (" + unchecked + ")";
     }
   }
-  reduced.stress = settings.stress.value_or(reduced.stress);
-  reduced.corrections = names_of(options.corrections);
   if (settings.uncertainty || settings.draws.has_value()) {
-    reduced.uncertainty = propagate(reduced.shot, options, reduced.reduction,
+    reduced.uncertainty = propagate(reduced.shot, reduced.options, reduced.reduction,
                                     uncertainty_options(settings, bars), all_cores());
   }
   write_files(settings, reduced);
-  context.out << (context.json ? to_text(describe(reduced, settings.with_true)) + "\n"
+  context.out << (context.json ? to_text(describe(reduced)) + "\n"
                                : report(reduced, context.terminal));
   return kDone;
 }
@@ -269,31 +220,37 @@ Command reduce_command() {
       option("--bar-model", "M.toml",
              "material file of viscoelastic bars; else the capture's own, else the paper's PMMA",
              &s.bar_model),
-      flag("--true", kTrueHelp, &s.with_true),
+      flag("--true", kTrueHelp, &s.request.with_true),
       option("--arrival", "S",
              "foot of the incident pulse at the first gauge, in s from the first sample",
              &s.arrival_s),
       option("--band-limit", "HZ",
              "upper end of the frequencies used, in Hz; else what the noise allows",
-             &s.band_limit_Hz),
+             &s.request.band_limit_Hz),
       option("--duration", "S",
              "length of the histories in s; else until a wave comes back from a bar's far end",
-             &s.duration_s),
+             &s.request.duration_s),
       option("--dispersion", "THEORY",
              "how waves travel in the bars: elementary (the paper, default), love or exact",
-             &s.dispersion),
+             &s.request.dispersion),
       option(
           "--separate", "BY",
           "tell waves that overlap apart by gauges (two places on the input bar) or equilibrium\n"
           "(one place and the output bar's force); never: by time; auto (default): by gauges\n"
           "where the striker still pushes when the specimen answers at the gauge, if there are two",
-          &s.separate),
+          &s.request.separate),
       option("--stress", "WAVES",
              "three-wave (mean of both faces, default), one-wave (back) or two-wave (front)",
-             &s.stress),
-      option("--inertia", "KIND", "take the specimen's inertia off: axial, radial or both",
-             &s.inertia),
-      option("--friction", "MU", "take friction at the faces off: its coefficient", &s.friction),
+             &s.request.stress),
+      option("--inertia", "KIND",
+             "take the specimen's inertia off: axial, radial or both; none (default)",
+             &s.request.inertia),
+      option("--friction", "MU", "take friction at the faces off: its coefficient",
+             &s.request.friction),
+      flag("--defaults",
+           "leave aside what a daemon's [reduction] filed with the capture, which else holds\n"
+           "where no option says otherwise",
+           &s.defaults),
       flag("--uncertainty",
            "propagate noise and every <key>_sd of bench and bar model: bands, intervals, budget",
            &s.uncertainty),

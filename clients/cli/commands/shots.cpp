@@ -42,9 +42,9 @@ struct GetSettings {
 
 int get(const GetSettings& settings, Context& context) {
   ControlClient client = connect_patiently(context.endpoint);
-  const ReducedShot shot = fetch_shot(client, settings.id);
-  context.out << (context.json ? to_text(describe(shot, settings.with_true)) + "\n"
-                               : report(shot, context.terminal));
+  ReducedShot shot = fetch_shot(client, settings.id);
+  shot.request.with_true = shot.request.with_true || settings.with_true;
+  context.out << (context.json ? to_text(describe(shot)) + "\n" : report(shot, context.terminal));
   return kDone;
 }
 

@@ -7,6 +7,7 @@
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/reduction/requested.hpp"
 
 namespace kolsky::cli {
 std::string absolute_name(const std::filesystem::path& path) {
@@ -49,44 +50,36 @@ void rebench(Shot& shot, const std::filesystem::path& path) {
   shot.bench_toml = file.text;
 }
 
-ReducedShot reduce_capture(const std::filesystem::path& capture, const ReductionOptions& options,
-                           const std::optional<std::string>& bench) {
+namespace {
+
+ReductionOptions options_with(const Asked& asked, const ReductionRequest& request) {
+  ReductionOptions options = options_of(request);
+  options.arrival_s = asked.arrival_s;
+  options.bar_model = asked.bar_model;
+  options.most_band_Hz = asked.most_band_Hz;
+  return options;
+}
+
+}  // namespace
+
+ReducedShot reduce_capture(const std::filesystem::path& capture, const Asked& asked) {
   ReducedShot reduced;
   reduced.shot = read_capture(capture);
   reduced.capture = absolute_name(capture);
   try {
-    if (bench.has_value()) {
-      reduced.bench = absolute_name(*bench);
-      reduced.as_filed = Reducer(options).reduce(reduced.shot);
-      rebench(reduced.shot, *bench);
+    reduced.request = asked.as_filed ? asked.request.over(reduced.shot.reduction) : asked.request;
+    reduced.options = options_with(asked, reduced.request);
+    if (asked.bench.has_value()) {
+      reduced.bench = absolute_name(*asked.bench);
+      reduced.as_filed = Reducer(reduced.options).reduce(reduced.shot);
+      rebench(reduced.shot, *asked.bench);
     }
-    reduced.default_bar_model = assumes_bar_model(reduced.shot, options);
-    reduced.reduction = Reducer(options).reduce(reduced.shot);
+    reduced.default_bar_model = assumes_bar_model(reduced.shot, reduced.options);
+    reduced.reduction = Reducer(reduced.options).reduce(reduced.shot);
   } catch (const InputError& error) {
     throw error.inside(capture.string());
   }
   return reduced;
-}
-
-std::vector<double> true_strain(const Reduction& reduction) {
-  std::vector<double> strains;
-  strains.reserve(reduction.strain.size());
-  for (const double strain : reduction.strain) {
-    strains.push_back(strain < 1.0 ? -std::log1p(-strain)
-                                   : std::numeric_limits<double>::quiet_NaN());
-  }
-  return strains;
-}
-
-std::vector<double> true_stress_Pa(const Reduction& reduction) {
-  std::vector<double> stresses;
-  stresses.reserve(reduction.stress_Pa.size());
-  for (std::size_t i = 0; i < reduction.stress_Pa.size(); ++i) {
-    const double left = 1.0 - reduction.strain[i];
-    stresses.push_back(left > 0.0 ? reduction.stress_Pa[i] * left
-                                  : std::numeric_limits<double>::quiet_NaN());
-  }
-  return stresses;
 }
 
 std::string verdict_name(Verdict verdict) {

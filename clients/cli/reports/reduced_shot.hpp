@@ -21,9 +21,9 @@ struct ReducedShot {
   std::string capture;  ///< the file, absolute
   bool default_bar_model =
       false;  ///< the bars were taken for the paper's PMMA because nobody said what they are
-  std::string stress = "three-wave";       ///< how the stress was taken from the forces
-  std::vector<std::string> corrections{};  ///< that were asked for
-  std::optional<std::string> bench{};      ///< a corrected bench file, in place of the shot's own
+  ReductionRequest request{};          ///< how it was asked for, filed with the shot or not
+  ReductionOptions options{};          ///< and what that came to
+  std::optional<std::string> bench{};  ///< a corrected bench file, in place of the shot's own
   std::optional<Uncertainty> uncertainty{};
   std::optional<Reduction> as_filed{};  ///< then: the result with the shot's own bench
 };
@@ -38,16 +38,20 @@ void rebench(Shot& shot, const std::filesystem::path& bench);
 /// Whether a reduction with these options has to assume what the bars are made of.
 [[nodiscard]] bool assumes_bar_model(const Shot& shot, const ReductionOptions& options);
 
-/// Reads a capture and reduces it. @throws InputError
-/// @param bench  a corrected bench file: the result then holds the one with the shot's own too
-[[nodiscard]] ReducedShot reduce_capture(const std::filesystem::path& capture,
-                                         const ReductionOptions& options,
-                                         const std::optional<std::string>& bench = std::nullopt);
+/// What a command asks of a capture's reduction.
+struct Asked {
+  ReductionRequest request{};
+  bool as_filed = true;  ///< by what is filed with the capture where `request` is silent
+  std::optional<double> arrival_s{};  ///< these as in ReductionOptions
+  std::optional<Material> bar_model{};
+  std::optional<double> most_band_Hz{};
+  std::optional<std::string> bench{};  ///< a corrected bench file: the result then holds the one
+                                       ///< with the shot's own too
+};
 
-/// True strain -ln(1 - e) and true stress s (1 - e) from engineering ones, compression positive,
-/// for a specimen that keeps its volume. NaN where e >= 1.
-[[nodiscard]] std::vector<double> true_strain(const Reduction& reduction);
-[[nodiscard]] std::vector<double> true_stress_Pa(const Reduction& reduction);
+/// Reads a capture and reduces it. @throws InputError
+[[nodiscard]] ReducedShot reduce_capture(const std::filesystem::path& capture,
+                                         const Asked& asked = {});
 
 /// What --true does, for --help.
 inline constexpr const char* kTrueHelp =
@@ -60,13 +64,15 @@ void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object);
 [[nodiscard]] std::string uncertainty_report(const Uncertainty& uncertainty);
 
 /// What `reduce --json` and `get --json` print.
-[[nodiscard]] JsonValue describe(const ReducedShot& shot, bool with_true);
+[[nodiscard]] JsonValue describe(const ReducedShot& shot);
 
 /// The same for people: numbers, verdicts with their sentences, the loop and the forces drawn.
 [[nodiscard]] std::string report(const ReducedShot& shot, const Terminal& terminal);
 
 /// Parts that a specimen's report and a ball's have in common.
 [[nodiscard]] JsonValue describe_meta(const std::map<std::string, std::string>& meta);
+/// What was asked of the reduction, by its keys.
+[[nodiscard]] JsonValue describe_request(const ReductionRequest& request);
 /// reducible, reason, verdict and checks.
 [[nodiscard]] JsonObject describe_checks(const Quality& quality);
 [[nodiscard]] std::string report_row(const std::string& name, const std::string& text);

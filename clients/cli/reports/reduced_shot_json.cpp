@@ -1,6 +1,7 @@
 #include "clients/cli/reports/ball_report.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/reports/time_text.hpp"
+#include "processing/reduction/true_values.hpp"
 #include "processing/reduction/validity.hpp"
 
 namespace kolsky::cli {
@@ -54,6 +55,24 @@ JsonObject describe_checks(const Quality& quality) {
           {"checks", std::move(checks)}};
 }
 
+JsonValue describe_request(const ReductionRequest& request) {
+  JsonObject object;
+  for (const auto& [key, word] : kRequestWords) {
+    if (request.*word) {
+      object.push_back({key, *(request.*word)});
+    }
+  }
+  for (const auto& [key, number] : kRequestNumbers) {
+    if (request.*number) {
+      object.push_back({key, *(request.*number)});
+    }
+  }
+  if (request.with_true) {
+    object.push_back({kRequestTrue, true});
+  }
+  return object;
+}
+
 JsonValue describe_meta(const std::map<std::string, std::string>& meta) {
   JsonObject object;
   for (const auto& [key, value] : meta) {
@@ -62,7 +81,7 @@ JsonValue describe_meta(const std::map<std::string, std::string>& meta) {
   return object;
 }
 
-JsonValue describe(const ReducedShot& reduced, bool with_true) {
+JsonValue describe(const ReducedShot& reduced) {
   if (reduced.shot.bench.kind == BenchKind::impact) {
     return describe_ball(reduced);
   }
@@ -82,8 +101,9 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                        {"band_limit_Hz", if_found(reduction.band_limit_Hz)},
                        {"separation", name_of(reduction.separation)},
                        {"quality", describe(reduction.quality, reduced)},
-                       {"stress_from", reduced.stress},
-                       {"corrections", reduced.corrections},
+                       {"dispersion", name_of(reduction.theory)},
+                       {"stress_from", name_of(reduction.stress_from)},
+                       {"corrections", names_of(reduction.corrections)},
                        {"summary", describe(summarise(reduction))},
                        {"time_s", reduction.time_s},
                        {"stress_Pa", reduction.stress_Pa},
@@ -94,6 +114,9 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                        {"incident", reduction.incident},
                        {"reflected", reduction.reflected},
                        {"transmitted", reduction.transmitted}};
+  if (reduced.request.asks()) {
+    object.push_back({"asked", describe_request(reduced.request)});
+  }
   if (reduced.uncertainty) {
     describe_uncertainty(*reduced.uncertainty, object);
   }
@@ -108,7 +131,7 @@ JsonValue describe(const ReducedShot& reduced, bool with_true) {
                                              {"strain", before.strain},
                                              {"strain_rate_per_s", before.strain_rate_per_s}}});
   }
-  if (with_true) {
+  if (reduced.request.with_true) {
     object.push_back({"strain_true", true_strain(reduction)});
     object.push_back({"stress_true_Pa", true_stress_Pa(reduction)});
   }

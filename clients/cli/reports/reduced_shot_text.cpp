@@ -77,6 +77,20 @@ std::string validity(const ReducedShot& reduced, const Terminal& terminal) {
                                            : "none: the signal is nowhere 10 dB above the noise");
 }
 
+// Where it is not as usual.
+std::string how_reduced(const Reduction& reduction) {
+  std::string text;
+  if (reduction.theory != WaveTheory::elementary) {
+    text += report_row("dispersion", name_of(reduction.theory));
+  }
+  if (reduction.stress_from != StressFrom::both_faces || reduction.corrections.any()) {
+    text += report_row("stress", fmt::format("{}{}{}", name_of(reduction.stress_from),
+                                             reduction.corrections.any() ? ", corrected for " : "",
+                                             fmt::join(names_of(reduction.corrections), ", ")));
+  }
+  return text;
+}
+
 std::string as_filed(const Reduction& before) {
   const LoopSummary loop = summarise(before);
   return report_row(
@@ -123,12 +137,7 @@ std::string report(const ReducedShot& reduced, const Terminal& terminal) {
   const bool has_loop = !reduced.reduction.stress_Pa.empty();
   if (has_loop) {
     text += numbers(reduced.reduction);
-    if (reduced.stress != "three-wave" || !reduced.corrections.empty()) {
-      text +=
-          report_row("stress", fmt::format("{}{}{}", reduced.stress,
-                                           reduced.corrections.empty() ? "" : ", corrected for ",
-                                           fmt::join(reduced.corrections, ", ")));
-    }
+    text += how_reduced(reduced.reduction);
     text += validity(reduced, terminal);
   }
   if (reduced.uncertainty) {

@@ -16,6 +16,7 @@ inline constexpr const char* kChannels =
     "channels";  ///< the raw datasets in the order of the bench
 inline constexpr const char* kShot = "shot";
 inline constexpr const char* kBarModel = "bar_model_toml";
+inline constexpr const char* kReduction = "reduction";
 inline constexpr const char* kMetaKey = "key";  ///< of a fact whose key cannot name an HDF5 object
 inline constexpr std::size_t kGapColumns = 3;
 inline constexpr std::array<const char*, 3> kTriggerKinds{"incident", "forced", "marked"};

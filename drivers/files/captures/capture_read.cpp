@@ -78,6 +78,22 @@ std::map<std::string, std::string> read_meta(const hdf5::GroupReader& group) {
   return meta;
 }
 
+ReductionRequest read_request(const hdf5::GroupReader& group) {
+  ReductionRequest request;
+  for (const auto& [name, word] : kRequestWords) {
+    if (group.has(name)) {
+      request.*word = group.text(name);
+    }
+  }
+  for (const auto& [name, number] : kRequestNumbers) {
+    if (group.has(name)) {
+      request.*number = group.number(name);
+    }
+  }
+  request.with_true = group.has(kRequestTrue) && group.integer(kRequestTrue) != 0;
+  return request;
+}
+
 void read_shot_group(const hdf5::GroupReader& group, const std::string& file, Shot& shot) {
   if (const auto format = group.integer_attribute("format"); format != layout::kFormat) {
     throw hdf5::Failure(
@@ -90,6 +106,9 @@ void read_shot_group(const hdf5::GroupReader& group, const std::string& file, Sh
   if (group.has(layout::kBarModel)) {
     shot.bar_model =
         parse_material(group.text(layout::kBarModel), file + ": /entry/shot/" + layout::kBarModel);
+  }
+  if (group.has(layout::kReduction)) {
+    shot.reduction = read_request(group.group(layout::kReduction));
   }
   shot.rate = {group.integer("rate_numerator"), group.integer("rate_denominator")};
   shot.first_tick = group.integer("first_tick");

@@ -108,6 +108,23 @@ void put_meta(hid_t group, const std::map<std::string, std::string>& meta) {
   }
 }
 
+void put_request(hid_t group, const ReductionRequest& request) {
+  const auto asked = hdf5::make_group(group, layout::kReduction, "NXcollection");
+  for (const auto& [name, word] : kRequestWords) {
+    if (request.*word) {
+      hdf5::put_text(asked, name, *(request.*word));
+    }
+  }
+  for (const auto& [name, number] : kRequestNumbers) {
+    if (request.*number) {
+      hdf5::put_number(asked, name, *(request.*number));
+    }
+  }
+  if (request.with_true) {
+    hdf5::put_number(asked, kRequestTrue, std::int64_t{1});
+  }
+}
+
 void put_shot(hid_t entry, const Shot& shot) {
   const auto group = hdf5::make_group(entry, layout::kShot, "NXcollection");
   hdf5::put_attribute(group, "format", layout::kFormat);
@@ -117,6 +134,9 @@ void put_shot(hid_t entry, const Shot& shot) {
   hdf5::put_text(group, "bench_toml", shot.bench_toml);
   if (shot.bar_model) {
     hdf5::put_text(group, layout::kBarModel, format_material(*shot.bar_model));
+  }
+  if (shot.reduction.asks()) {
+    put_request(group, shot.reduction);
   }
   hdf5::put_number(group, "rate_numerator", shot.rate.numerator);
   hdf5::put_number(group, "rate_denominator", shot.rate.denominator);

@@ -17,6 +17,8 @@ constexpr std::uint32_t kVersion = 1;
 /// With what an identification files of the bar model beside its numbers. Others are still written
 /// as they were: their checksums stand in stored captures.
 constexpr std::uint32_t kVersionIdentified = 2;
+/// With how the shot is to be reduced, where that is not as usual.
+constexpr std::uint32_t kVersionReduction = 3;
 constexpr std::size_t kGapBytes = 17;
 constexpr std::size_t kLeastMetaBytes = 8;
 constexpr std::size_t kLeastChannelBytes = 45;
@@ -76,6 +78,16 @@ void check_model(const Material& model) {
   }
 }
 
+void check_request(const ReductionRequest& request) {
+  for (const auto& [key, word] : kRequestWords) {
+    require_text((request.*word).value_or(""), std::string("reduction.") + key);
+  }
+  for (const auto& [key, number] : kRequestNumbers) {
+    require(std::isfinite((request.*number).value_or(0.0)), std::string("reduction.") + key,
+            "is not finite", "give what `kolsky reduce` takes");
+  }
+}
+
 void check_trigger(const TriggerEvent& trigger) {
   require_tick(trigger.tick, "trigger.tick");
   require(trigger.fraction >= 0.0 && trigger.fraction < 1.0, "trigger.fraction", "is not in [0, 1)",
@@ -89,8 +101,13 @@ std::uint8_t code_bytes(const ChannelRecord& channel) {
   return fits_16_bits(channel) ? 2 : 4;
 }
 
-bool has_identification(const Shot& shot) {
-  return shot.bar_model && (shot.bar_model->covariance || shot.bar_model->identified);
+std::uint32_t version_of(const Shot& shot) {
+  if (shot.reduction.asks()) {
+    return kVersionReduction;
+  }
+  return shot.bar_model && (shot.bar_model->covariance || shot.bar_model->identified)
+             ? kVersionIdentified
+             : kVersion;
 }
 
 void put_optional(ByteWriter& writer, const std::optional<double>& number) {
@@ -129,6 +146,42 @@ void get_identification(ByteReader& reader, Material& material) {
     identified.band_limit_Hz = get_optional(reader);
     identified.temperature_K = get_optional(reader);
   }
+}
+
+void put_word(ByteWriter& writer, const std::optional<std::string>& word) {
+  writer.put(static_cast<std::uint8_t>(word ? 1 : 0));
+  if (word) {
+    writer.put_text(*word);
+  }
+}
+
+std::optional<std::string> get_word(ByteReader& reader) {
+  return reader.get_flag() ? std::optional(reader.get_text()) : std::nullopt;
+}
+
+void put_request(ByteWriter& writer, const ReductionRequest& request) {
+  for (const auto& [key, word] : kRequestWords) {
+    put_word(writer, request.*word);
+  }
+  for (const auto& [key, number] : kRequestNumbers) {
+    put_optional(writer, request.*number);
+  }
+  writer.put(static_cast<std::uint8_t>(request.with_true ? 1 : 0));
+}
+
+ReductionRequest get_request(ByteReader& reader) {
+  ReductionRequest request;
+  for (const auto& [key, word] : kRequestWords) {
+    request.*word = get_word(reader);
+  }
+  for (const auto& [key, number] : kRequestNumbers) {
+    request.*number = get_optional(reader);
+  }
+  request.with_true = reader.get_flag();
+  if (!request.asks()) {
+    reader.refuse("a reduction that is as usual");
+  }
+  return request;
 }
 
 void put_material(ByteWriter& writer, const std::optional<Material>& material) {
@@ -186,12 +239,16 @@ std::optional<TriggerEvent> get_trigger(ByteReader& reader) {
 }
 
 void put_metadata(ByteWriter& writer, const Shot& shot) {
-  writer.put(has_identification(shot) ? kVersionIdentified : kVersion);
+  const std::uint32_t version = version_of(shot);
+  writer.put(version);
   writer.put_text(shot.id);
   writer.put_text(shot.bench_toml);
   put_material(writer, shot.bar_model);
-  if (has_identification(shot)) {
+  if (shot.bar_model && version != kVersion) {
     put_identification(writer, *shot.bar_model);
+  }
+  if (version == kVersionReduction) {
+    put_request(writer, shot.reduction);
   }
   writer.put(shot.rate.numerator);
   writer.put(shot.rate.denominator);
@@ -293,6 +350,7 @@ void check_storable(const Shot& shot) {
   if (shot.bar_model) {
     check_model(*shot.bar_model);
   }
+  check_request(shot.reduction);
   require(shot.rate.numerator > 0 && shot.rate.denominator > 0, "rate", "is not positive",
           "give samples per seconds, as 1000000 / 1");
   require_tick(shot.first_tick, "first_tick");
@@ -336,19 +394,22 @@ void encode_shot(const Shot& shot, std::vector<std::byte>& out) {
 Shot decode_shot(std::span<const std::byte> bytes, const std::string& place) {
   ByteReader reader(bytes, place);
   const auto version = reader.get<std::uint32_t>();
-  if (version != kVersion && version != kVersionIdentified) {
+  if (version < kVersion || version > kVersionReduction) {
     reader.refuse("shot of format " + std::to_string(version) + ", this program reads " +
-                  std::to_string(kVersion) + " and " + std::to_string(kVersionIdentified));
+                  std::to_string(kVersion) + " to " + std::to_string(kVersionReduction));
   }
   Shot shot;
   shot.id = reader.get_text();
   shot.bench_toml = reader.get_text();
   shot.bar_model = get_material(reader);
-  if (version == kVersionIdentified) {
-    if (!shot.bar_model) {
-      reader.refuse("an identification of no bar model");
-    }
+  if (version == kVersionIdentified && !shot.bar_model) {
+    reader.refuse("an identification of no bar model");
+  }
+  if (version != kVersion && shot.bar_model) {
     get_identification(reader, *shot.bar_model);
+  }
+  if (version == kVersionReduction) {
+    shot.reduction = get_request(reader);
   }
   shot.rate.numerator = reader.get<std::int64_t>();
   shot.rate.denominator = reader.get<std::int64_t>();

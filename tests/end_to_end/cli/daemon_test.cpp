@@ -5,6 +5,8 @@
 #include <thread>
 
 #include "daemon/daemon.hpp"
+#include "kolsky/v1/kolsky.pb.h"
+#include "proto/codec.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/end_to_end/process.hpp"
 
@@ -244,6 +246,72 @@ TEST(AnotherRun, KnowsTheLastShotOfTheOneBefore) {
       EXPECT_EQ(json_of(ask({"get", "last", "--json"}, "anna"))["shot"], id);
     }
   }
+}
+
+// What is published, what `get` gives and what `reduce` makes of the capture are the same bits,
+// with the daemon's table and after another took its place.
+TEST(ReducedAsAsked, LiveStoredAndReplayedAgree) {
+  scene::Lab lab;
+  scene::Installation setup(lab.uri(), lab.bench());
+  setup.set("reduction", "dispersion = \"exact\"")
+      .set("reduction", "separate = \"never\"")
+      .set("reduction", "stress = \"one-wave\"")
+      .set("reduction", "inertia = \"both\"")
+      .set("reduction", "friction = 0.1")
+      .set("reduction", "band_limit_Hz = 25e3")
+      .set("reduction", "duration_s = 3e-4")
+      .set("reduction", "true = true");
+  const std::vector<std::string> options = {"--dispersion", "exact",    "--separate",   "never",
+                                            "--stress",     "one-wave", "--inertia",    "both",
+                                            "--friction",   "0.1",      "--band-limit", "25e3",
+                                            "--duration",   "3e-4",     "--true"};
+  std::string id;
+  std::string capture;
+  std::string result;
+  {
+    Daemon daemon(setup.read());
+    daemon.start();
+    scene::Listener listener(daemon.endpoints());
+    listener.arm();
+    listener.control().fire();
+    const auto shot = listener.next_message<v1::Shot>("shot");
+    const auto published = listener.next_message<v1::Result>("result");
+    ASSERT_TRUE(shot && published);
+    id = published->shot_id();
+    capture = shot->capture();
+    EXPECT_EQ(shot->reduction().dispersion(), "exact");
+    EXPECT_EQ(published->dispersion(), v1::Result::EXACT);
+    EXPECT_EQ(published->stress_from(), v1::Result::ONE_WAVE);
+    EXPECT_EQ(published->corrections().friction(), 0.1);
+    ASSERT_TRUE(scene::eventually([&] { return std::filesystem::exists(capture); }));
+    std::vector<std::string> words = {"reduce", capture, "--json", "--defaults"};
+    words.insert(words.end(), options.begin(), options.end());
+    result = kolsky(words).out;
+    const json reduced = json::parse(result);
+    EXPECT_EQ(reduced["asked"]["inertia"], "both");
+    EXPECT_EQ(reduced["corrections"], (json{"axial inertia", "radial inertia", "friction"}));
+    const Reduction live = wire::decode(*published);
+    EXPECT_EQ(reduced["stress_Pa"].get<std::vector<double>>(), live.stress_Pa);
+    EXPECT_EQ(reduced["strain"].get<std::vector<double>>(), live.strain);
+    EXPECT_EQ(reduced["force_front_N"].get<std::vector<double>>(), live.force_front_N);
+    EXPECT_EQ(reduced["strain_true"].get<std::vector<double>>(), live.strain_true);
+    EXPECT_EQ(reduced["stress_true_Pa"].get<std::vector<double>>(), live.stress_true_Pa);
+    EXPECT_EQ(kolsky({"get", id, "--json", "--endpoint", daemon.endpoints().control}).out, result);
+    EXPECT_EQ(kolsky({"reduce", capture, "--json"}).out, result);
+  }
+  const std::string plain = kolsky({"reduce", capture, "--json", "--defaults"}).out;
+  EXPECT_EQ(json::parse(plain)["stress_from"], "three-wave");
+  EXPECT_FALSE(json::parse(plain).contains("asked"));
+  const std::filesystem::path settings = setup.write();
+  std::ifstream before(settings);
+  std::string text(std::istreambuf_iterator<char>(before), {});
+  text.replace(text.find("one-wave"), 3, "two");
+  std::ofstream(settings) << text;
+  Daemon daemon(read_config(settings));
+  daemon.start();
+  EXPECT_EQ(kolsky({"get", id, "--json", "--endpoint", daemon.endpoints().control}).out, result);
+  EXPECT_EQ(kolsky({"get", id, "--endpoint", daemon.endpoints().control}).out,
+            kolsky({"reduce", capture}).out);
 }
 
 TEST(OnReplay, FireIsRefused) {

@@ -78,6 +78,102 @@ TEST_F(ConfigTest, TakesTheModelThatShotsAreComparedWith) {
   EXPECT_TRUE(holds(error_of(least + "[model]\nfile = \"m\"\nlight = 1\n"), {"model.light"}));
 }
 
+TEST_F(ConfigTest, TakesHowShotsAreToBeReduced) {
+  const std::string least = kLeast;
+  EXPECT_FALSE(read(least).reduction.asks());
+  EXPECT_FALSE(read(least + "[reduction]\n").reduction.asks());
+  const std::string all =
+      "[reduction]\ndispersion = \"exact\"\nseparate = \"never\"\nstress = \"one-wave\"\n"
+      "inertia = \"none\"\nfriction = 0.1\nband_limit_Hz = 20e3\nduration_s = 4e-4\ntrue = true\n";
+  const ReductionRequest asked = {.dispersion = "exact",
+                                  .separate = "never",
+                                  .stress = "one-wave",
+                                  .inertia = "none",
+                                  .friction = 0.1,
+                                  .band_limit_Hz = 20e3,
+                                  .duration_s = 4e-4,
+                                  .with_true = true};
+  EXPECT_EQ(read(least + all).reduction, asked);
+  EXPECT_EQ(error_of(least + all), "");
+}
+
+TEST_F(ConfigTest, RefusesAReductionByKeyAndLine) {
+  const auto refused = [&](const std::string& line, std::initializer_list<const char*> parts) {
+    return holds(error_of(std::string(kLeast) + "[reduction]\n" + line + "\n"), parts);
+  };
+  EXPECT_TRUE(refused("dispersion = \"Rayleigh\"",
+                      {"kolskyd.toml:9: reduction.dispersion", "elementary, love or exact"}));
+  EXPECT_TRUE(refused("separate = \"hope\"", {"kolskyd.toml:9: reduction.separate",
+                                              "auto, never, gauges or equilibrium"}));
+  EXPECT_TRUE(refused("stress = \"four-wave\"",
+                      {"kolskyd.toml:9: reduction.stress", "three-wave, one-wave or two-wave"}));
+  EXPECT_TRUE(
+      refused("inertia = \"all\"", {"kolskyd.toml:9: reduction.inertia", "axial, radial or both"}));
+  EXPECT_TRUE(refused("friction = 2", {"kolskyd.toml:9: reduction.friction", "0 to 1"}));
+  EXPECT_TRUE(refused("band_limit_Hz = 0", {"reduction.band_limit_Hz", "above 0 Hz"}));
+  EXPECT_TRUE(refused("duration_s = -1", {"reduction.duration_s", "above 0 s"}));
+  EXPECT_TRUE(refused("band_limit = 20e3", {"reduction.band_limit", "band_limit_Hz"}));
+  EXPECT_TRUE(refused("true = 1", {"reduction.true"}));
+  EXPECT_TRUE(refused("arrival_s = 4e-4", {"reduction.arrival_s", "one capture"}));
+  EXPECT_TRUE(refused("uncertainty = true", {"reduction.uncertainty", "`kolsky reduce`"}));
+}
+
+TEST_F(ConfigTest, RefusesAReductionThatNoShotOfTheBenchCanHave) {
+  const auto refused = [&](const std::string& line, std::initializer_list<const char*> parts) {
+    return holds(error_of(std::string(kLeast) + "[reduction]\n" + line + "\n"), parts);
+  };
+  EXPECT_TRUE(refused("separate = \"gauges\"", {"reduction.separate", "one place", "equilibrium"}));
+  EXPECT_TRUE(refused("inertia = \"axial\"", {"reduction.inertia", "specimen.density_kg_m3"}));
+  EXPECT_TRUE(refused("band_limit_Hz = 600e3", {"reduction.band_limit_Hz", "half"}));
+  EXPECT_TRUE(refused("duration_s = 5e-3", {"reduction.duration_s", "window", "post_samples"}));
+
+  write("bench.toml", R"(kind = "bar"
+sampling_frequency_Hz = 1e6
+[bars.input]
+length_m = 2.0
+diameter_m = 0.02
+density_kg_m3 = 1180.0
+poisson_ratio = 0.36
+[[gauges]]
+name = "g1"
+bar = "input"
+position_m = 0.5
+unit = "strain"
+)");
+  EXPECT_TRUE(refused("dispersion = \"exact\"", {"kolskyd.toml: reduction", "\"bar\""}));
+  EXPECT_EQ(error_of(std::string(kLeast) + "[reduction]\n"), "");
+
+  write("bench.toml", R"(kind = "impact"
+sampling_frequency_Hz = 1e6
+[bars.input]
+length_m = 3.0
+diameter_m = 0.02
+density_kg_m3 = 4500.0
+poisson_ratio = 0.33
+youngs_modulus_Pa = 113e9
+[[gauges]]
+name = "g1"
+bar = "input"
+position_m = 0.5
+unit = "strain"
+[ball]
+outer_diameter_m = 0.0427
+core_diameter_m = 0.038
+)");
+  EXPECT_TRUE(refused("stress = \"one-wave\"", {"reduction.stress", "a ball on an elastic bar"}));
+  EXPECT_EQ(error_of(std::string(kLeast) + "[reduction]\ndispersion = \"exact\"\n"), "");
+}
+
+TEST_F(ConfigTest, RefusesABandThatTheBarModelDoesNotReach) {
+  write("pmma.toml",
+        "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\nE2_Pa = 37e9\n"
+        "eta2_Pa_s = 1.81e6\n[identified]\nband_limit_Hz = 15e3\n");
+  const std::string with_model = "bar_model = \"pmma.toml\"\n" + std::string(kLeast);
+  EXPECT_TRUE(holds(error_of(with_model + "[reduction]\nband_limit_Hz = 20e3\n"),
+                    {"reduction.band_limit_Hz", "15000 Hz"}));
+  EXPECT_EQ(error_of(with_model + "[reduction]\nband_limit_Hz = 14e3\n"), "");
+}
+
 TEST_F(ConfigTest, TakesTheDefaultsWhereTheFileIsSilent) {
   const DaemonConfig config = read(kLeast);
   EXPECT_EQ(config.bench, folder_ / "bench.toml");

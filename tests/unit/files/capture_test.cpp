@@ -32,6 +32,17 @@ TEST(Capture, GivesTheShotBack) {
   }
 }
 
+TEST(Capture, KeepsHowItsShotIsToBeReduced) {
+  const TemporaryFolder folder;
+  Shot shot = testing::asked_shot();
+  write_capture(shot, folder / "all.h5");
+  expect_same(read_capture(folder / "all.h5"), shot);
+  shot.reduction = {};
+  shot.reduction.duration_s = 1e-3;
+  write_capture(shot, folder / "one.h5");
+  expect_same(read_capture(folder / "one.h5"), shot);
+}
+
 TEST(Capture, GivesBackWhatIsOptionalAndEmpty) {
   const TemporaryFolder folder;
   Shot shot = make_shot(2, {1, 1});

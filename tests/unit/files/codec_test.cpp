@@ -1,3 +1,4 @@
+#include <limits>
 #include <random>
 
 #include "drivers/files/captures/shot_codec.hpp"
@@ -46,6 +47,20 @@ TEST(Codec, KeepsWhereABarModelHolds) {
   EXPECT_THROW(check_storable(shot), InputError) << "a correlation above 1";
 }
 
+TEST(Codec, KeepsHowAShotIsToBeReduced) {
+  for (const Shot& before : {make_shot(2), testing::asked_shot()}) {
+    Shot shot = before;
+    shot.bar_model.reset();
+    expect_same(decode_shot(encoded(shot), "shot"), shot);
+    shot.bar_model = before.bar_model;
+    shot.bar_model->identified = Material::Identified{6000.0 / 7.0, std::nullopt};
+    expect_same(decode_shot(encoded(shot), "shot"), shot);
+  }
+  Shot infinite = testing::asked_shot();
+  infinite.reduction.duration_s = std::numeric_limits<double>::infinity();
+  expect_refused([&] { check_storable(infinite); }, {"reduction.duration_s"});
+}
+
 TEST(Codec, KeepsCodesThatLeaveTheRangeOfTheirBits) {
   Shot shot = make_shot(3);
   shot.channels[1].codes[5] = 65535;
@@ -82,8 +97,8 @@ TEST(Codec, RefusesWhatIsLeftOver) {
 
 TEST(Codec, RefusesALaterFormat) {
   auto bytes = encoded(make_shot(8));
-  bytes[0] = std::byte{3};
-  expect_refused([&] { (void)decode_shot(bytes, "shot"); }, {"format 3"});
+  bytes[0] = std::byte{4};
+  expect_refused([&] { (void)decode_shot(bytes, "shot"); }, {"format 4", "1 to 3"});
 }
 
 // Any change gives another shot or a refusal, never a crash or room for what is not there.

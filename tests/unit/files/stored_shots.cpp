@@ -82,6 +82,19 @@ Shot make_shot(std::uint32_t seed, const ShotShape& shape) {
   return shot;
 }
 
+Shot asked_shot() {
+  Shot shot = make_shot(9);
+  shot.reduction = {.dispersion = "exact",
+                    .separate = "never",
+                    .stress = "one-wave",
+                    .inertia = "both",
+                    .friction = 0.1 / 3.0,
+                    .band_limit_Hz = 2e4 / 7.0,
+                    .duration_s = 1e-3 / 3.0,
+                    .with_true = true};
+  return shot;
+}
+
 Shot make_golden_shot() {
   Shot shot;
   shot.id = "golden-1";
@@ -119,6 +132,7 @@ void expect_bits(const Measured& actual, const Measured& expected) {
 void expect_same(const Shot& actual, const Shot& expected) {
   EXPECT_EQ(actual.id, expected.id);
   EXPECT_EQ(actual.bench_toml, expected.bench_toml);
+  EXPECT_EQ(actual.reduction, expected.reduction);
   ASSERT_EQ(actual.bar_model.has_value(), expected.bar_model.has_value());
   if (expected.bar_model) {
     expect_bits(actual.bar_model->density_kg_m3, expected.bar_model->density_kg_m3);

@@ -41,6 +41,9 @@ struct ShotShape {
 /// A shot with every field set, all of it following from the seed.
 [[nodiscard]] Shot make_shot(std::uint32_t seed, const ShotShape& shape = {});
 
+/// A shot that asks for every kind of reduction.
+[[nodiscard]] Shot asked_shot();
+
 /// The shot in golden/, with numbers written out and not drawn.
 [[nodiscard]] Shot make_golden_shot();
 

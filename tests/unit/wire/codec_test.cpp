@@ -93,6 +93,7 @@ TEST(ShotCodec, ComesBackExact) {
   EXPECT_EQ(back.utc_ns, shot.utc_ns);
   EXPECT_EQ(back.monotonic_ns, shot.monotonic_ns);
   EXPECT_EQ(back.software_version, shot.software_version);
+  EXPECT_EQ(back.reduction, shot.reduction);
   ASSERT_TRUE(back.bar_model);
   expect_same(*back.bar_model, *shot.bar_model);
 }
@@ -111,11 +112,14 @@ TEST(ShotCodec, WhatIsAbsentStaysAbsent) {
   Shot shot = full_shot(0);
   shot.trigger.reset();
   shot.bar_model.reset();
+  shot.reduction = {};
   shot.channels.clear();
   shot.gaps.clear();
   const Shot back = wire::decode(over_the_wire(encoded(shot)));
   EXPECT_FALSE(back.trigger);
   EXPECT_FALSE(back.bar_model);
+  EXPECT_FALSE(back.reduction.asks());
+  EXPECT_FALSE(encoded(shot).has_reduction());
   EXPECT_TRUE(back.channels.empty());
   EXPECT_TRUE(back.gaps.empty());
 }
@@ -160,7 +164,8 @@ TEST(ReductionCodec, ComesBackExact) {
   for (const auto field :
        {&Reduction::time_s, &Reduction::stress_Pa, &Reduction::strain,
         &Reduction::strain_rate_per_s, &Reduction::force_front_N, &Reduction::force_back_N,
-        &Reduction::incident, &Reduction::reflected, &Reduction::transmitted}) {
+        &Reduction::incident, &Reduction::reflected, &Reduction::transmitted,
+        &Reduction::strain_true, &Reduction::stress_true_Pa}) {
     EXPECT_EQ(bits_of(back.*field), bits_of(reduction.*field));
   }
   EXPECT_EQ(back.arrival_s, reduction.arrival_s);
@@ -168,6 +173,11 @@ TEST(ReductionCodec, ComesBackExact) {
   EXPECT_EQ(back.band_limit_Hz, reduction.band_limit_Hz);
   EXPECT_EQ(back.quiet_samples, reduction.quiet_samples);
   EXPECT_EQ(back.separation, reduction.separation);
+  EXPECT_EQ(back.theory, reduction.theory);
+  EXPECT_EQ(back.stress_from, reduction.stress_from);
+  EXPECT_EQ(back.corrections.axial_inertia, true);
+  EXPECT_EQ(back.corrections.radial_inertia, false);
+  EXPECT_EQ(back.corrections.friction, reduction.corrections.friction);
   EXPECT_EQ(back.assumed_from_s, reduction.assumed_from_s);
   EXPECT_EQ(back.push_left_share, reduction.push_left_share);
   EXPECT_EQ(back.bar_model, reduction.bar_model);

@@ -166,6 +166,20 @@ v1::Shot shot_identified() {
   return identified;
 }
 
+v1::Shot asked_shot() {
+  v1::Shot asked = shot();
+  v1::ReductionAsked& reduction = *asked.mutable_reduction();
+  reduction.set_dispersion("exact");
+  reduction.set_separate("never");
+  reduction.set_stress("one-wave");
+  reduction.set_inertia("both");
+  reduction.set_friction(0.125);
+  reduction.set_band_limit_hz(20'000.0);
+  reduction.set_duration_s(0.5);
+  reduction.set_with_true(true);
+  return asked;
+}
+
 v1::Quality quality() {
   v1::Quality quality;
   quality.set_reducible(true);
@@ -219,6 +233,19 @@ v1::Result separated_result() {
   separated.set_assumed_from_s(6e-5);
   separated.set_push_left_share(0.25);
   return separated;
+}
+
+v1::Result asked_result() {
+  v1::Result asked = result();
+  for (const char* name : {"strain_true", "stress_true_Pa"}) {
+    *asked.add_histories() = waveform(name, "1", v1::Waveform::FLOAT64, one_and_minus_two());
+  }
+  asked.set_dispersion(v1::Result::EXACT);
+  asked.set_stress_from(v1::Result::ONE_WAVE);
+  asked.mutable_corrections()->set_axial_inertia(true);
+  asked.mutable_corrections()->set_radial_inertia(true);
+  asked.mutable_corrections()->set_friction(0.125);
+  return asked;
 }
 
 v1::Measured measured(double value, double sd) {
@@ -517,7 +544,9 @@ std::vector<Fixture> fixtures() {
       fixture("preview", preview()),
       fixture("shot", shot()),
       fixture("shot_identified", shot_identified()),
+      fixture("shot_asked", asked_shot()),
       fixture("result", result()),
+      fixture("result_asked", asked_result()),
       fixture("result_quiet", result_with_quiet()),
       fixture("result_separated", separated_result()),
       fixture("result_irreducible", irreducible()),

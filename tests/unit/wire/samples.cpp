@@ -51,6 +51,14 @@ Shot full_shot(std::size_t samples) {
   shot.bench_toml = "kind = \"shpb\"  # Kraftmeßgerät\n";
   shot.bar_model =
       Material{{1200.1, 0.3}, {0.37, 0.0}, {5.5e9, 1e7}, {6.1e9, 0.0}, {1e5, 2.0}, "us"};
+  shot.reduction = {.dispersion = "exact",
+                    .separate = "never",
+                    .stress = "one-wave",
+                    .inertia = "both",
+                    .friction = 0.1 / 3.0,
+                    .band_limit_Hz = 2e4 / 7.0,
+                    .duration_s = 1e-3 / 3.0,
+                    .with_true = true};
   shot.rate = {1'000'000, 3};
   shot.first_tick = 123'456'789'012'345;
   shot.trigger = TriggerEvent{123'456'789'012'745, 0.1, 0.03, TriggerKind::marked};
@@ -66,10 +74,10 @@ Shot full_shot(std::size_t samples) {
 Reduction awkward_reduction(std::size_t samples) {
   Reduction reduction;
   double start = -1e-4;
-  for (auto* values :
-       {&reduction.time_s, &reduction.stress_Pa, &reduction.strain, &reduction.strain_rate_per_s,
-        &reduction.force_front_N, &reduction.force_back_N, &reduction.incident,
-        &reduction.reflected, &reduction.transmitted}) {
+  for (auto* values : {&reduction.time_s, &reduction.stress_Pa, &reduction.strain,
+                       &reduction.strain_rate_per_s, &reduction.force_front_N,
+                       &reduction.force_back_N, &reduction.incident, &reduction.reflected,
+                       &reduction.transmitted, &reduction.strain_true, &reduction.stress_true_Pa}) {
     *values = awkward(samples, start);
     start = start * -3.0 + 1.0;
   }
@@ -78,6 +86,9 @@ Reduction awkward_reduction(std::size_t samples) {
   reduction.band_limit_Hz = 123456.7;
   reduction.quiet_samples = 287;
   reduction.separation = Separation::equilibrium;
+  reduction.theory = WaveTheory::exact;
+  reduction.stress_from = StressFrom::front;
+  reduction.corrections = {true, false, 0.1 / 3.0};
   reduction.assumed_from_s = 1.0 / 3e4;
   reduction.push_left_share = 0.01 / 3.0;
   reduction.bar_model = "PMMA";
