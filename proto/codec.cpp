@@ -127,7 +127,9 @@ Material decode(const v1::Material& message) {
     std::copy(message.covariance().begin(), message.covariance().end(), covariance.begin());
   }
   if (message.has_identified()) {
-    Material::Identified& identified = material.identified.emplace();
+    // Not emplace(): what it requires is asked for before a nested class has its defaults.
+    material.identified = Material::Identified{};
+    Material::Identified& identified = *material.identified;
     if (message.identified().has_band_limit_hz()) {
       identified.band_limit_Hz = message.identified().band_limit_hz();
     }

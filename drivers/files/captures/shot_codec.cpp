@@ -142,7 +142,9 @@ void get_identification(ByteReader& reader, Material& material) {
     }
   }
   if (reader.get_flag()) {
-    Material::Identified& identified = material.identified.emplace();
+    // Not emplace(): what it requires is asked for before a nested class has its defaults.
+    material.identified = Material::Identified{};
+    Material::Identified& identified = *material.identified;
     identified.band_limit_Hz = get_optional(reader);
     identified.temperature_K = get_optional(reader);
   }
