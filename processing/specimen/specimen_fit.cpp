@@ -239,71 +239,112 @@ void fill_numbers(const SpecimenLikelihood& likelihood, const SpecimenMinimum& m
   }
 }
 
-/// Standard deviations of J1 and J2 that follow from those of the solid's parameters.
-std::pair<double, double> common_sd(const SpecimenFit& fit, Complex s) {
-  constexpr double kStep = 1e-4;
-  std::vector<double> values;
-  for (const FittedNumber& p : fit.parameters) {
-    values.push_back(p.value);
-  }
-  std::vector<Complex> slope;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    std::vector<double> moved = values;
-    moved[i] *= 1.0 + kStep;
-    slope.push_back((make_solid(fit.solid, moved)->at(s) - make_solid(fit.solid, values)->at(s)) /
-                    (kStep * values[i]));
-  }
-  double J1 = 0.0;
-  double J2 = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::size_t j = 0; j < values.size(); ++j) {
-      J1 += slope[i].real() * slope[j].real() * fit.covariance[i][j];
-      J2 += slope[i].imag() * slope[j].imag() * fit.covariance[i][j];
+using ComplianceSteps = std::vector<std::vector<SpecimenLikelihood::ComplianceStep>>;
+
+/// Over the shots, frequency by frequency.
+std::vector<Complex> mean_of(const ComplianceSteps& steps) {
+  std::vector<Complex> mean(steps.front().size(), 0.0);
+  for (const auto& of_shot : steps) {
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      mean[k] += of_shot[k].relative / static_cast<double>(steps.size());
     }
   }
-  return {std::sqrt(std::max(0.0, J1)), std::sqrt(std::max(0.0, J2))};
+  return mean;
 }
 
-/// Frequency by frequency about the fit: mean over the shots, and how they scatter. Fewer than
-/// three shots do not show their scatter: then it is what the gauges' noise makes it.
+/// Relative variances of J1 and J2, in units of |J|, that all shots share: what the compliance at a
+/// frequency would be if bench and bars were elsewhere within their deviations. The noise's part in
+/// the fit is not among it, since each frequency's own step takes that back.
+std::vector<std::pair<double, double>> common_variances(SpecimenLikelihood& likelihood,
+                                                        const ShpbTheory& theory,
+                                                        const Compliance& solid,
+                                                        const SpecimenMinimum& minimum,
+                                                        const std::vector<Complex>& mean,
+                                                        std::span<const Complex> direction) {
+  constexpr double kStep = 0.1;  // deviations
+  const std::size_t unknowns = minimum.moves.size();
+  const auto first = minimum.covariance.rows() - static_cast<Eigen::Index>(unknowns);
+  Eigen::MatrixXd slope1(mean.size(), unknowns);
+  Eigen::MatrixXd slope2(mean.size(), unknowns);
+  for (std::size_t i = 0; i < unknowns; ++i) {
+    std::vector<double> moves(minimum.moves.begin(), minimum.moves.end());
+    moves[i] += kStep;
+    const std::vector<Complex> moved = mean_of(likelihood.compliance_steps(theory, solid, moves));
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      const Complex slope = direction[k] * (moved[k] - mean[k]) / kStep;
+      slope1(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = slope.real();
+      slope2(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = slope.imag();
+    }
+  }
+  const Eigen::MatrixXd bench = minimum.covariance.bottomRightCorner(
+      minimum.covariance.rows() - first, minimum.covariance.rows() - first);
+  const Eigen::VectorXd of1 = (slope1 * bench).cwiseProduct(slope1).rowwise().sum();
+  const Eigen::VectorXd of2 = (slope2 * bench).cwiseProduct(slope2).rowwise().sum();
+  std::vector<std::pair<double, double>> variances;
+  for (Eigen::Index k = 0; k < of1.size(); ++k) {
+    variances.emplace_back(std::max(0.0, of1[k]), std::max(0.0, of2[k]));
+  }
+  return variances;
+}
+
+/// By how much shots scatter more than the gauges' noise makes them, as a factor of the deviation
+/// and at least 1: some may agree by chance to better than their noise allows. Neighbouring
+/// frequencies and J1 and J2 are taken together, since a few shots say little of one number's
+/// scatter. Fewer than three shots do not show theirs.
+std::vector<double> excess_scatter(const ComplianceSteps& steps, const std::vector<Complex>& mean) {
+  constexpr std::size_t kEnoughShots = 3;
+  constexpr std::size_t kEitherSide = 4;
+  std::vector<double> factor(mean.size(), 1.0);
+  if (steps.size() < kEnoughShots) {
+    return factor;
+  }
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    const std::size_t begin = k - std::min(k, kEitherSide);
+    const std::size_t end = std::min(mean.size(), k + kEitherSide + 1);
+    double squares = 0.0;
+    for (std::size_t n = begin; n < end; ++n) {
+      for (const auto& of_shot : steps) {
+        squares += std::norm((of_shot[n].relative - mean[n]) / of_shot[n].noise_sd);
+      }
+    }
+    const auto freedoms = static_cast<double>(2 * (end - begin) * (steps.size() - 1));
+    factor[k] = std::sqrt(std::max(1.0, squares / freedoms));
+  }
+  return factor;
+}
+
+/// Frequency by frequency about the fit: mean over the shots, how they scatter, and what bench and
+/// bars leave open.
 void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimum,
                    SpecimenFit& fit) {
-  constexpr std::size_t kEnoughShots = 3;
   const auto solid = make_solid(fit.solid, moduli(minimum));
   const auto steps = likelihood.compliance_steps(fit.theory, *solid, minimum.moves);
+  const std::vector<Complex> mean = mean_of(steps);
+  std::vector<Complex> assumed;
+  std::vector<Complex> direction;
+  for (const SpecimenLikelihood::ComplianceStep& step : steps.front()) {
+    assumed.push_back(solid->at({0.0, 2.0 * std::numbers::pi * step.frequency_Hz}));
+    direction.push_back(assumed.back() / std::abs(assumed.back()));
+  }
+  const auto common = common_variances(likelihood, fit.theory, *solid, minimum, mean, direction);
+  const std::vector<double> excess = excess_scatter(steps, mean);
   const auto shots = static_cast<double>(steps.size());
-  for (std::size_t k = 0; k < steps.front().size(); ++k) {
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    double scatter = 0.0;
+    for (const auto& of_shot : steps) {
+      scatter += std::pow(of_shot[k].noise_sd * excess[k], 2) / shots;
+    }
+    const double size = std::abs(assumed[k]);
+    const auto& [common1, common2] = common[k];
+    const Complex J = assumed[k] * (1.0 + mean[k]);
     CompliancePoint point;
     point.frequency_Hz = steps.front()[k].frequency_Hz;
-    const Complex s(0.0, 2.0 * std::numbers::pi * point.frequency_Hz);
-    const Complex assumed = solid->at(s);
-    std::vector<Complex> J;
-    double noise = 0.0;
-    Complex mean = 0.0;
-    for (const auto& of_shot : steps) {
-      J.push_back(assumed * (1.0 + of_shot[k].relative));
-      mean += J.back() / shots;
-      noise = std::max(noise, of_shot[k].noise_sd * std::abs(assumed));
-    }
-    double scatter1 = noise;
-    double scatter2 = noise;
-    if (steps.size() >= kEnoughShots) {
-      scatter1 = scatter2 = 0.0;
-      for (const Complex value : J) {
-        scatter1 += std::pow((value - mean).real(), 2) / (shots - 1.0);
-        scatter2 += std::pow((value - mean).imag(), 2) / (shots - 1.0);
-      }
-      // A few shots may agree by chance to better than their noise allows.
-      scatter1 = std::max(noise, std::sqrt(scatter1));
-      scatter2 = std::max(noise, std::sqrt(scatter2));
-    }
-    const auto [common1, common2] = common_sd(fit, s);
-    point.J1_per_Pa = mean.real();
-    point.J2_per_Pa = -mean.imag();
-    point.J1_sd = std::hypot(scatter1, common1);
-    point.J2_sd = std::hypot(scatter2, common2);
-    point.J1_sd_of_mean = std::hypot(scatter1 / std::sqrt(shots), common1);
-    point.J2_sd_of_mean = std::hypot(scatter2 / std::sqrt(shots), common2);
+    point.J1_per_Pa = J.real();
+    point.J2_per_Pa = -J.imag();
+    point.J1_sd = size * std::sqrt(scatter + common1);
+    point.J2_sd = size * std::sqrt(scatter + common2);
+    point.J1_sd_of_mean = size * std::sqrt(scatter / shots + common1);
+    point.J2_sd_of_mean = size * std::sqrt(scatter / shots + common2);
     fit.spectrum.push_back(point);
   }
 }

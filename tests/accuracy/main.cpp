@@ -26,11 +26,17 @@ constexpr const char* kHead =
     "last "
     "digit or 2 %. References are solvers and\ntables that share no code with what is tested.\n\n";
 
-const std::vector<Part> kParts{elastic_waves,          viscoelastic_waves,
-                               identified_bars,        identified_solid_bar,
-                               identified_compliances, identified_specimens,
-                               separated_waves,        reduced_shots,
-                               rubber_equilibrium,     impacts};
+const std::vector<Part> kParts{elastic_waves,
+                               viscoelastic_waves,
+                               identified_bars,
+                               identified_solid_bar,
+                               identified_compliances,
+                               identified_specimens,
+                               identified_specimen_compliances,
+                               separated_waves,
+                               reduced_shots,
+                               rubber_equilibrium,
+                               impacts};
 
 /// Parts of a page by their headings.
 std::vector<std::string> split(const std::string& page) {

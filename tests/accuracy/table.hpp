@@ -31,6 +31,7 @@ std::optional<Section> identified_bars();
 std::optional<Section> identified_solid_bar();
 std::optional<Section> identified_compliances();
 std::optional<Section> identified_specimens();
+std::optional<Section> identified_specimen_compliances();
 std::optional<Section> separated_waves();
 std::optional<Section> reduced_shots();
 std::optional<Section> rubber_equilibrium();

@@ -15,6 +15,7 @@
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/specimen_repeats.hpp"
+#include "tests/generators/spectrum_coverage.hpp"
 
 namespace kolsky {
 namespace {
@@ -295,8 +296,11 @@ void expect_to_cover(const LinearShpb& model) {
   constexpr int kRepeats = 40;
   std::array<int, 3> inside{};
   std::array<double, 3> squares{};
+  testing::SpectrumCoverage spectrum;
   for (unsigned repeat = 0; repeat < kRepeats; ++repeat) {
-    const auto off = experiment.deviations(experiment.fit(repeat, options));
+    const SpecimenFit fit = experiment.fit(repeat, options);
+    spectrum.take(fit.spectrum, model.specimen, 15e3);
+    const auto off = experiment.deviations(fit);
     for (std::size_t i = 0; i < off.size(); ++i) {
       inside[i] += std::abs(off[i]) < 1.96 ? 1 : 0;
       squares[i] += off[i] * off[i] / kRepeats;
@@ -307,6 +311,12 @@ void expect_to_cover(const LinearShpb& model) {
     EXPECT_GT(squares[i], 0.4);
     EXPECT_LT(squares[i], 1.8);
   }
+  // What bench and bars move, they move at all frequencies: few of so many numbers are independent.
+  EXPECT_GT(spectrum.count(), 2000U);
+  EXPECT_GE(spectrum.inside_share(), 0.90);
+  EXPECT_LE(spectrum.inside_share(), 0.985);
+  EXPECT_GT(spectrum.mean_square(), 0.6);
+  EXPECT_LT(spectrum.mean_square(), 1.4);
 }
 
 TEST(FitSpecimen, NinetyFivePercentIntervalsHoldTheTruthOfACore) {
