@@ -12,8 +12,8 @@
 #include "daemon/daemon.hpp"
 #include "daemon/live/sd_notify.hpp"
 #include "daemon/log.hpp"
-#include "daemon/thread_priority.hpp"
 #include "drivers/digitiser/library_messages.hpp"
+#include "drivers/memory/kept_memory.hpp"
 #include "processing/base/error.hpp"
 
 namespace {

@@ -1,6 +1,5 @@
 #include "daemon/thread_priority.hpp"
 
-#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -30,15 +29,6 @@ void run_as_usual() noexcept {
 void run_ahead_of_usual() noexcept {
   constexpr int kNice = -15;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
-}
-
-void keep_freed_memory() noexcept {
-  constexpr int kMost_bytes = 256 << 20;
-  constexpr int kAtOnce_bytes = 16 << 20;
-  constexpr int kMostOnHeap_bytes = 32 << 20;  // the C library takes no more
-  mallopt(M_TRIM_THRESHOLD, kMost_bytes);
-  mallopt(M_MMAP_THRESHOLD, kMostOnHeap_bytes);
-  mallopt(M_TOP_PAD, kAtOnce_bytes);
 }
 
 bool IdleCheck::rests() noexcept {

@@ -17,11 +17,6 @@ void run_as_usual() noexcept;
 /// Ahead of what runs as usual, where that is permitted, and behind the kernel's own work.
 void run_ahead_of_usual() noexcept;
 
-/// Has the process keep the memory that it frees for what it asks for next: a page that went back
-/// to the system costs a fault when it is used again, and on virtual machines that takes up to
-/// milliseconds, between a sample and its result too.
-void keep_freed_memory() noexcept;
-
 /// Tells when the calling thread has been at work nearly all the time. A real-time thread that does
 /// not sleep takes a processor from everybody else for good, so it should go back to running as
 /// usual.

@@ -10,6 +10,8 @@
 #include <map>
 #include <string>
 
+#include "drivers/memory/kept_memory.hpp"
+
 namespace {
 
 class HoldingReporter : public benchmark::ConsoleReporter {
@@ -67,6 +69,7 @@ bool take_hold(int& argc, char** argv, double& ratio) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  kolsky::keep_freed_memory();  // as the programs do
   double ratio = 0.0;
   if (!take_hold(argc, argv, ratio)) {
     std::fprintf(stderr,

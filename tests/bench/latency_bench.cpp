@@ -23,6 +23,7 @@
 #include "daemon/daemon.hpp"
 #include "daemon/thread_priority.hpp"
 #include "drivers/files/captures/capture.hpp"
+#include "drivers/memory/kept_memory.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "proto/codec.hpp"
 #include "tests/end_to_end/scene.hpp"

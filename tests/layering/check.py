@@ -16,11 +16,12 @@ ALLOWED = {
     "drivers/digitiser": ["processing/base/", "drivers/digitiser/", "drivers/iio/", "drivers/replay/"],
     "drivers/files": ["processing/base/", "processing/bridge/", "drivers/files/"],
     "drivers/iio": ["processing/base/", "drivers/digitiser/", "drivers/iio/"],
+    "drivers/memory": ["drivers/memory/"],
     "drivers/replay": ["processing/base/", "drivers/digitiser/", "drivers/files/", "drivers/replay/"],
     "drivers/simulated": ["processing/base/", "processing/impact/", "drivers/files/", "drivers/simulated/"],
     "proto": ["processing/base/", "processing/reduction/", "proto/", "kolsky/v1/"],
-    "daemon": ["processing/", "drivers/digitiser/", "drivers/files/", "proto/", "kolsky/v1/", "daemon/"],
-    "clients": ["processing/", "drivers/files/", "proto/", "kolsky/v1/", "clients/"],
+    "daemon": ["processing/", "drivers/digitiser/", "drivers/files/", "drivers/memory/", "proto/", "kolsky/v1/", "daemon/"],
+    "clients": ["processing/", "drivers/files/", "drivers/memory/", "proto/", "kolsky/v1/", "clients/"],
     "tests": [""],
 }
 
