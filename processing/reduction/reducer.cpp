@@ -113,7 +113,7 @@ Reduction Reducer::State::reduce(const Shot& shot) {
   std::vector<double> numbers = shpb_numbers(shot.bench, material, told.theory, in, out);
   const ShpbBar input(shot.bench.input, in, material);
   const ShpbBar output(*shot.bench.output, out, material);
-  const ShpbPlanKey plan = ShpbPlanKey::of(shot, input, output);
+  const ShpbPlanKey plan = ShpbPlanKey::of(shot, input, output, told.theory);
   if (!plans || !(plans->key == plan)) {
     plans = std::make_unique<ShpbPlans>(plan);
   }

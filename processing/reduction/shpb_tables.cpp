@@ -20,6 +20,30 @@ std::size_t rounded_up(std::size_t samples) {
   return (samples + kStep - 1) / kStep * kStep;
 }
 
+/// Where groups would be slower than histories are late by, or surface gauges are blind, waves are
+/// taken to go on as slowly, and to be read as they last were. The band's flank reaches there
+/// (Love's theory even to where waves stand still) and leaves next to nothing, but next to nothing
+/// times what is beyond all bounds would be all there is.
+void bound_groups(const std::vector<Complex>& path, double front_speed_m_per_s, WaveTheory theory,
+                  std::vector<BarMode>& modes) {
+  constexpr double kMostOverSurface = 2.0;  // as blind_from_Hz has it
+  const double slowest = slowest_over_front(theory) / front_speed_m_per_s;
+  for (std::size_t k = 1; k < modes.size(); ++k) {
+    const Complex step = path[k] - path[k - 1];
+    const double slowness = (modes[k].gamma - modes[k - 1].gamma).imag() / step.imag();
+    const bool seen = std::norm(modes[k].mean_over_surface) <= kMostOverSurface * kMostOverSurface;
+    if (slowness >= 0.0 && slowness <= slowest && seen) {
+      continue;
+    }
+    const BarMode last = modes[k - 1];
+    for (std::size_t n = k; n < modes.size(); ++n) {
+      modes[n] = last;
+      modes[n].gamma = last.gamma + (path[n] - path[k - 1]) * slowest;
+    }
+    return;
+  }
+}
+
 }  // namespace
 
 ShpbBar::ShpbBar(const Bar& bar, const Station& station, const Material& viscoelastic)
@@ -67,8 +91,11 @@ std::size_t longest_travel(const Shot& shot, const ShpbBar& input, const ShpbBar
   return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
 }
 
-ShpbPlanKey ShpbPlanKey::of(const Shot& shot, const ShpbBar& input, const ShpbBar& output) {
-  return {shot.samples(), shot.rate, rounded_up(longest_travel(shot, input, output)),
+ShpbPlanKey ShpbPlanKey::of(const Shot& shot, const ShpbBar& input, const ShpbBar& output,
+                            WaveTheory theory) {
+  const double slowest =
+      slowest_over_front(theory) * static_cast<double>(longest_travel(shot, input, output));
+  return {shot.samples(), shot.rate, rounded_up(static_cast<std::size_t>(slowest)),
           rounded_up(pulse_room(shot, input))};
 }
 
@@ -111,6 +138,10 @@ void ShpbTables::reach(const ShpbPlans& plans, std::size_t bins) {
                                   plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
   input.waves.modes = bar_modes(theory, input_bar, *input.compliance, path);
   output.waves.modes = bar_modes(theory, output_bar, *output.compliance, path);
+  if (theory != WaveTheory::elementary) {
+    bound_groups(path, input.front_speed_m_per_s, theory, input.waves.modes);
+    bound_groups(path, output.front_speed_m_per_s, theory, output.waves.modes);
+  }
   const double delay_s = static_cast<double>(plan.delay) * plan.rate.period_s();
   kernels = CarryingKernels(path, input.waves, output.waves, specimen_length_m, delay_s);
 }

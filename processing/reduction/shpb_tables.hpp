@@ -35,12 +35,16 @@ struct ShpbBar {
 struct ShpbPlanKey {
   std::size_t samples;
   SampleRate rate;
-  std::size_t delay;  ///< samples by which histories come out late, so that nothing looks ahead
+  /// Samples by which histories come out late, so that nothing looks ahead: what the slowest waves
+  /// in the band take from a gauge to the specimen. What is carried back by more wraps round to the
+  /// end, where the transform's damping makes it larger than everything else.
+  std::size_t delay;
   std::size_t longest_pulse;
   bool operator==(const ShpbPlanKey&) const = default;
 
   /// Of a shot on these bars; rounded up, so that benches that differ a little share their plans.
-  static ShpbPlanKey of(const Shot& shot, const ShpbBar& input, const ShpbBar& output);
+  static ShpbPlanKey of(const Shot& shot, const ShpbBar& input, const ShpbBar& output,
+                        WaveTheory theory);
 };
 
 /// Plans and work space for shots of one length.

@@ -53,7 +53,9 @@ Reduction BallReducer::reduce(const Shot& shot, const ReductionOptions& options)
   const Bar& bar = shot.bench.input;
   const double samples_per_m = shot.rate.Hz() / BallPass::front_speed(bar);
   const BallPlanKey key{
-      shot.samples(), shot.rate, rounded_up(stations.back().gauge_to_specimen_m * samples_per_m),
+      shot.samples(), shot.rate,
+      rounded_up(slowest_over_front(options.theory) * stations.back().gauge_to_specimen_m *
+                 samples_per_m),
       std::min(shot.samples(),
                rounded_up(2.0 * stations.front().gauge_to_far_end_m * samples_per_m))};
   if (!state_->plans || !(state_->plans->key == key)) {
