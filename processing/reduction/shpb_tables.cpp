@@ -28,17 +28,23 @@ void bound_groups(const std::vector<Complex>& path, double front_speed_m_per_s, 
                   std::vector<BarMode>& modes) {
   constexpr double kMostOverSurface = 2.0;  // as blind_from_Hz has it
   const double slowest = slowest_over_front(theory) / front_speed_m_per_s;
+  double going = 1.0 / front_speed_m_per_s;
   for (std::size_t k = 1; k < modes.size(); ++k) {
     const Complex step = path[k] - path[k - 1];
     const double slowness = (modes[k].gamma - modes[k - 1].gamma).imag() / step.imag();
     const bool seen = std::norm(modes[k].mean_over_surface) <= kMostOverSurface * kMostOverSurface;
     if (slowness >= 0.0 && slowness <= slowest && seen) {
+      going = slowness;
       continue;
     }
-    const BarMode last = modes[k - 1];
+    BarMode last = modes[k - 1];
+    if (!seen) {  // a little above, so that it is still said to be blind from here on
+      const Complex& above = modes[k].mean_over_surface;
+      last.mean_over_surface = above * (kMostOverSurface * (1.0 + 1e-6) / std::abs(above));
+    }
     for (std::size_t n = k; n < modes.size(); ++n) {
       modes[n] = last;
-      modes[n].gamma = last.gamma + (path[n] - path[k - 1]) * slowest;
+      modes[n].gamma = last.gamma + (path[n] - path[k - 1]) * going;
     }
     return;
   }

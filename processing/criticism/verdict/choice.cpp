@@ -43,15 +43,6 @@ bool chosen_apart(const Studied& one, const Studied& other, const std::string& i
   return false;
 }
 
-/// Where next to nothing stood over the noise nothing can take half of it away: a model that does
-/// foretells more noise than there is (gauges as long as a wave, of slow noise), and wins by it.
-/// @param before  chi-square per degree of freedom without it
-bool hides_in_noise(const Studied& studied, double before) {
-  constexpr double kNothingMissing = 1.5;
-  constexpr double kLeastLeft = 0.65;
-  return before < kNothingMissing && studied.misfit.noise_scale < kLeastLeft * before;
-}
-
 std::string id_of(const Search& search, const Refit& refit) {
   return search.candidates()[refit.candidate].id();
 }
@@ -59,7 +50,7 @@ std::string id_of(const Search& search, const Refit& refit) {
 }  // namespace
 
 std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool first) {
-  Found found{search, search.refits(), {}, base.misfit.chi2_reduced};
+  Found found{search, search.refits(), {}};
   found.held_out = certify(search, found.refits, base);
   if (first) {
     note_all(found);
@@ -145,7 +136,6 @@ bool Chooser::sound(const Found& found, std::size_t i) const {
   const bool foretells_most = refit.products || (own.gain > 0.0 && own.share > 0.5);
   constexpr double kSlack = 1.5;
   return (!options_.safeguards.held_out || foretells_most) &&
-         !hides_in_noise(refit.studied, found.before) &&
          !beyond_belief(refit.studied, id_of(found.search, refit), study_.campaign(), kSlack);
 }
 

@@ -41,7 +41,6 @@ class Chooser {
     Search& search;
     std::vector<Refit> refits;
     std::vector<Certification> held_out;
-    double before = 1.0;  ///< chi-square per degree of freedom without any of them
   };
   /// Places among the refits.
   struct Places {
