@@ -189,6 +189,30 @@ TEST(Comparing, SaysThatFiledNumbersHideWhatIsWrong) {
   EXPECT_NE(compared.out.find("filed numbers are strained"), std::string::npos) << compared.out;
 }
 
+TEST_F(SimulatedBar, IsComparedWithANoteWhereGaugesWereExchanged) {
+  const std::string said = "were the two exchanged";
+  EXPECT_EQ(kolsky({"compare", file("shots"), "--model", file("m.toml")}).out.find(said),
+            std::string::npos);
+  std::string bench = content(file("campaign/bench.toml"));
+  const std::size_t second = bench.find("\"g2\"");
+  const std::size_t third = bench.find("\"g3\"");
+  ASSERT_LT(second, third);
+  ASSERT_LT(third, bench.size());
+  bench[second + 2] = '3';
+  bench[third + 2] = '2';
+  std::ofstream(file("exchanged.toml")) << bench;
+  ASSERT_EQ(kolsky({"import", "csv", file("campaign/shot01.csv"), "--bench", file("exchanged.toml"),
+                    "-o", file("exchanged.h5")})
+                .code,
+            0);
+  const json compared = json_of(kolsky({"compare", file("exchanged.h5"), "--model", file("m.toml"),
+                                        "--json", "--report", file("exchanged.html")}));
+  EXPECT_NE(compared["notes"].dump().find(said), std::string::npos) << compared["notes"];
+  EXPECT_NE(content(file("exchanged.html")).find(said), std::string::npos);
+  EXPECT_NE(kolsky({"compare", file("exchanged.h5"), "--model", file("m.toml")}).out.find(said),
+            std::string::npos);
+}
+
 TEST_F(SimulatedBar, KeepsTheLedgerOfADiagnosisAndRevertsIt) {
   ASSERT_EQ(kolsky({"diagnose", file("shots"), "--model", file("m.toml"), "-o", file("m2.toml"),
                     "--note", "first look"})
