@@ -5,8 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "tests/generators/campaign_draw.hpp"
-#include "tests/generators/shpb_world.hpp"
+#include "tests/generators/paper_split_bar.hpp"
 #include "tests/generators/transfer_oracle.hpp"
 
 namespace kolsky::testing {
@@ -17,26 +16,7 @@ using Complex = std::complex<double>;
 constexpr double kAllowed = 0.3 * 4.0 / 3000.0;
 
 ShpbWorld paper_bench() {
-  ShpbWorld world;
-  world.base.radius_m = 0.0075;
-  world.base.length_m = 0.7;
-  world.base.timing.samples = 1200;
-  for (const auto& [name, bar, x] :
-       {std::tuple{"g1", "input", 0.4}, {"g2", "output", 0.05}, {"g3", "input", 0.25}}) {
-    TrueGauge gauge;
-    gauge.name = name;
-    gauge.bar = bar;
-    gauge.position_m = x;
-    world.base.gauges.push_back(gauge);
-  }
-  std::mt19937_64 random(3);
-  TrueShot shot;
-  shot.source = draw_pulse(random, 450e-6, world.base.timing.knot_s(), 400);
-  for (double& bell : shot.source) {
-    bell *= 1e7;
-  }
-  world.base.shots = {shot};
-  return world;
+  return paper_split_bar(1e7);
 }
 
 double worst(const Readings& a, const Readings& b) {

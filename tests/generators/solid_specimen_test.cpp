@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "processing/base/error.hpp"
-#include "tests/generators/campaign_draw.hpp"
+#include "tests/generators/paper_split_bar.hpp"
 
 namespace kolsky::testing {
 namespace {
@@ -15,26 +15,9 @@ namespace {
 /// Of 4 microstrain of noise on pulses of 3000.
 constexpr double kAllowed = 0.3 * 4.0 / 3000.0;
 
+/// Struck so that the specimen's strains are small.
 ShpbWorld bench() {
-  ShpbWorld world;
-  world.base.radius_m = 0.0075;
-  world.base.length_m = 0.7;
-  world.base.timing.samples = 1200;
-  for (const auto& [name, bar, x] : {std::tuple{"g1", "input", 0.4}, {"g2", "output", 0.05}}) {
-    TrueGauge gauge;
-    gauge.name = name;
-    gauge.bar = bar;
-    gauge.position_m = x;
-    world.base.gauges.push_back(gauge);
-  }
-  std::mt19937_64 random(3);
-  TrueShot shot;
-  shot.source = draw_pulse(random, 450e-6, world.base.timing.knot_s(), 400);
-  for (double& bell : shot.source) {
-    bell *= 2e6;
-  }
-  world.base.shots = {shot};
-  return world;
+  return paper_split_bar(2e6);
 }
 
 ShpbWorld solid(ShpbWorld world) {
