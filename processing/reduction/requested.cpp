@@ -1,11 +1,16 @@
 #include "processing/reduction/requested.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <numbers>
 #include <string>
+#include <vector>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/reduction/separated_faces.hpp"
+#include "processing/waves/bar_modes.hpp"
 
 namespace kolsky {
 
@@ -59,6 +64,20 @@ void require_band_of_model(const std::optional<double>& band_limit_Hz, const Mat
   }
 }
 
+/// Before any shot is there; a shot's own tables say it again.
+void require_bar_seen(double band_limit_Hz, WaveTheory theory, const Bar& bar,
+                      const Material& viscoelastic) {
+  constexpr std::size_t kSteps = 256;
+  constexpr double kBeyond = 1.01;
+  const double step_Hz = kBeyond * band_limit_Hz / static_cast<double>(kSteps);
+  std::vector<Complex> path;
+  for (std::size_t n = 1; n <= kSteps; ++n) {
+    path.emplace_back(0.0, 2.0 * std::numbers::pi * step_Hz * static_cast<double>(n));
+  }
+  const std::unique_ptr<const Compliance> compliance = compliance_of(bar, viscoelastic);
+  require_band_seen(band_limit_Hz, blind_from_Hz(bar_modes(theory, bar, *compliance, path), path));
+}
+
 }  // namespace
 
 ReductionOptions options_of(const ReductionRequest& request) {
@@ -92,11 +111,18 @@ void require_suits(const ReductionRequest& request, const Bench& bench,
                      "asks for a reduction, and the bench is of kind \"bar\": nothing is reduced",
                      "leave it out, or give a bench of kind \"shpb\"");
   }
+  require_band_of_record(options.band_limit_Hz, bench.sampling_frequency_Hz);
+  if (options.band_limit_Hz) {
+    const Material bars = bar_model ? *bar_model : assumed_bars(bench);
+    require_bar_seen(*options.band_limit_Hz, options.theory, bench.input, bars);
+    if (bench.output) {
+      require_bar_seen(*options.band_limit_Hz, options.theory, *bench.output, bars);
+    }
+  }
   if (bench.kind == BenchKind::impact) {
     refuse_for_ball(request);
     return;
   }
-  require_band_of_record(options.band_limit_Hz, bench.sampling_frequency_Hz);
   if (bar_model) {
     require_band_of_model(options.band_limit_Hz, *bar_model);
   }
@@ -120,6 +146,16 @@ void require_band_of_record(const std::optional<double>& band_limit_Hz, double r
                      in_words(*band_limit_Hz, "Hz") +
                          " is not in the record, which was sampled at " + in_words(rate_Hz, "Hz"),
                      "give at most half of that");
+  }
+}
+
+void require_band_seen(double band_limit_Hz, double blind_from_Hz) {
+  if (band_limit_Hz > blind_from_Hz) {
+    throw InputError(
+        "band_limit_Hz",
+        in_words(band_limit_Hz, "Hz") + " is beyond what gauges on these bars see: from " +
+            in_words(blind_from_Hz, "Hz") + " on the surface has less than half of the mean strain",
+        "give at most that, or ask for elementary waves");
   }
 }
 

@@ -30,4 +30,8 @@ void require_suits(const ReductionRequest& request, const Bench& bench,
 /// @throws InputError where a record sampled at `rate_Hz` does not reach up to there
 void require_band_of_record(const std::optional<double>& band_limit_Hz, double rate_Hz);
 
+/// @param blind_from_Hz  where surface gauges of the thicker bar go blind
+/// @throws InputError where the band asked for goes beyond
+void require_band_seen(double band_limit_Hz, double blind_from_Hz);
+
 }  // namespace kolsky

@@ -11,7 +11,9 @@
 #include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/requested.hpp"
 #include "processing/reduction/separated_faces.hpp"
+#include "processing/waves/seen_modes.hpp"
 
 namespace kolsky {
 
@@ -174,8 +176,11 @@ class Pass {
     }
     bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
     bars_.reach(t_, bins_);
-    if (!options_.band_limit_Hz) {
-      limit_Hz = std::min(limit_Hz, bars_.highest_Hz(t_, bins_));
+    const double blind_from_Hz = bars_.blind_from_Hz(t_, bins_);
+    if (options_.band_limit_Hz) {
+      require_band_seen(limit_Hz, blind_from_Hz);
+    } else {
+      limit_Hz = std::min(limit_Hz, highest_band_limit_Hz(blind_from_Hz));
     }
     reduction_.band_limit_Hz = limit_Hz;
     band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);

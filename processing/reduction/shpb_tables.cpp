@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processing/reduction/pulse.hpp"
+#include "processing/waves/seen_modes.hpp"
 
 namespace kolsky {
 
@@ -18,36 +19,6 @@ std::size_t pulse_room(const Shot& shot, const ShpbBar& bar) {
 std::size_t rounded_up(std::size_t samples) {
   constexpr std::size_t kStep = 32;
   return (samples + kStep - 1) / kStep * kStep;
-}
-
-/// Where groups would be slower than histories are late by, or surface gauges are blind, waves are
-/// taken to go on as slowly, and to be read as they last were. The band's flank reaches there
-/// (Love's theory even to where waves stand still) and leaves next to nothing, but next to nothing
-/// times what is beyond all bounds would be all there is.
-void bound_groups(const std::vector<Complex>& path, double front_speed_m_per_s, WaveTheory theory,
-                  std::vector<BarMode>& modes) {
-  constexpr double kMostOverSurface = 2.0;  // as blind_from_Hz has it
-  const double slowest = slowest_over_front(theory) / front_speed_m_per_s;
-  double going = 1.0 / front_speed_m_per_s;
-  for (std::size_t k = 1; k < modes.size(); ++k) {
-    const Complex step = path[k] - path[k - 1];
-    const double slowness = (modes[k].gamma - modes[k - 1].gamma).imag() / step.imag();
-    const bool seen = std::norm(modes[k].mean_over_surface) <= kMostOverSurface * kMostOverSurface;
-    if (slowness >= 0.0 && slowness <= slowest && seen) {
-      going = slowness;
-      continue;
-    }
-    BarMode last = modes[k - 1];
-    if (!seen) {  // a little above, so that it is still said to be blind from here on
-      const Complex& above = modes[k].mean_over_surface;
-      last.mean_over_surface = above * (kMostOverSurface * (1.0 + 1e-6) / std::abs(above));
-    }
-    for (std::size_t n = k; n < modes.size(); ++n) {
-      modes[n] = last;
-      modes[n].gamma = last.gamma + (path[n] - path[k - 1]) * going;
-    }
-    return;
-  }
 }
 
 }  // namespace
@@ -142,20 +113,16 @@ void ShpbTables::reach(const ShpbPlans& plans, std::size_t bins) {
   }
   const std::vector<Complex> path(plans.path.begin(),
                                   plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
-  input.waves.modes = bar_modes(theory, input_bar, *input.compliance, path);
-  output.waves.modes = bar_modes(theory, output_bar, *output.compliance, path);
-  if (theory != WaveTheory::elementary) {
-    bound_groups(path, input.front_speed_m_per_s, theory, input.waves.modes);
-    bound_groups(path, output.front_speed_m_per_s, theory, output.waves.modes);
-  }
+  input.waves.modes = seen_modes(theory, input_bar, *input.compliance, path);
+  output.waves.modes = seen_modes(theory, output_bar, *output.compliance, path);
   const double delay_s = static_cast<double>(plan.delay) * plan.rate.period_s();
   kernels = CarryingKernels(path, input.waves, output.waves, specimen_length_m, delay_s);
 }
 
-double ShpbTables::highest_Hz(const ShpbPlans& plans, std::size_t bins) const {
+double ShpbTables::blind_from_Hz(const ShpbPlans& plans, std::size_t bins) const {
   const auto path = std::span(plans.path).first(bins);
-  return std::min(blind_from_Hz(std::span(input.waves.modes).first(bins), path),
-                  blind_from_Hz(std::span(output.waves.modes).first(bins), path));
+  return std::min(kolsky::blind_from_Hz(std::span(input.waves.modes).first(bins), path),
+                  kolsky::blind_from_Hz(std::span(output.waves.modes).first(bins), path));
 }
 
 }  // namespace kolsky

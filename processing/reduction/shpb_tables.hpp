@@ -76,7 +76,7 @@ struct ShpbTables {
 
   void reach(const ShpbPlans& plans, std::size_t bins);
   /// Where surface gauges go blind, if within so many bins.
-  [[nodiscard]] double highest_Hz(const ShpbPlans& plans, std::size_t bins) const;
+  [[nodiscard]] double blind_from_Hz(const ShpbPlans& plans, std::size_t bins) const;
 };
 
 }  // namespace kolsky

@@ -30,10 +30,4 @@ void read_raw_station(const Shot& shot, const Station& station, std::vector<doub
 void read_station(const Shot& shot, const Station& station, std::size_t quiet,
                   std::vector<double>& strains);
 
-/// The longest that a wave in its band takes over a distance, in what a front takes over it: what
-/// lateral inertia slows goes at half the front's speed and more, up to where gauges go blind.
-[[nodiscard]] constexpr double slowest_over_front(WaveTheory theory) {
-  return theory == WaveTheory::elementary ? 1.0 : 2.0;
-}
-
 }  // namespace kolsky

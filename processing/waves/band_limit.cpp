@@ -138,6 +138,10 @@ std::size_t BandLimit::bins_within(const DampedTransform& transform, double limi
   return std::min(bins, transform.bins());
 }
 
+double BandLimit::falls_to(double share) {
+  return std::pow(-std::log(share) / std::numbers::ln2, 0.25);
+}
+
 double BandLimit::smear_s(double limit_Hz) {
   return 2.0 / corner_per_s(limit_Hz);
 }

@@ -52,6 +52,9 @@ class BandLimit {
   /// Bins in which a filter with this limit leaves more than 1e-18.
   [[nodiscard]] static std::size_t bins_within(const DampedTransform& transform, double limit_Hz);
 
+  /// At how many times its limit the filter has fallen to a share of what it passes.
+  [[nodiscard]] static double falls_to(double share);
+
   /// How far the filter's kernel reaches to each side, in seconds (where it has fallen to a tenth).
   [[nodiscard]] static double smear_s(double limit_Hz);
 

@@ -56,10 +56,13 @@ std::vector<BarMode> bar_modes(WaveTheory theory, const Bar& bar, const Complian
       .along(path);
 }
 
+bool is_blind(const BarMode& mode) {
+  return std::norm(mode.mean_over_surface) > kBlindMeanOverSurface * kBlindMeanOverSurface;
+}
+
 double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path) {
-  constexpr double kTwice = 2.0;
   for (std::size_t k = 0; k < modes.size(); ++k) {
-    if (std::norm(modes[k].mean_over_surface) > kTwice * kTwice) {
+    if (is_blind(modes[k])) {
       return path[k].imag() / (2.0 * std::numbers::pi);
     }
   }

@@ -20,6 +20,10 @@ namespace kolsky {
                                              const Compliance& compliance,
                                              const std::vector<Complex>& path);
 
+/// Mean over surface strain from which surface gauges count as blind.
+inline constexpr double kBlindMeanOverSurface = 2.0;
+[[nodiscard]] bool is_blind(const BarMode& mode);
+
 /// Where surface gauges go blind: the frequency [Hz] on the path from which they read less than
 /// half of the mean strain. The path's highest frequency where that does not happen.
 [[nodiscard]] double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "processing/waves/seen_modes.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -45,7 +47,8 @@ void reach(BallKernels& kernels, const BallPlans& plans, const Bar& bar, WaveThe
   const std::vector<Complex> path(plans.path.begin(),
                                   plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
   const ElasticSolid solid(*bar.youngs_modulus_Pa);
-  const std::vector<BarMode> modes = bar_modes(theory, bar, solid, path);
+  const std::vector<BarMode> modes = seen_modes(theory, bar, solid, path);
+  kernels.blind_from_Hz = blind_from_Hz(modes, path);
   const double delay_s = static_cast<double>(plans.key.delay) * plans.key.rate.period_s();
   kernels.force_of_strain.assign(stations.size(), std::vector<Complex>(bins));
   for (std::size_t i = 0; i < stations.size(); ++i) {

@@ -37,6 +37,7 @@ struct BallKernels {
   std::vector<double> numbers;
   BallPlanKey key;
   std::vector<std::vector<Complex>> force_of_strain;  ///< by station
+  double blind_from_Hz = 0.0;                         ///< where the bar's gauges go blind
 
   [[nodiscard]] std::size_t bins() const {
     return force_of_strain.empty() ? 0 : force_of_strain.front().size();

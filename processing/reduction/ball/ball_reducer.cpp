@@ -7,6 +7,7 @@
 #include "processing/reduction/ball/ball_pass.hpp"
 #include "processing/reduction/ball/ball_stations.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/waves/seen_modes.hpp"
 
 namespace kolsky {
 

@@ -6,7 +6,9 @@
 
 #include "processing/bridge/bridge.hpp"
 #include "processing/reduction/pulse.hpp"
+#include "processing/reduction/requested.hpp"
 #include "processing/waves/band_limit.hpp"
+#include "processing/waves/seen_modes.hpp"
 
 namespace kolsky {
 
@@ -96,6 +98,11 @@ void BallPass::choose_band() {
   }
   bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
   reach(kernels_, t_, bar_, options_.theory, stations_, bins_);
+  if (options_.band_limit_Hz) {
+    require_band_seen(limit_Hz, kernels_.blind_from_Hz);
+  } else {
+    limit_Hz = std::min(limit_Hz, highest_band_limit_Hz(kernels_.blind_from_Hz));
+  }
   reduction_.band_limit_Hz = limit_Hz;
   band_loss_ = t_.band.loss(wave, noise_strain_[quietest], limit_Hz);
   const auto largest = std::max_element(wave.begin(), wave.end());

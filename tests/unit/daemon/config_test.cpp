@@ -125,6 +125,8 @@ TEST_F(ConfigTest, RefusesAReductionThatNoShotOfTheBenchCanHave) {
   EXPECT_TRUE(refused("separate = \"gauges\"", {"reduction.separate", "one place", "equilibrium"}));
   EXPECT_TRUE(refused("inertia = \"axial\"", {"reduction.inertia", "specimen.density_kg_m3"}));
   EXPECT_TRUE(refused("band_limit_Hz = 600e3", {"reduction.band_limit_Hz", "half"}));
+  EXPECT_TRUE(refused("dispersion = \"exact\"\nband_limit_Hz = 400e3",
+                      {"reduction.band_limit_Hz", "mean strain"}));
   EXPECT_TRUE(refused("duration_s = 5e-3", {"reduction.duration_s", "window", "post_samples"}));
 
   write("bench.toml", R"(kind = "bar"

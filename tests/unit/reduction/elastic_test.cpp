@@ -75,6 +75,34 @@ TEST(ElasticReduction, SlowWavesOfAWideBandDoNotComeRound) {
   EXPECT_NEAR(peak(WaveTheory::exact), plain, 0.8 * plain);
 }
 
+TEST(ElasticReduction, BandOfExactWavesEndsBeforeSurfaceGaugesGoBlind) {
+  ElasticShpb model;
+  model.sampling_frequency_Hz = 4e6;
+  const Shot shot = noiseless(model, model.solve());
+  const Bar& bar = shot.bench.input;
+  // a f / c0 from which gauges read less than half of the mean strain (reference table, M1 = 2).
+  const double c0_m_per_s = std::sqrt(bar.youngs_modulus_Pa->value / bar.density_kg_m3.value);
+  const double blind_Hz = 0.26 * c0_m_per_s / bar.dispersion_radius_m();
+  ReductionOptions options;
+  options.theory = WaveTheory::exact;
+  const double limit_Hz = Reducer(options).reduce(shot).band_limit_Hz;
+  // exp(-ln 2 (f / limit)^4) = 0.01 where they go blind.
+  EXPECT_NEAR(limit_Hz, blind_Hz / std::pow(std::log(100.0) / std::log(2.0), 0.25),
+              0.05 * limit_Hz);
+  options.band_limit_Hz = 1.1 * blind_Hz;
+  const auto problem = [&]() -> std::string {
+    try {
+      static_cast<void>(Reducer(options).reduce(shot));
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(problem().find("half of the mean strain"), std::string::npos) << problem();
+  options.theory = WaveTheory::elementary;
+  EXPECT_EQ(problem(), "");
+}
+
 TEST(ElasticReduction, StressIsForceOverTheSpecimen) {
   const ElasticShpb model;
   const Reduction r = Reducer().reduce(noiseless(model, model.solve()));

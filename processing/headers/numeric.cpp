@@ -1,0 +1,1 @@
+// Holds nothing: its target compiles once the headers that numerics begin with, under their options.
