@@ -19,9 +19,11 @@ struct ModelFit {
   Eigen::MatrixXd doubt;        ///< what a model that is calculated adds to that; empty: nothing
   double chi2 = 0.0;            ///< of the residuals
   double penalty = 0.0;         ///< of the priors
+  double taken_by_noise = 0.0;  ///< see ShotResiduals
   bool converged = false;
 
-  [[nodiscard]] double objective() const { return chi2 + penalty; }
+  /// What fits are compared by.
+  [[nodiscard]] double objective() const { return chi2 + penalty + taken_by_noise; }
   /// Degrees of freedom that the residuals have left.
   [[nodiscard]] double degrees_of_freedom(const Composition& composition) const;
 };

@@ -132,6 +132,7 @@ void FitSteps::take(Step step) {
 
 ModelFit FitSteps::done(bool converged) {
   fit_.converged = converged;
+  fit_.taken_by_noise = residuals_.taken_by_noise(composition_, fit_.theta, executor_.first);
   const auto count = static_cast<Eigen::Index>(fit_.theta.size());
   if (count == 0) {
     // Nothing is free: the model is what it is.

@@ -151,7 +151,7 @@ double floor_of(const Studied& after, bool remains, std::size_t shots) {
     return 1.0;
   }
   return remains ? after.misfit.noise_scale
-                 : (after.fit.objective() + static_cast<double>(after.fit.theta.size())) /
+                 : (after.fit.chi2 + after.fit.penalty + static_cast<double>(after.fit.theta.size())) /
                        static_cast<double>(after.fit.residual.size());
 }
 

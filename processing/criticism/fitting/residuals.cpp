@@ -43,6 +43,7 @@ struct WhiteResiduals::Workspace {
   std::optional<std::vector<AppliedEffect>> on_noise;  ///< that made the whitener
   std::vector<Eigen::MatrixXcd> whitener;              ///< by bin
   std::vector<Eigen::MatrixXcd> cross;                 ///< P G^H by bin
+  double leaked = 0.0;                                 ///< shares of a shot's, over all bins
 
   Workspace(const JudgedBand& band, double period_s)
       : whole(band.transformed, period_s, kWrapDamping),
@@ -296,8 +297,8 @@ void WhiteResiduals::carry_noise(Workspace& work, const Ratios& ratios) const {
 
 /// What whitens residuals at one bin: the inverse Cholesky factor of half their covariance, for
 /// real and imaginary parts are of unit variance each. `cross` becomes P G^H.
-void WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
-                                  Eigen::MatrixXcd& cross, Eigen::MatrixXcd& whitener) const {
+double WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
+                                    Eigen::MatrixXcd& cross, Eigen::MatrixXcd& whitener) const {
   const auto gauges = static_cast<Eigen::Index>(campaign_.gauges());
   const auto rows = static_cast<Eigen::Index>(others_.size());
   const auto other = [&](Eigen::Index i) { return others_[static_cast<std::size_t>(i)]; };
@@ -327,10 +328,20 @@ void WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
   // Where the reference is blind, what the window's ends leak of slow noise stays.
   const double kept =
       means ? carried.power(rows, rows).real() / carried.power(rows + 1, rows + 1).real() : 0.0;
-  const auto variance = [&](Eigen::Index i) {
-    const double leaked = means ? noise(other(i), other(i)) * (kept - std::norm(mean)) : 0.0;
-    return covariance(i, i).real() + leaked;
+  const auto leaked_of_other = [&](Eigen::Index i) {
+    return means ? noise(other(i), other(i)) * (kept - std::norm(mean)) : 0.0;
   };
+  const auto variance = [&](Eigen::Index i) {
+    return covariance(i, i).real() + leaked_of_other(i);
+  };
+  double leaked = 0.0;
+  for (Eigen::Index i = 0; means && i < rows; ++i) {
+    // Of the reference's noise as much leaks as ever, and beside what a mean leaves it is more.
+    const double carried_on = scale * carried.power(i, i).real();
+    const double of_own = std::max(0.0, carried_on - std::norm(carried.ratio[i]) * of_reference);
+    const double beside_a_point = of_own / (noise(other(i), other(i)) + carried_on);
+    leaked += std::max(0.0, (leaked_of_other(i) + of_own) / variance(i) - beside_a_point);
+  }
   whitener.resize(rows, rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
@@ -345,6 +356,7 @@ void WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
       whitener(i, i) = 1.0 / std::sqrt(0.5 * variance(i));
     }
   }
+  return leaked;
 }
 
 /// Scene and transfers of a shot under what acts on waves, unless they are known.
@@ -383,8 +395,9 @@ void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
   carry_noise(work, usual_ratios(work, composition, effects));
   work.whitener.resize(band_.bins_judged);
   work.cross.resize(band_.bins_judged);
+  work.leaked = 0.0;
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    put_whitener(work.bins[k], k, work.cross[k], work.whitener[k]);
+    work.leaked += put_whitener(work.bins[k], k, work.cross[k], work.whitener[k]);
   }
   work.on_noise = effects;
 }
@@ -586,6 +599,13 @@ void WhiteResiduals::find_residuals(Workspace& work, const Composition& composit
       }
     }
   }
+}
+
+double WhiteResiduals::taken_by_noise(const Composition& composition,
+                                      const std::vector<double>& theta, std::size_t worker) {
+  know_noise(*work_[worker], composition, Effects(composition, theta, 0).on_waves);
+  // Real and imaginary parts of unit variance each.
+  return 2.0 * work_[worker]->leaked * static_cast<double>(campaign_.shots.size());
 }
 
 Eigen::VectorXd WhiteResiduals::evaluate_in_noise_of(const Composition& known,

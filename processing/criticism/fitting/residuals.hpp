@@ -90,6 +90,13 @@ class WhiteResiduals : public ShotResiduals {
                                               const std::vector<double>& theta, std::size_t shot,
                                               std::size_t worker) override;
 
+  /// What window ends leak of slow noise where a long reference gauge is blind, as a share of what
+  /// is foretold: short quiet parts tell no more of it than its order of magnitude, and a fit would
+  /// gain by all that is foretold too much.
+  [[nodiscard]] double taken_by_noise(const Composition& composition,
+                                      const std::vector<double>& theta,
+                                      std::size_t worker) override;
+
   /// Whitened as they would be under another composition.
   [[nodiscard]] Eigen::VectorXd evaluate_in_noise_of(const Composition& known,
                                                      const std::vector<double>& known_theta,
@@ -154,8 +161,9 @@ class WhiteResiduals : public ShotResiduals {
   void know_noise(Workspace& work, const Composition& composition,
                   const std::vector<AppliedEffect>& effects) const;
   void carry_noise(Workspace& work, const Ratios& ratios) const;
-  void put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
-                    Eigen::MatrixXcd& whitener) const;
+  /// @return shares of what is foretold there that is leaked, summed over the other gauges
+  double put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
+                      Eigen::MatrixXcd& whitener) const;
   void find_residuals(Workspace& work, const Composition& composition,
                       const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,

@@ -33,6 +33,13 @@ class ShotResiduals {
   [[nodiscard]] virtual Eigen::VectorXd evaluate_shot(const Composition& composition,
                                                       const std::vector<double>& theta,
                                                       std::size_t shot, std::size_t worker) = 0;
+  /// By how much the residuals' squares are less for noise that is foretold but not known: no fit
+  /// may count it as a gain.
+  [[nodiscard]] virtual double taken_by_noise(const Composition& /*composition*/,
+                                              const std::vector<double>& /*theta*/,
+                                              std::size_t /*worker*/) {
+    return 0.0;
+  }
   [[nodiscard]] virtual std::size_t per_shot() const = 0;
   /// Whether a shot's whitened residuals depend on other shots' records.
   [[nodiscard]] virtual bool shots_hang_together() const { return false; }
