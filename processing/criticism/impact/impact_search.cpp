@@ -243,8 +243,9 @@ std::optional<ImpactRefit> ImpactSearch::described(std::size_t index, const Mode
   const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                          out.studied.fit.degrees_of_freedom(out.studied.composition);
   out.freedom = candidate.frees_prior ? 1.0 : std::max(1.0, std::round(freedom));
-  out.gain = (base_.fit.objective() - out.studied.fit.objective()) /
-             std::max(1.0, out.studied.misfit.noise_scale);
+  const double noise = std::max(1.0, out.studied.misfit.noise_scale);
+  out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise;
+  out.of_filed = (base_.fit.penalty - out.studied.fit.penalty) / noise;
   return out;
 }
 
@@ -256,9 +257,12 @@ void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
   scale_ = std::max(kSolverDoubt, chi2 / known);
   for (ImpactRefit& refit : list) {
     const bool one_sided = candidate(refit).one_sided && refit.freedom < 1.5;
-    const double squares = std::max(0.0, refit.gain) / scale_;
+    const double beside_rivals = (refit.gain - refit.of_filed) / scale_ + refit.of_filed;
+    refit.evidence =
+        equivalent_square(log_gain_tail(std::max(0.0, beside_rivals), refit.freedom, one_sided));
+    const double squares = std::max(0.0, refit.gain) /
+                           doubt_of_gain(candidate(refit), directions_[refit.candidate], scale_);
     const double by_chi2 = log_gain_tail(squares, refit.freedom, one_sided);
-    refit.evidence = equivalent_square(by_chi2);
     refit.log_p = scale_ > kSolverDoubt
                       ? log_f_tail(squares / refit.freedom, refit.freedom, known) -
                             (one_sided ? std::log(2.0) : 0.0)

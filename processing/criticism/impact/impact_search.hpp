@@ -18,15 +18,19 @@ struct ImpactRefit {
   Studied studied;
   double freedom = 1.0;
   double gain = 0.0;      ///< of the objective, over the noise
+  double of_filed = 0.0;  ///< the part of it by which filed numbers come nearer to what is filed
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
   double log_p = 0.0;
 };
 
 /// One search for what a fitted model of impacts lacks.
 ///
-/// A gain counts against what the best of the refits leaves of the means per degree of freedom
+/// A gain of the records counts against what the best of the refits leaves of the means per degree
+/// of freedom
 /// (`scale`), and against no less than kSolverDoubt: a regression's F test where the calculation is
-/// further off than was allowed for, else a chi2 test.
+/// further off than was allowed for, else a chi2 test. How far numbers are from what is filed of
+/// them is no matter of the calculation and counts in full; what claims one of them counts as much
+/// less as the records' own part in its uncertainty is in doubt (doubt_of_gain).
 class ImpactSearch {
  public:
   /// @param base  the model as fitted; outlives this

@@ -21,13 +21,15 @@ constexpr double kCarriedFrom = 1.4;
 constexpr double kMostHidden = 4.0;
 
 std::vector<NoiseSpectrum> quiet_spectra(const Campaign& campaign) {
-  std::vector<std::vector<std::span<const double>>> quiet(campaign.gauges());
+  std::vector<NoiseSpectrum> spectra;
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    std::vector<std::span<const double>> quiet;
     for (const CampaignShot& shot : campaign.shots) {
-      quiet[j].emplace_back(shot.strain[j].data(), shot.quiet_samples);
+      quiet.emplace_back(shot.strain[j].data(), shot.quiet_samples);
     }
+    spectra.emplace_back(quiet);
   }
-  return NoiseSpectrum::of_gauges(quiet, std::vector<NoiseSpectrum::Seen>(quiet.size()));
+  return spectra;
 }
 
 /// Sums of products of two gauges' quiet samples, all shots together, the second so much later.

@@ -29,6 +29,11 @@ double scale_of(const Candidate& candidate) {
   return about.quadrature ? scale * std::numbers::sqrt2 : scale;
 }
 
+/// What squares of deviates are over.
+double doubt(const Tried& tried, std::size_t i) {
+  return doubt_of_gain(tried.candidates[i], tried.directions[i], tried.scale);
+}
+
 /// The strength that stands at 5 sigma beside whichever other effect resembles it most.
 void set_identifiable(const Tried& tried, std::size_t i, double power, CandidateResult& result) {
   const Direction& own = tried.directions[i];
@@ -56,7 +61,7 @@ void set_identifiable(const Tried& tried, std::size_t i, double power, Candidate
     }
   }
   result.identifiable =
-      std::max(result.detectable, result.sd * root(kToldApart * std::sqrt(tried.scale) /
+      std::max(result.detectable, result.sd * root(kToldApart * std::sqrt(doubt(tried, i)) /
                                                        std::sqrt(std::max(1e-12, 1.0 - closest)),
                                                    power));
 }
@@ -124,7 +129,7 @@ double first_order_log_p(const Tried& tried, std::size_t i) {
     return 0.0;
   }
   const auto two_sided = [&](double gain) {
-    const double over = gain / tried.scale;
+    const double over = gain / doubt(tried, i);
     return tried.known.empty()
                ? log_gain_tail(over, direction.freedom, false)
                : log_f_tail(over / direction.freedom, direction.freedom, tried.known[i]);
@@ -262,7 +267,7 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
   result.held_out_gain = foretold_gain(tried, i);
   result.strength = place.strength;
   result.sd = scale * root(sd, parameter.power);
-  result.detectable = scale * root(kDetected * std::sqrt(tried.scale) * sd, parameter.power);
+  result.detectable = scale * root(kDetected * std::sqrt(doubt(tried, i)) * sd, parameter.power);
   set_identifiable(tried, i, parameter.power, result);
   result.detectable = within_reach(candidate, result.detectable);
   result.identifiable = within_reach(candidate, result.identifiable);

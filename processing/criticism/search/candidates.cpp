@@ -197,6 +197,15 @@ std::vector<double> carry(const Composition& from, const std::vector<double>& th
   return out;
 }
 
+double doubt_of_gain(const Candidate& candidate, const Direction& direction, double scale) {
+  if (!candidate.frees_prior || direction.information.rows() != 1) {
+    return scale;
+  }
+  // In filed deviations: 1 / (1 + what the records' own variance is of the filed one).
+  const double filed = std::clamp(direction.information(0, 0), 0.0, 1.0);
+  return filed + scale * (1.0 - filed);
+}
+
 Direction direction_of(const Candidate& candidate, const Studied& studied, const Campaign& campaign,
                        ShotResiduals& residuals, std::size_t worker) {
   Direction direction;

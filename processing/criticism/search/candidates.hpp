@@ -36,6 +36,12 @@ struct Direction {
   double freedom = 1.0;
 };
 
+/// What a candidate's gain counts over where squares of deviates of what is calculated count over
+/// `scale`. A filed number's distance from where the records have it is as uncertain as it was
+/// filed, of which no error of a calculation makes more: only the records' own share is in doubt.
+[[nodiscard]] double doubt_of_gain(const Candidate& candidate, const Direction& direction,
+                                   double scale);
+
 /// The model with a candidate added (or its prior dropped), auxiliaries free where asked for.
 [[nodiscard]] Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries);
 

@@ -46,6 +46,23 @@ double own_p(const std::vector<CandidateResult>& table, const std::string& id) {
   return std::exp(own->own_log_p);
 }
 
+// A number lies d off what is filed with deviation p, and the records know it to r: d^2 / (p^2 +
+// r^2) is gained where it is set free, and d^2 / (p^2 + s r^2) where squares of the records count
+// over s.
+TEST(DoubtOfGain, IsOfTheRecordsPartAlone) {
+  constexpr double kDoubt = 6.0;
+  Candidate filed;
+  filed.frees_prior = true;
+  for (const double r_over_p : {0.01, 0.5, 1.0, 3.0}) {
+    const double square = r_over_p * r_over_p;
+    Direction direction;
+    direction.information = Eigen::MatrixXd::Constant(1, 1, 1.0 / (1.0 + square));
+    EXPECT_NEAR(doubt_of_gain(filed, direction, kDoubt), (1.0 + kDoubt * square) / (1.0 + square),
+                1e-12);
+    EXPECT_EQ(doubt_of_gain(Candidate{}, direction, kDoubt), kDoubt);
+  }
+}
+
 // A program that reads the rows finds numbers in all of them: of what is fitted away, what its
 // bounds leave.
 TEST(CandidateTable, StatesAnUntestableStrengthByItsBounds) {

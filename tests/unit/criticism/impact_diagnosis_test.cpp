@@ -250,6 +250,25 @@ TEST(ImpactDiagnosis, TheBarsBendingIsNamed) {
       << "read as the section's turn, and not as the deflection's curvature";
 }
 
+/// How far a reading is from what its gauge is filed with is no matter of how well an impact is
+/// calculated: eight filed deviations are claimed, and two, which chance makes, are not.
+TEST(ImpactDiagnosis, AGaugeFactorFarFromWhatIsFiledIsNamed) {
+  const auto of_gauge = [](double kappa) {
+    testing::ImpactWishes own = two_speeds(19, 3);
+    own.gauge_factor = kappa;
+    std::vector<Shot> shots = testing::impact_shots(own);
+    for (Shot& shot : shots) {
+      shot.bench.gauges[0].strain_gain.sd = 0.01;
+    }
+    return diagnosed(shots);
+  };
+  const Diagnosis far = of_gauge(0.08);
+  EXPECT_EQ(far.effects, std::vector<std::string>{"gauge-factor:g1"}) << told(far);
+  EXPECT_EQ(far.verdict, DiagnosisVerdict::named) << told(far);
+  expect_within(far, "gauge-factor:g1", 0, 0.08, 3.0);
+  EXPECT_EQ(of_gauge(-0.02).verdict, DiagnosisVerdict::adequate);
+}
+
 /// The second of two effects is too small for a claim and too large for nothing: it is not passed
 /// over.
 TEST(ImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
