@@ -1,1 +1,2 @@
-// Holds nothing: its target compiles once the headers that numerics begin with, under their options.
+// Holds nothing: its target compiles once the headers that numerics begin with, under their
+// options.
