@@ -150,9 +150,10 @@ double floor_of(const Studied& after, bool remains, std::size_t shots) {
   if (shots < 2) {
     return 1.0;
   }
-  return remains ? after.misfit.noise_scale
-                 : (after.fit.chi2 + after.fit.penalty + static_cast<double>(after.fit.theta.size())) /
-                       static_cast<double>(after.fit.residual.size());
+  return remains
+             ? after.misfit.noise_scale
+             : (after.fit.chi2 + after.fit.penalty + static_cast<double>(after.fit.theta.size())) /
+                   static_cast<double>(after.fit.residual.size());
 }
 
 Certification certification(const std::vector<double>& before, const std::vector<double>& after,
