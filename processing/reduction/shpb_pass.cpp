@@ -181,6 +181,7 @@ class Pass {
       require_band_seen(limit_Hz, blind_from_Hz);
     } else {
       limit_Hz = std::min(limit_Hz, highest_band_limit_Hz(blind_from_Hz));
+      bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
     }
     reduction_.band_limit_Hz = limit_Hz;
     band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);

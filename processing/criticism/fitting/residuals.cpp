@@ -603,9 +603,14 @@ void WhiteResiduals::find_residuals(Workspace& work, const Composition& composit
 
 double WhiteResiduals::taken_by_noise(const Composition& composition,
                                       const std::vector<double>& theta, std::size_t worker) {
-  know_noise(*work_[worker], composition, Effects(composition, theta, 0).on_waves);
+  Workspace& work = *work_[worker];
+  const Effects effects(composition, theta, 0);
+  if (usual_ratios(work, composition, effects.on_waves).mean.empty()) {
+    return 0.0;  // whatever noise is carried
+  }
+  know_noise(work, composition, effects.on_waves);
   // Real and imaginary parts of unit variance each.
-  return 2.0 * work_[worker]->leaked * static_cast<double>(campaign_.shots.size());
+  return 2.0 * work.leaked * static_cast<double>(campaign_.shots.size());
 }
 
 Eigen::VectorXd WhiteResiduals::evaluate_in_noise_of(const Composition& known,

@@ -102,6 +102,7 @@ void BallPass::choose_band() {
     require_band_seen(limit_Hz, kernels_.blind_from_Hz);
   } else {
     limit_Hz = std::min(limit_Hz, highest_band_limit_Hz(kernels_.blind_from_Hz));
+    bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
   }
   reduction_.band_limit_Hz = limit_Hz;
   band_loss_ = t_.band.loss(wave, noise_strain_[quietest], limit_Hz);
