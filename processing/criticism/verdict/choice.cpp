@@ -49,8 +49,9 @@ std::string id_of(const Search& search, const Refit& refit) {
 
 }  // namespace
 
-std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool first) {
-  Found found{search, search.refits(), {}};
+std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool first,
+                                      const std::vector<std::string>& barred) {
+  Found found{search, search.refits(), {}, barred};
   found.held_out = certify(search, found.refits, base);
   if (first) {
     note_all(found);
@@ -62,7 +63,11 @@ std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool 
     }
     // Shots may differ by what is missing beside it.
     Refit& nearest = found.refits[*places.nearest];
-    return Choice{id_of(search, nearest), nearest.candidate, std::move(nearest.studied), {}, true};
+    return Choice{.id = id_of(search, nearest),
+                  .candidate = nearest.candidate,
+                  .studied = std::move(nearest.studied),
+                  .ties = {},
+                  .on_trial = true};
   }
   return chosen(found, std::move(places));
 }
@@ -90,7 +95,7 @@ Chooser::Places Chooser::places_of(const Found& found) {
   for (std::size_t i = 0; i < found.refits.size(); ++i) {
     const Refit& refit = found.refits[i];
     // What slow noise does by itself is no rival.
-    if (!plausible(found.search, refit)) {
+    if (!plausible(found.search, refit) || is_barred(found, i)) {
       continue;
     }
     const bool may_be_named = claimable(found.search, refit);
@@ -109,6 +114,22 @@ Chooser::Places Chooser::places_of(const Found& found) {
   }
   prefer_library(found, places);
   return places;
+}
+
+bool Chooser::is_barred(const Found& found, std::size_t i) {
+  return std::ranges::count(found.barred, id_of(found.search, found.refits[i])) > 0;
+}
+
+std::optional<double> Chooser::lead_over_next(const Found& found, std::size_t best) const {
+  const Refit& ahead = found.refits[best];
+  for (std::size_t i = 0; i < found.refits.size(); ++i) {
+    const Refit& next = found.refits[i];
+    if (id_of(found.search, next) != id_of(found.search, ahead) && !is_barred(found, i) &&
+        claimable(found.search, next) && sound(found, i) && agreed(found, i)) {
+      return lead(ahead, next);
+    }
+  }
+  return std::nullopt;
 }
 
 /// A formula of the user's own can be made to fit anything: it stands for no tie that an effect of
@@ -179,9 +200,14 @@ Choice Chooser::chosen(Found& found, Places places) {
   std::ranges::stable_partition(places.confirmed, [&](std::size_t i) { return i == best; });
   note_refits(found.search, found.refits, found.held_out, places.confirmed,
               study_.residuals().per_shot(), diagnosis_.candidates);
+  const std::optional<double> ahead = lead_over_next(found, best);
   Refit& refit = found.refits[best];
-  return Choice{id,    refit.candidate, std::move(refit.studied), std::move(ties),
-                false, variants_differ};
+  return Choice{.id = id,
+                .candidate = refit.candidate,
+                .studied = std::move(refit.studied),
+                .ties = std::move(ties),
+                .variants_differ = variants_differ,
+                .lead_over_next = ahead};
 }
 
 bool Chooser::claimable(const Search& search, const Refit& refit) const {

@@ -20,6 +20,9 @@ struct Choice {
   /// By how much its strength is another in a variant of it that fits as well: of a hum that is as
   /// well of 50 as of 60 Hz.
   double variants_differ = 0.0;
+  /// In squares of normal deviates, over the next that could be named in its place, be it in a tie
+  /// with it.
+  std::optional<double> lead_over_next = std::nullopt;
 };
 
 /// Chooses what is claimed of what searches find, on chance, on shots that were held out, on what
@@ -33,7 +36,9 @@ class Chooser {
   /// @param base   the model that was searched
   /// @param first  nothing is claimed yet: the candidates' rows take what the refits found, and
   /// what the shots do not agree on is chosen on trial where nothing else is
-  [[nodiscard]] std::optional<Choice> choose(Search& search, const Studied& base, bool first);
+  /// @param barred  is not chosen, however well it does
+  [[nodiscard]] std::optional<Choice> choose(Search& search, const Studied& base, bool first,
+                                             const std::vector<std::string>& barred = {});
 
  private:
   /// What a search refitted, and how it fares on shots that were held out.
@@ -41,6 +46,7 @@ class Chooser {
     Search& search;
     std::vector<Refit> refits;
     std::vector<Certification> held_out;
+    const std::vector<std::string>& barred;
   };
   /// Places among the refits.
   struct Places {
@@ -56,6 +62,8 @@ class Chooser {
   [[nodiscard]] bool foretold(const Found& found, std::size_t i) const;
   [[nodiscard]] bool agreed(const Found& found, std::size_t i) const;
   [[nodiscard]] Choice chosen(Found& found, Places places);
+  [[nodiscard]] static bool is_barred(const Found& found, std::size_t i);
+  [[nodiscard]] std::optional<double> lead_over_next(const Found& found, std::size_t best) const;
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const;
   [[nodiscard]] bool plausible(const Search& search, const Refit& refit) const;
   /// ln of the chance, the search counted, above which nothing comes into question.

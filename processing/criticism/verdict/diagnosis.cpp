@@ -53,7 +53,13 @@ namespace {
 
 class Diagnostician {
  public:
-  Diagnostician(Study& study, const DiagnosisOptions& options) : study_(study), options_(options) {}
+  /// @param barred  is not what the search begins with
+  Diagnostician(Study& study, const DiagnosisOptions& options, std::vector<std::string> barred)
+      : study_(study), options_(options), barred_(std::move(barred)) {}
+
+  /// What the search began with, where that led nowhere and what came next to it was not beaten:
+  /// what was left unexplained outweighs its lead, and may be what made the lead.
+  [[nodiscard]] const std::optional<std::string>& led_nowhere() const { return led_nowhere_; }
 
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
@@ -110,9 +116,14 @@ class Diagnostician {
           first_order_table({search.candidates(), search.directions(), current, search.log_trials(),
                              1.0, search.known(), study_.residuals().per_shot()});
     }
-    std::optional<Choice> choice = chooser_.choose(search, current, first);
+    std::optional<Choice> choice =
+        chooser_.choose(search, current, first, first ? barred_ : std::vector<std::string>{});
     if (!choice) {
       return false;
+    }
+    if (first) {
+      begun_with_ = choice->id;
+      lead_over_next_ = choice->lead_over_next;
     }
     if (choice->on_trial) {
       on_trial_ = choice->id;
@@ -311,6 +322,9 @@ class Diagnostician {
         result.sd = std::hypot(result.sd, variants_differ_[result.effect]);
       });
     } else {
+      if (lead_over_next_ && remains && *lead_over_next_ < excess) {
+        led_nowhere_ = begun_with_;
+      }
       give_up(diagnosis_, reasons, before.model,
               floor_of(before, true, study_.campaign().shots.size()));
     }
@@ -342,15 +356,39 @@ class Diagnostician {
   const DiagnosisOptions& options_;
   Model start_;                                    ///< unfitted, with the effects found so far
   std::map<std::string, double> variants_differ_;  ///< strengths of what is claimed, see `Choice`
+  std::vector<std::string> barred_;
+  std::string begun_with_;
+  std::optional<double> lead_over_next_;  ///< of that
+  std::optional<std::string> led_nowhere_;
   std::optional<std::string> on_trial_;  ///< of these, what is to be certified beside others yet
   Diagnosis diagnosis_;
   Chooser chooser_{study_, options_, diagnosis_};
 };
 
+/// Where two effects are missing, what fits best alone may be neither: a slow relaxation for a
+/// dashpot beside a quick one. Then nothing fits beside it, and the search begins again with what
+/// came next.
+Diagnosis begun_rightly(Study& study, const Model& model, const DiagnosisOptions& options) {
+  constexpr std::size_t kMostBeginnings = 3;
+  std::vector<std::string> barred;
+  std::optional<Diagnosis> first;
+  while (true) {
+    Diagnostician diagnostician(study, options, barred);
+    Diagnosis diagnosis = diagnostician.run(model);
+    const std::optional<std::string>& dead_end = diagnostician.led_nowhere();
+    if (!dead_end || barred.size() + 1 == kMostBeginnings) {
+      return first && diagnosis.effects.empty() ? *std::move(first) : diagnosis;
+    }
+    options.progress("what fits best, " + *dead_end + ", leaves too much: beginning with the next");
+    barred.push_back(*dead_end);
+    first = first ? std::move(first) : std::move(diagnosis);
+  }
+}
+
 }  // namespace
 
 Diagnosis diagnose(Study& study, const Model& model, const DiagnosisOptions& options) {
-  Diagnosis diagnosis = Diagnostician(study, options).run(model);
+  Diagnosis diagnosis = begun_rightly(study, model, options);
   if (auto exchanged = out_of_order(study.campaign())) {
     diagnosis.notes.insert(diagnosis.notes.begin(), *std::move(exchanged));
   }

@@ -232,6 +232,20 @@ TEST_P(BesideASpecimen, TwoEffectsAreNamedThoughOneHasMovedItsSpring) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, BesideASpecimen, ::testing::Values(202, 223));
 
+// A relaxation far slower than the record does what the dashpot does, and a little of what the
+// quick one does: it fits best alone, and beside it there is nothing left for either to do.
+TEST(Diagnosis, NamesTwoEffectsWhereOneOfAnotherTimeFitsBestAlone) {
+  testing::Campaign truth =
+      testing::draw_campaign({.seed = 23, .shots = 6, .noise_strain = 8e-6, .elastic = true});
+  testing::hide(truth, testing::parse_effect("series-dashpot=1e-8"));
+  testing::hide(truth, testing::parse_effect("second-relaxation=6e-14,tau=1e-5"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, true), {});
+  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"second-relaxation", "series-dashpot"}));
+}
+
 // While a gauge's length is missing the shots differ on the dashpot, without which the length does
 // not show: neither passes by itself.
 TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
@@ -255,7 +269,7 @@ TEST(Diagnosis, NamesAGaugeAsLongAsAnyIsBuilt) {
 }
 
 // Anything can be expanded in three effects: what needs as many is likelier to be missing itself.
-TEST(Diagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
+TEST(LongDiagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
   const Made made =
       make(78, {"gauge-position:g3=0.003", "temperature=0.004", "bridge-nonlinearity=4"});
   const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);

@@ -194,7 +194,7 @@ TEST(ImpactDiagnosis, ASofteningCoreIsNamed) {
   EXPECT_LT(diagnosis.held_out.after, kHeldOutOfNulls) << told(diagnosis);
 }
 
-TEST(ImpactDiagnosis, ASecondRelaxationIsFound) {
+TEST(LongImpactDiagnosis, ASecondRelaxationIsFound) {
   testing::ImpactWishes own = two_speeds(15, 3);
   own.core_D_per_Pa = 3e-9;
   own.core_tau_s = 1.5e-4;
@@ -216,7 +216,7 @@ const CandidateResult& row_of(const Diagnosis& diagnosis, const std::string& id)
 /// An offset has no slope at none, and is tried at finite strengths. What it does may not go into
 /// the law's form and be called adequate: the law would have to leave the way from Kirchhoff's
 /// stress to Cauchy's.
-TEST(ImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
+TEST(LongImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
   testing::ImpactWishes own = two_speeds(17, 3);
   own.offset_m = 0.007;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
@@ -235,7 +235,7 @@ TEST(ImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
 
 /// A gauge off the neutral fibre reads the bar bend, by an equation that is solved another way
 /// here: what an offset of the push does that the contact itself hardly shows.
-TEST(ImpactDiagnosis, TheBarsBendingIsNamed) {
+TEST(LongImpactDiagnosis, TheBarsBendingIsNamed) {
   testing::ImpactWishes own = two_speeds(18, 3);
   own.bending_m = 2e-4;
   ImpactsSeen seen;
@@ -252,7 +252,7 @@ TEST(ImpactDiagnosis, TheBarsBendingIsNamed) {
 
 /// How far a reading is from what its gauge is filed with is no matter of how well an impact is
 /// calculated: eight filed deviations are claimed, and two, which chance makes, are not.
-TEST(ImpactDiagnosis, AGaugeFactorFarFromWhatIsFiledIsNamed) {
+TEST(LongImpactDiagnosis, AGaugeFactorFarFromWhatIsFiledIsNamed) {
   const auto of_gauge = [](double kappa) {
     testing::ImpactWishes own = two_speeds(19, 3);
     own.gauge_factor = kappa;
@@ -271,7 +271,7 @@ TEST(ImpactDiagnosis, AGaugeFactorFarFromWhatIsFiledIsNamed) {
 
 /// The second of two effects is too small for a claim and too large for nothing: it is not passed
 /// over.
-TEST(ImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
+TEST(LongImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
   testing::ImpactWishes own = two_speeds(16, 3);
   own.core_b = 0.45;
   own.bridge_b = 150.0;
@@ -286,7 +286,7 @@ TEST(ImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
 /// A core that is softened by what it was strained to most is of no effect in the library. Effects
 /// that are explain much of it, and what they leave presses the law beyond its bound: it is none of
 /// them.
-TEST(ImpactDiagnosis, WhatPressesTheLawBesideAClaimIsNotClaimed) {
+TEST(LongImpactDiagnosis, WhatPressesTheLawBesideAClaimIsNotClaimed) {
   testing::ImpactWishes own = two_speeds(36, 3);
   own.core_damage = 0.65;
   own.across = 14;
@@ -301,7 +301,7 @@ TEST(ImpactDiagnosis, WhatPressesTheLawBesideAClaimIsNotClaimed) {
 
 /// The same with materials that are filed within 1.5 %: softening would have them further off than
 /// that, which a core that is only nonlinear leaves where they are.
-TEST(ImpactDiagnosis, AClaimThatContradictsTheFiledMaterialsIsNone) {
+TEST(LongImpactDiagnosis, AClaimThatContradictsTheFiledMaterialsIsNone) {
   testing::ImpactWishes own = two_speeds(37, 3);
   own.core_damage = 0.65;
   own.across = 14;
@@ -316,7 +316,7 @@ TEST(ImpactDiagnosis, AClaimThatContradictsTheFiledMaterialsIsNone) {
 }
 
 /// Adequate is said with what it stands on where more repeats than is allowed for the calculation.
-TEST(ImpactDiagnosis, WhatAnErrorOfTheCalculationMayLookLikeIsSaid) {
+TEST(LongImpactDiagnosis, WhatAnErrorOfTheCalculationMayLookLikeIsSaid) {
   const auto noted = [](std::size_t across) {
     testing::ImpactWishes own = two_speeds(28, 3);
     own.across = across;
@@ -332,7 +332,7 @@ TEST(ImpactDiagnosis, WhatAnErrorOfTheCalculationMayLookLikeIsSaid) {
 
 /// A row says what the search found by which its verdict was made, and no strength that its effect
 /// cannot have: the line that first order is leads far out where much is missing.
-TEST(ImpactDiagnosis, ARowStandsOnTheSearchThatMadeItsVerdict) {
+TEST(LongImpactDiagnosis, ARowStandsOnTheSearchThatMadeItsVerdict) {
   testing::ImpactWishes own = two_speeds(19, 3);
   own.core_b = 1.2;
   own.bridge_b = -400.0;

@@ -21,7 +21,7 @@ using testing::two_speeds;
 
 /// What two codes of one ball differ by is in the deviation that is stated: it holds the other
 /// code's truth, on a mesh that the solver's error was not measured on, and is no blank cheque.
-TEST(ImpactStudy, AStrengthsDeviationHoldsAnotherCodesTruth) {
+TEST(LongImpactStudy, AStrengthsDeviationHoldsAnotherCodesTruth) {
   testing::ImpactWishes own = two_speeds(19, 2);
   own.core_b = -0.5;
   own.across = 7;
@@ -93,7 +93,7 @@ TEST(ImpactStudy, TheRightEffectLeavesTheOtherCodesMesh) {
 
 /// A ball without friction, from the filed 0.3: what friction does bends on the way, and
 /// derivatives over a step that is not small against that way ended on a shoulder at 0.2.
-TEST(ImpactStudy, NoFrictionIsFoundFromEitherSideOfWhatIsFiled) {
+TEST(LongImpactStudy, NoFrictionIsFoundFromEitherSideOfWhatIsFiled) {
   testing::ImpactWishes own = two_speeds(21, 2);
   own.friction = 0.0;
   ThrownBalls balls(testing::impact_shots(own), {512, 2048, 2048});
@@ -108,7 +108,7 @@ TEST(ImpactStudy, NoFrictionIsFoundFromEitherSideOfWhatIsFiled) {
 
 /// With materials free, moduli and the law's form take the place of a friction that is not there:
 /// a second minimum near what is filed (0.3), where fits of such records ended.
-TEST(ImpactStudy, NoFrictionIsFoundThoughMaterialsAreFree) {
+TEST(LongImpactStudy, NoFrictionIsFoundThoughMaterialsAreFree) {
   testing::ImpactWishes own = two_speeds(23, 2);
   own.friction = 0.0;
   own.across = 11;

@@ -91,7 +91,7 @@ void expect_near_bound(const BarFit& fit, const testing::SolidBarShots& shots,
 }
 
 // More repeats by identify_exact.
-TEST(SolidBar, EveryRowOfTable4InWhiteAndInSlowNoise) {
+TEST(LongSolidBar, EveryRowOfTable4InWhiteAndInSlowNoise) {
   const testing::SolidBarShots::Tolerances tolerances;
   double squares = 0.0;
   for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
