@@ -1,5 +1,8 @@
 #include "tests/hidden_effects/stress_curve.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/generators/kelvin_chain.hpp"
 
 namespace kolsky::scoring {
@@ -7,7 +10,7 @@ namespace kolsky::scoring {
 namespace {
 
 constexpr double kLoading_s = 100e-6;  ///< as the waterfall's page says of its curve
-constexpr std::size_t kFine = 64;      ///< steps of the march between two points of a curve
+constexpr std::size_t kSteps = 16384;  ///< of the march
 
 /// Force over area of a spring that stiffens, in series with a Kelvin chain.
 class Material {
@@ -48,15 +51,18 @@ class Material {
 
 std::vector<double> true_stress_Pa(const testing::TrueSpecimen& specimen,
                                    const std::vector<double>& strain, double loading_s) {
-  const std::size_t steps = (strain.size() - 1) * kFine;
-  Material material(specimen, loading_s / static_cast<double>(steps));
-  std::vector<double> stress{0.0};
-  for (std::size_t n = 1; n <= steps; ++n) {
-    const double reached =
-        material.strained_to(strain.back() * static_cast<double>(n) / static_cast<double>(steps));
-    if (n % kFine == 0) {
-      stress.push_back(reached);
-    }
+  Material material(specimen, loading_s / static_cast<double>(kSteps));
+  std::vector<double> marched{0.0};
+  for (std::size_t n = 1; n <= kSteps; ++n) {
+    marched.push_back(
+        material.strained_to(strain.back() * static_cast<double>(n) / static_cast<double>(kSteps)));
+  }
+  std::vector<double> stress;
+  for (const double own : strain) {
+    const double at = own / strain.back() * static_cast<double>(kSteps);
+    const auto before = std::min(static_cast<std::size_t>(at), kSteps - 1);
+    stress.push_back(
+        std::lerp(marched[before], marched[before + 1], at - static_cast<double>(before)));
   }
   return stress;
 }

@@ -9,7 +9,7 @@
 namespace kolsky::scoring {
 
 /// Stress that a specimen's material answers a constant strain rate with, step by step in time.
-/// @param strain  rising in equal steps from 0
+/// @param strain  where it is asked for, rising
 /// @param loading_s  how long it takes to the last of them
 [[nodiscard]] std::vector<double> true_stress_Pa(const testing::TrueSpecimen& specimen,
                                                  const std::vector<double>& strain,

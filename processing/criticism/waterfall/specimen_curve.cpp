@@ -9,9 +9,11 @@ namespace kolsky {
 namespace {
 
 constexpr double kLoading_s = 100e-6;
-constexpr std::size_t kLoaded = 512;           ///< samples of the loading
+constexpr std::size_t kLoaded = 512;           ///< steps of the loading
 constexpr std::size_t kSamples = 2 * kLoaded;  ///< what is cut off at the end rings at the cut
-constexpr std::size_t kShown = 51;
+constexpr std::size_t kShownSteps = 64;        ///< of these, equal ones
+constexpr std::size_t kShown = kShownSteps + 1;
+static_assert(kLoaded % kShownSteps == 0);
 constexpr int kRounds = 30;
 constexpr double kSettled = 1e-9;
 
@@ -28,7 +30,7 @@ std::vector<double> shortfall(const SpecimenScene& specimen, const std::vector<d
 class RampTest {
  public:
   explicit RampTest(double strain_rate_per_s)
-      : transform_(kSamples, kLoading_s / static_cast<double>(kLoaded - 1)),
+      : transform_(kSamples, kLoading_s / static_cast<double>(kLoaded)),
         path_(transform_.bins()),
         ratio_(transform_.bins()),
         strain_(kSamples) {
@@ -36,8 +38,8 @@ class RampTest {
       path_[k] = transform_.s(k);
     }
     for (std::size_t n = 0; n < kSamples; ++n) {
-      strain_[n] = strain_rate_per_s * kLoading_s * static_cast<double>(n) /
-                   static_cast<double>(kLoaded - 1);
+      strain_[n] =
+          strain_rate_per_s * kLoading_s * static_cast<double>(n) / static_cast<double>(kLoaded);
     }
   }
 
@@ -60,11 +62,11 @@ class RampTest {
       }
       std::vector<double> next = answer(linear);
       double moved = 0.0;
-      for (std::size_t n = 0; n < kLoaded; ++n) {
+      for (std::size_t n = 0; n <= kLoaded; ++n) {
         moved = std::max(moved, std::abs(next[n] - stress[n]));
       }
       stress = std::move(next);
-      if (moved < kSettled * std::abs(stress[kLoaded - 1])) {
+      if (moved < kSettled * std::abs(stress[kLoaded])) {
         break;
       }
     }
@@ -104,7 +106,7 @@ SpecimenCurve specimen_curve(const Studied& studied, const Campaign& campaign,
   // How the curve answers to each fitted number, a tenth of its deviation to either side.
   Eigen::MatrixXd slopes(static_cast<Eigen::Index>(kShown),
                          static_cast<Eigen::Index>(theta.size()));
-  const auto shown = [](std::size_t i) { return i * (kLoaded - 1) / (kShown - 1); };
+  const auto shown = [](std::size_t i) { return i * (kLoaded / kShownSteps); };
   for (std::size_t p = 0; known && p < theta.size(); ++p) {
     const auto at = static_cast<Eigen::Index>(p);
     const double step = 0.1 * std::sqrt(std::max(0.0, studied.fit.covariance(at, at)));
