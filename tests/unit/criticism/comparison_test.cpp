@@ -278,6 +278,16 @@ TEST(Comparison, LaysWhatWavesLackAtAllGauges) {
   }
 }
 
+// Of six gauges two may be left out, and what waves lack shrinks with every one that is.
+TEST(Comparison, LaysWhatWavesLackAtAllOfSixGauges) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 12, .shots = 6, .gauges = 6});
+  testing::hide(truth, testing::parse_effect("geometric-dispersion=1"));
+  const Compared compared(testing::shots_of(truth));
+  for (std::size_t gauge = 0; gauge < 2; ++gauge) {
+    EXPECT_LT(compared.share(gauge), 0.45) << gauge;
+  }
+}
+
 // A model keeps the mean of strengths that every shot has of its own; a hum's, of any phase, is
 // near none.
 TEST(Comparison, FindsStrengthsOfEachShotsOwnAnewAndNothingElse) {
