@@ -73,16 +73,19 @@ struct Strains {
   std::vector<std::vector<double>> history;  // per station of all gauges, in their order
 };
 
-Strains solve(const ShpbWorld& world, const TrueShot& shot, double target_step_s,
+KelvinChain material_in(const ShpbWorld& world, const TrueShot& shot) {
+  const BarWorld& base = world.base;
+  return base.material.chain(shot.temperature_K - base.reference_K, shot.peak_strain);
+}
+
+// The output bar is as long as its cells, which have the input bar's size.
+Strains march(const ShpbWorld& world, const TrueShot& shot, const Mesh& mesh,
               SpecimenHistory* specimen_history) {
   const BarWorld& base = world.base;
-  const KelvinChain chain =
-      base.material.chain(shot.temperature_K - base.reference_K, shot.peak_strain);
-  const double speed = std::sqrt(chain.glassy_Pa / base.material.density_kg_m3);
-  const Mesh mesh = lay_mesh(world, speed, target_step_s);
+  const KelvinChain chain = material_in(world, shot);
+  const double cell_m = base.length_m / mesh.input;
   Rod input(chain, base.material.density_kg_m3, base.length_m, mesh.input);
-  // Its own length may miss the common step by some nanometres: the step counts.
-  Rod output(chain, base.material.density_kg_m3, input.step_s() * speed * mesh.output, mesh.output);
+  Rod output(chain, base.material.density_kg_m3, cell_m * mesh.output, mesh.output);
   std::unique_ptr<ShpbContact> contact;
   if (mesh.specimen > 0) {
     contact = std::make_unique<WavySpecimen>(world, mesh.specimen);
@@ -116,6 +119,49 @@ Strains solve(const ShpbWorld& world, const TrueShot& shot, double target_step_s
   }
   if (specimen_history != nullptr) {
     specimen_history->step_s = out.step_s;
+  }
+  return out;
+}
+
+void add(std::vector<double>& sum, const std::vector<double>& part, double weight) {
+  sum.resize(part.size(), 0.0);
+  for (std::size_t n = 0; n < part.size(); ++n) {
+    sum[n] += weight * part[n];
+  }
+}
+
+// Where no number of cells fits the output bar, by Lagrange's cubic through the four nearest.
+Strains solve(const ShpbWorld& world, const TrueShot& shot, double target_step_s,
+              SpecimenHistory* specimen_history) {
+  constexpr double kFits_m = 1e-6;
+  const KelvinChain chain = material_in(world, shot);
+  Mesh mesh = lay_mesh(world, std::sqrt(chain.glassy_Pa / world.base.material.density_kg_m3),
+                       target_step_s);
+  const double cell_m = world.base.length_m / mesh.input;
+  const double cells = world.output_length_m / cell_m;
+  if (std::abs(cells - mesh.output) * cell_m < kFits_m) {
+    return march(world, shot, mesh, specimen_history);
+  }
+  const int first = static_cast<int>(std::floor(cells)) - 1;
+  Strains out{};
+  for (int own = first; own < first + 4; ++own) {
+    double weight = 1.0;
+    for (int other = first; other < first + 4; ++other) {
+      weight *= other == own ? 1.0 : (cells - other) / (own - other);
+    }
+    mesh.output = own;
+    SpecimenHistory history;
+    const Strains part = march(world, shot, mesh, specimen_history != nullptr ? &history : nullptr);
+    out.step_s = part.step_s;
+    out.history.resize(part.history.size());
+    for (std::size_t i = 0; i < part.history.size(); ++i) {
+      add(out.history[i], part.history[i], weight);
+    }
+    if (specimen_history != nullptr) {
+      specimen_history->step_s = part.step_s;
+      add(specimen_history->force_N, history.force_N, weight);
+      add(specimen_history->strain, history.strain, weight);
+    }
   }
   return out;
 }
