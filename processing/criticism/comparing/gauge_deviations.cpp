@@ -13,9 +13,10 @@ namespace {
 
 /// A gauge is off beyond doubt where noise would have it so once in a million.
 const double kBeyondDoubt = std::log(1e-6);
-/// Others agree where they keep less than this share of what a fault of no gauge in particular
-/// would leave them. (A gauge's own leaves 0 to 0.41 of that, for the moduli that were fitted with
-/// it are still off; what waves lack, with four gauges and more, 0.47 and more.)
+/// Others agree where they keep less than this share of all beyond noise, in units in which that of
+/// one's and of two gauges' faults compare: found by trial. (A gauge's own leaves 0 to 0.41, once
+/// in eighteen 0.5, for the moduli that were fitted with it are still off; what waves lack, with
+/// four gauges and more, 0.47 and more.)
 constexpr double kStillOff = 0.45;
 constexpr double kDeviationsOfChance = 2.0;
 constexpr double kFilterPasses = 0.1;
@@ -173,8 +174,7 @@ std::vector<bool> GaugeDeviations::at_fault(const Found& all, std::size_t first,
   const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged * (end - first));
   std::vector<bool> out(gauges, false);
   const double whole = excess_of_others(all, out, freedom);
-  // Spread evenly over gauges, and over what is left once the source is at its best.
-  const auto generic_share = [gauges](std::size_t left) {
+  const auto unit_share = [gauges](std::size_t left) {
     return static_cast<double>(left * (left - 1)) / static_cast<double>(gauges * (gauges - 1));
   };
   Found now = all;
@@ -192,7 +192,7 @@ std::vector<bool> GaugeDeviations::at_fault(const Found& all, std::size_t first,
     now = found(estimate(out), first, end);
     const double chance =
         kDeviationsOfChance * std::sqrt(2.0 * freedom * static_cast<double>(left));
-    if (excess_of_others(now, out, freedom) < kStillOff * generic_share(left) * whole + chance) {
+    if (excess_of_others(now, out, freedom) < kStillOff * unit_share(left) * whole + chance) {
       return out;
     }
   }

@@ -605,8 +605,10 @@ double WhiteResiduals::taken_by_noise(const Composition& composition,
                                       const std::vector<double>& theta, std::size_t worker) {
   Workspace& work = *work_[worker];
   const Effects effects(composition, theta, 0);
-  if (usual_ratios(work, composition, effects.on_waves).mean.empty()) {
-    return 0.0;  // whatever noise is carried
+  // Only a reference gauge that has a length is blind anywhere.
+  if (work.on_noise != effects.on_waves &&
+      usual_ratios(work, composition, effects.on_waves).mean.empty()) {
+    return 0.0;
   }
   know_noise(work, composition, effects.on_waves);
   // Real and imaginary parts of unit variance each.

@@ -58,7 +58,7 @@ std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool 
   }
   Places places = places_of(found);
   if (!places.best) {
-    if (!first || !places.nearest) {
+    if (!first || !places.nearest || !barred.empty()) {
       return std::nullopt;
     }
     // Shots may differ by what is missing beside it.
@@ -69,7 +69,10 @@ std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool 
                   .ties = {},
                   .on_trial = true};
   }
-  return chosen(found, std::move(places));
+  const std::optional<double> ahead = first ? lead_over_next(found, *places.best) : std::nullopt;
+  Choice choice = chosen(found, std::move(places));
+  choice.lead_over_next = ahead;
+  return choice;
 }
 
 void Chooser::note_all(const Found& found) {
@@ -200,14 +203,12 @@ Choice Chooser::chosen(Found& found, Places places) {
   std::ranges::stable_partition(places.confirmed, [&](std::size_t i) { return i == best; });
   note_refits(found.search, found.refits, found.held_out, places.confirmed,
               study_.residuals().per_shot(), diagnosis_.candidates);
-  const std::optional<double> ahead = lead_over_next(found, best);
   Refit& refit = found.refits[best];
   return Choice{.id = id,
                 .candidate = refit.candidate,
                 .studied = std::move(refit.studied),
                 .ties = std::move(ties),
-                .variants_differ = variants_differ,
-                .lead_over_next = ahead};
+                .variants_differ = variants_differ};
 }
 
 bool Chooser::claimable(const Search& search, const Refit& refit) const {

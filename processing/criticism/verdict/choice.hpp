@@ -21,7 +21,7 @@ struct Choice {
   /// well of 50 as of 60 Hz.
   double variants_differ = 0.0;
   /// In squares of normal deviates, over the next that could be named in its place, be it in a tie
-  /// with it.
+  /// with it. Of a first choice only.
   std::optional<double> lead_over_next = std::nullopt;
 };
 
@@ -36,7 +36,7 @@ class Chooser {
   /// @param base   the model that was searched
   /// @param first  nothing is claimed yet: the candidates' rows take what the refits found, and
   /// what the shots do not agree on is chosen on trial where nothing else is
-  /// @param barred  is not chosen, however well it does
+  /// @param barred  is not chosen, however well it does, and then nothing is on trial
   [[nodiscard]] std::optional<Choice> choose(Search& search, const Studied& base, bool first,
                                              const std::vector<std::string>& barred = {});
 

@@ -322,7 +322,9 @@ class Diagnostician {
         result.sd = std::hypot(result.sd, variants_differ_[result.effect]);
       });
     } else {
-      if (lead_over_next_ && remains && *lead_over_next_ < excess) {
+      // What shots or gauges have of their own says nothing of what the search began with.
+      if (lead_over_next_ && remains && left.common_log_p < options_.log_alpha &&
+          *lead_over_next_ < excess) {
         led_nowhere_ = begun_with_;
       }
       give_up(diagnosis_, reasons, before.model,
@@ -381,6 +383,7 @@ Diagnosis begun_rightly(Study& study, const Model& model, const DiagnosisOptions
     }
     options.progress("what fits best, " + *dead_end + ", leaves too much: beginning with the next");
     barred.push_back(*dead_end);
+    study.residuals().believe_quiet();
     first = first ? std::move(first) : std::move(diagnosis);
   }
 }
