@@ -98,7 +98,11 @@ double log_p_of_own_numbers(const Studied& studied, std::size_t count, std::size
   const auto size = static_cast<Eigen::Index>(per_shot);
   std::vector<Eigen::Index> shared;
   for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
-    if (studied.composition.numbers()[i].shot < 0) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    const EffectUse& use = studied.composition.uses()[number.use];
+    // Of one shot what depends on its amplitude or temperature is a change of the moduli, but for
+    // the noise in its derivative, which finds itself in the residuals.
+    if (number.shot < 0 && !use.effect->about().shot_facts) {
       shared.push_back(static_cast<Eigen::Index>(i));
     }
   }

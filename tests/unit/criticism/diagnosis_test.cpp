@@ -246,6 +246,19 @@ TEST(Diagnosis, NamesTwoEffectsWhereOneOfAnotherTimeFitsBestAlone) {
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"second-relaxation", "series-dashpot"}));
 }
 
+// Shot by shot both are changes of the moduli. What is left of their derivatives there is made of
+// the noise that whitens the residuals, and found itself in these.
+TEST(Diagnosis, ShotsAreNotAskedForTheirOwnTemperatureBesideTheirOwnModuli) {
+  testing::Campaign truth =
+      testing::draw_campaign({.seed = 3, .shots = 8, .gauges = 3, .noise_strain = 6e-6});
+  testing::hide(truth, testing::parse_effect("amplitude-dependence=2.5"));
+  testing::hide(truth, testing::parse_effect("temperature=0.015"));
+  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"amplitude-dependence", "temperature"}));
+  EXPECT_GT(diagnosis.unexplained_log_p, std::log(0.01));
+}
+
 // While a gauge's length is missing the shots differ on the dashpot, without which the length does
 // not show: neither passes by itself.
 TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
