@@ -103,10 +103,12 @@ Chooser::Places Chooser::places_of(const Found& found) {
     }
     const bool may_be_named = claimable(found.search, refit);
     leading = may_be_named && !leading ? i : leading;
+    const bool is_sound = sound(found, i);
     if (leading && lead(found.refits[places.best.value_or(*leading)], refit) > kTie) {
+      // What is ahead may only be so for want of another.
+      places.nearest = is_sound && may_be_named && !places.nearest ? i : places.nearest;
       continue;
     }
-    const bool is_sound = sound(found, i);
     if (!is_sound || !agreed(found, i)) {
       set_verdict(diagnosis_, id_of(found.search, refit), "rejected");
       places.nearest = is_sound && may_be_named && !places.nearest ? i : places.nearest;

@@ -259,6 +259,17 @@ TEST(Diagnosis, ShotsAreNotAskedForTheirOwnTemperatureBesideTheirOwnModuli) {
   EXPECT_GT(diagnosis.unexplained_log_p, std::log(0.01));
 }
 
+// Of two that go with each other over the shots one stands for both, in some of them.
+TEST(Diagnosis, NamesTwoEffectsThoughWhatIsAheadIsNotForetold) {
+  testing::Campaign truth =
+      testing::draw_campaign({.seed = 4, .shots = 8, .gauges = 2, .noise_strain = 6e-6});
+  testing::hide(truth, testing::parse_effect("amplitude-dependence=2.5"));
+  testing::hide(truth, testing::parse_effect("temperature=0.015"));
+  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"amplitude-dependence", "temperature"}));
+}
+
 // While a gauge's length is missing the shots differ on the dashpot, without which the length does
 // not show: neither passes by itself.
 TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
