@@ -41,6 +41,20 @@ const std::vector<Shot>& ten_shots_of_solid() {
   return shots;
 }
 
+/// Of every record of ten shots with four gauges, there.
+double transforms_of_ten_shots_s() {
+  const std::size_t samples = ten_shots().front().samples();
+  DampedTransform transform(samples, 1e-6);
+  std::vector<Complex> spectrum(transform.bins());
+  const std::vector<double> record(samples, 1e-3);
+  return best_time_s(100, [&] {
+    for (std::size_t i = 0; i < 40; ++i) {
+      transform.forward(record, spectrum);
+      benchmark::DoNotOptimize(spectrum.data());
+    }
+  });
+}
+
 /// Each theory on records that it holds for, and exact theory on those that it does not: there the
 /// search is longer.
 void fit_ten_shots(benchmark::State& state, WaveTheory theory, bool solid) {
@@ -49,6 +63,7 @@ void fit_ten_shots(benchmark::State& state, WaveTheory theory, bool solid) {
     benchmark::DoNotOptimize(fit_bar(shots, {.theory = theory}));
   }
   hold_to(state, 0.05);
+  beside_transforms(state, transforms_of_ten_shots_s());
 }
 BENCHMARK_CAPTURE(fit_ten_shots, elementary, WaveTheory::elementary, false)
     ->Unit(benchmark::kMillisecond);
@@ -64,23 +79,10 @@ void identify_ten_shots(benchmark::State& state, bool solid) {
     benchmark::DoNotOptimize(identify_bar(shots, {}, two));
   }
   hold_to(state, 0.05);
+  beside_transforms(state, transforms_of_ten_shots_s());
 }
 BENCHMARK_CAPTURE(identify_ten_shots, thin, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(identify_ten_shots, solid, true)->Unit(benchmark::kMillisecond)->UseRealTime();
-
-void transforms_of_ten_shots(benchmark::State& state) {
-  const auto& shots = ten_shots();
-  DampedTransform transform(shots.front().samples(), 1e-6);
-  std::vector<Complex> spectrum(transform.bins());
-  std::vector<double> record(shots.front().samples(), 1e-3);
-  for (auto _ : state) {
-    for (std::size_t i = 0; i < 40; ++i) {
-      transform.forward(record, spectrum);
-      benchmark::DoNotOptimize(spectrum.data());
-    }
-  }
-}
-BENCHMARK(transforms_of_ten_shots)->Unit(benchmark::kMillisecond);
 
 void exact_dispersion_to_60_kHz(benchmark::State& state) {
   Bar bar;

@@ -4,7 +4,6 @@
 #include <fftw3.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "processing/reduction/reducer.hpp"
 #include "processing/specimen/specimen_fit.hpp"
@@ -51,25 +50,14 @@ class BareTransforms {
   fftw_plan back_;
 };
 
-/// The best of many: what else the machine does only adds.
 double best_transforms_s() {
-  using Clock = std::chrono::steady_clock;
   BareTransforms transforms;
-  double best_s = 1.0;
-  for (int i = 0; i < 2000; ++i) {
-    const Clock::time_point begin = Clock::now();
-    transforms.once();
-    best_s = std::min(best_s, std::chrono::duration<double>(Clock::now() - begin).count());
-  }
-  return best_s;
+  return best_time_s(2000, [&] { transforms.once(); });
 }
 
-/// Beside a bound: the time of an iteration over that of the transforms it cannot do without.
 /// @param reductions  in one iteration, by as many threads as `threads`
-void beside_transforms(benchmark::State& state, double reductions = 1.0, double threads = 1.0) {
-  state.counters["of_transforms"] = benchmark::Counter(
-      best_transforms_s() * reductions / threads,
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+void beside_reductions(benchmark::State& state, double reductions = 1.0, double threads = 1.0) {
+  beside_transforms(state, best_transforms_s() * reductions / threads);
 }
 
 Shot paper_like_shot() {
@@ -90,7 +78,7 @@ void reduce(benchmark::State& state) {
     benchmark::DoNotOptimize(reducer.reduce(shot));
   }
   hold_to(state, kBound_s);
-  beside_transforms(state);
+  beside_reductions(state);
 }
 BENCHMARK(reduce)->Unit(benchmark::kMicrosecond);
 
@@ -112,7 +100,7 @@ void reduce_exact(benchmark::State& state) {
   }
   if (!anew) {
     hold_to(state, kBound_s);
-    beside_transforms(state);
+    beside_reductions(state);
   }
 }
 BENCHMARK(reduce_exact)->ArgName("anew")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
@@ -157,7 +145,7 @@ void monte_carlo(benchmark::State& state) {
     benchmark::DoNotOptimize(propagate(shot, {}, reduction, options, two));
   }
   hold_to(state, 0.5);
-  beside_transforms(state, static_cast<double>(options.draws), 2.0);
+  beside_reductions(state, static_cast<double>(options.draws), 2.0);
 }
 BENCHMARK(monte_carlo)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
