@@ -15,7 +15,7 @@ struct Choice {
   std::size_t candidate = 0;
   Studied studied;
   std::vector<std::string> ties;
-  /// The shots do not agree on it, as they may not while another is missing.
+  /// The shots do not agree on it, or it is not ahead, as may be while another is missing.
   bool on_trial = false;
   /// By how much its strength is another in a variant of it that fits as well: of a hum that is as
   /// well of 50 as of 60 Hz.
@@ -50,8 +50,9 @@ class Chooser {
   };
   /// Places among the refits.
   struct Places {
-    std::optional<std::size_t> best;     ///< that may be named
-    std::optional<std::size_t> nearest;  ///< to that, but for the shots' agreement
+    std::optional<std::size_t> best;  ///< that may be named
+    /// To that: foretold, but the shots disagree on it, or it is far behind what is not foretold.
+    std::optional<std::size_t> nearest;
     std::vector<std::size_t> confirmed;
   };
 

@@ -246,39 +246,41 @@ TEST(Diagnosis, NamesTwoEffectsWhereOneOfAnotherTimeFitsBestAlone) {
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"second-relaxation", "series-dashpot"}));
 }
 
+/// Of a bar with two effects, those that are named in order of their names.
+Diagnosis diagnosed_pair(const testing::CampaignWishes& wishes, const std::string& one,
+                         const std::string& other) {
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect(one));
+  testing::hide(truth, testing::parse_effect(other));
+  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  std::ranges::sort(diagnosis.effects);
+  return diagnosis;
+}
+
 // Shot by shot both are changes of the moduli. What is left of their derivatives there is made of
 // the noise that whitens the residuals, and found itself in these.
 TEST(Diagnosis, ShotsAreNotAskedForTheirOwnTemperatureBesideTheirOwnModuli) {
-  testing::Campaign truth =
-      testing::draw_campaign({.seed = 3, .shots = 8, .gauges = 3, .noise_strain = 6e-6});
-  testing::hide(truth, testing::parse_effect("amplitude-dependence=2.5"));
-  testing::hide(truth, testing::parse_effect("temperature=0.015"));
-  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
-  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  const Diagnosis diagnosis =
+      diagnosed_pair({.seed = 3, .shots = 8, .gauges = 3, .noise_strain = 6e-6},
+                     "amplitude-dependence=2.5", "temperature=0.015");
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"amplitude-dependence", "temperature"}));
   EXPECT_GT(diagnosis.unexplained_log_p, std::log(0.01));
 }
 
 // Of two that go with each other over the shots one stands for both, in some of them.
 TEST(Diagnosis, NamesTwoEffectsThoughWhatIsAheadIsNotForetold) {
-  testing::Campaign truth =
-      testing::draw_campaign({.seed = 4, .shots = 8, .gauges = 2, .noise_strain = 6e-6});
-  testing::hide(truth, testing::parse_effect("amplitude-dependence=2.5"));
-  testing::hide(truth, testing::parse_effect("temperature=0.015"));
-  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
-  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  const Diagnosis diagnosis =
+      diagnosed_pair({.seed = 4, .shots = 8, .gauges = 2, .noise_strain = 6e-6},
+                     "amplitude-dependence=2.5", "temperature=0.015");
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"amplitude-dependence", "temperature"}));
 }
 
 // While a gauge's length is missing the shots differ on the dashpot, without which the length does
 // not show: neither passes by itself.
 TEST(Diagnosis, NamesTwoEffectsOfWhichNeitherIsCertifiedAlone) {
-  testing::CampaignWishes wishes{.seed = 44, .shots = 6, .gauges = 3, .noise_strain = 4e-6};
-  testing::Campaign truth = testing::draw_campaign(wishes);
-  testing::hide(truth, testing::parse_effect("gauge-length:g3=0.02"));
-  testing::hide(truth, testing::parse_effect("series-dashpot=2e-8"));
-  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
-  std::sort(diagnosis.effects.begin(), diagnosis.effects.end());
+  const Diagnosis diagnosis =
+      diagnosed_pair({.seed = 44, .shots = 6, .gauges = 3, .noise_strain = 4e-6},
+                     "gauge-length:g3=0.02", "series-dashpot=2e-8");
   EXPECT_EQ(diagnosis.effects, (std::vector<std::string>{"gauge-length:g3", "series-dashpot"}));
 }
 
