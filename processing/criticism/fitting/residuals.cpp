@@ -134,7 +134,7 @@ double WhiteResiduals::judged_period_s() const {
 }
 
 double WhiteResiduals::judged_start_s(std::size_t shot) const {
-  return static_cast<double>(band_.edge) * campaign_.period_s - campaign_.shots[shot].foot_s;
+  return static_cast<double>(band_.begin) * campaign_.period_s - campaign_.shots[shot].foot_s;
 }
 
 void WhiteResiduals::transform_record(Workspace& work, std::span<const double> record,
@@ -157,7 +157,7 @@ void WhiteResiduals::prepare_spectra() {
     const Complex square = (s / wc) * (s / wc);
     return std::exp(-square * square);
   };
-  const std::size_t before = band_.edge / band_.decimation;
+  const std::size_t before = band_.begin / band_.decimation;
   const std::size_t first = band_.lead / band_.decimation;
   const double start_s = static_cast<double>(first + before) * judged_period_s();
   for (const Complex s : damped_path_) {
@@ -216,7 +216,7 @@ void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEff
       std::vector<double> read = work.shaped;
       put_own_noise(work, of_shot, j);
       for (std::size_t n = 0; n < work.fine_record.size(); ++n) {
-        read[band_.edge + n] -= work.fine_record[n];
+        read[band_.begin + n] -= work.fine_record[n];
       }
       smooth(work, read);
       std::vector<double> straight = read;
@@ -234,7 +234,7 @@ void WhiteResiduals::plain_spectrum(Workspace& work, const Spectrum& damped, Spe
   std::fill(work.carried.begin() + static_cast<std::ptrdiff_t>(damped.size()), work.carried.end(),
             0.0);
   work.decimated.inverse(work.carried, work.residual);
-  const std::size_t first = (band_.lead + band_.edge) / band_.decimation;
+  const std::size_t first = (band_.lead + band_.begin) / band_.decimation;
   work.plain.forward(std::span<const double>(work.residual).subspan(first, band_.judged),
                      work.judged);
   out.resize(band_.bins_judged);
@@ -266,7 +266,7 @@ WhiteResiduals::Ratios WhiteResiduals::ratios_of(const Scene& scene) const {
 /// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins; last,
 /// what the mean over a long reference gauge would hold of it, and all of it.
 void WhiteResiduals::carry_noise(Workspace& work, const Ratios& ratios) const {
-  const std::size_t before = band_.edge / band_.decimation;
+  const std::size_t before = band_.begin / band_.decimation;
   const std::size_t first = band_.lead / band_.decimation;
   std::vector<const Spectrum*> filters;
   for (const std::size_t j : others_) {
@@ -425,7 +425,7 @@ bool WhiteResiduals::know_steps() {
     for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
       const std::vector<double> record = signal(n, j);
       const auto judged = static_cast<std::ptrdiff_t>(band_.judged * band_.decimation);
-      const auto first = static_cast<std::ptrdiff_t>(band_.edge);
+      const auto first = static_cast<std::ptrdiff_t>(band_.begin);
       clean.emplace_back(record.begin() + first, record.begin() + first + judged);
     }
     noise_.add_steps(j, clean);
@@ -441,7 +441,7 @@ std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) 
   Workspace& work = *work_.front();
   put_own_noise(work, shot, gauge);
   std::vector<double> record = campaign_.shots[shot].strain[gauge];
-  const auto first = record.begin() + static_cast<std::ptrdiff_t>(band_.edge);
+  const auto first = record.begin() + static_cast<std::ptrdiff_t>(band_.begin);
   std::transform(work.fine_record.begin(), work.fine_record.end(), first, first,
                  [](double noise, double read) { return read - noise; });
   smooth(work, record);
@@ -665,9 +665,9 @@ PlainResiduals WhiteResiduals::plain(const Composition& composition,
   Workspace& work = *work_.front();
   know_noise(work, composition, Effects(composition, theta, 0).on_waves);
   PlainResiduals plain;
-  plain.before = band_.edge / band_.decimation;
+  plain.before = band_.begin / band_.decimation;
   plain.responses = work.responses;
-  const auto first = static_cast<std::ptrdiff_t>((band_.lead + band_.edge) / band_.decimation);
+  const auto first = static_cast<std::ptrdiff_t>((band_.lead + band_.begin) / band_.decimation);
   for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
     find_residuals(work, composition, theta, n);
     plain.records.emplace_back();
@@ -720,7 +720,7 @@ std::vector<double> WhiteResiduals::judged_part(Workspace& work, const Spectrum&
   std::fill(work.judged.begin(), work.judged.end(), 0.0);
   const Complex mean = [&] {
     double sum = 0.0;
-    const std::size_t first = (band_.lead + band_.edge) / band_.decimation;
+    const std::size_t first = (band_.lead + band_.begin) / band_.decimation;
     for (std::size_t n = 0; n < band_.judged; ++n) {
       sum += work.residual[first + n];
     }

@@ -115,7 +115,7 @@ GaugeNoise::GaugeNoise(const Campaign& campaign, const JudgedBand& band)
   const std::vector<NoiseSpectrum> spectra = quiet_spectra(campaign);
   measure(spectra, quiet_correlation(campaign));
   const auto decimation = static_cast<double>(band.decimation);
-  const WindowInRecord place{band.judged, band.edge / band.decimation,
+  const WindowInRecord place{band.judged, band.begin / band.decimation,
                              campaign.shots.front().quiet_samples / band.decimation,
                              band.decimation,
                              kCarriedFrom * band.filter_Hz * campaign.period_s * decimation};

@@ -102,10 +102,34 @@ double limit_by_bars_Hz(const Bench& bench) {
   return bench.output ? std::min(input_Hz, limit_Hz(*bench.output)) : input_Hz;
 }
 
-/// Samples of the longest window: all but its edges, whatever its length's factors, for what is not
-/// judged may hold the whole of an effect (an end's reflection that comes as the record closes).
-std::size_t judged_samples(std::size_t samples, const JudgedBand& band) {
-  return (samples - 2 * band.edge) / (2 * band.decimation) * 2;
+/// Even, of factors for which transforms have kernels of their own: 994 samples take six times as
+/// long as 990.
+bool is_quickly_transformed(std::size_t n) {
+  for (const std::size_t factor : {2U, 3U, 5U, 7U, 11U, 13U}) {
+    while (n % factor == 0) {
+      n /= factor;
+    }
+  }
+  return n == 1;
+}
+
+/// All but the records' edges, whatever is quickly transformed: what is not judged may hold the
+/// whole of an effect (an end's reflection that comes as the record closes). A quicker length takes
+/// what it needs of the edge before the pulses, where there is only noise to smear.
+void choose_window(const Campaign& campaign, std::size_t edge, JudgedBand& band) {
+  constexpr double kMostOfEdge = 0.6;
+  const std::size_t d = band.decimation;
+  const auto quiet = [&](const CampaignShot& shot) { return shot.quiet_samples > edge; };
+  const auto spare = std::ranges::all_of(campaign.shots, quiet)
+                         ? static_cast<std::size_t>(kMostOfEdge * static_cast<double>(edge / d))
+                         : 0;
+  const std::size_t all = (shortest(campaign) - 2 * edge) / (2 * d) * 2;
+  std::size_t quick = all;
+  while (!is_quickly_transformed(quick) && quick + 2 <= all + spare) {
+    quick += 2;
+  }
+  band.judged = is_quickly_transformed(quick) ? quick : all;
+  band.begin = edge - (band.judged - all) * d;
 }
 
 }  // namespace
@@ -125,16 +149,17 @@ JudgedBand judged_band(const Campaign& campaign, double asked_Hz) {
   }
   const std::size_t d = band.decimation;
   band.lead = d * static_cast<std::size_t>(std::ceil(kLead_s * rate_Hz / static_cast<double>(d)));
-  band.edge = d * static_cast<std::size_t>(std::ceil(kEdge * BandLimit::smear_s(band.filter_Hz) *
-                                                     rate_Hz / static_cast<double>(d)));
+  const std::size_t edge =
+      d * static_cast<std::size_t>(std::ceil(kEdge * BandLimit::smear_s(band.filter_Hz) * rate_Hz /
+                                             static_cast<double>(d)));
   const std::size_t samples = shortest(campaign);
-  if (samples < 2 * band.edge + kFewestJudged * d) {
+  if (samples < 2 * edge + kFewestJudged * d) {
     throw InputError(
         "samples",
         fmt::format("are too few: {} for a band up to {:.3g} Hz", samples, band.limit_Hz),
         asked_Hz > 0.0 ? "ask for a higher band limit" : "give longer records");
   }
-  band.judged = judged_samples(samples, band);
+  choose_window(campaign, edge, band);
   band.bin_width_Hz = rate_Hz / static_cast<double>(d * band.judged);
   band.bins_judged =
       std::min(band.judged / 2 - 1, static_cast<std::size_t>(band.limit_Hz / band.bin_width_Hz));

@@ -12,7 +12,7 @@ struct JudgedBand {
   double filter_Hz = 0.0;      ///< the filter passes half here
   std::size_t decimation = 1;  ///< residuals are formed at 1/decimation of the rate
   std::size_t lead = 0;        ///< zeros before a record [samples]
-  std::size_t edge = 0;        ///< samples at either end that are not judged
+  std::size_t begin = 0;       ///< samples of a record before its judged window
   std::size_t judged = 0;      ///< samples of the judged window, decimated
   std::size_t bins_judged = 0;
   std::size_t bins_carried = 0;
