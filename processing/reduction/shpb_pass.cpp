@@ -268,13 +268,16 @@ class Pass {
   }
 
   /// What a push that went on at its peak would take off the largest strain, as a share of it: all
-  /// of it counts as reflected, and what it would have done at the specimen is missing.
+  /// of it counts as reflected, and what it would have done at the specimen is missing. Need not be
+  /// known where nothing of the push stands out.
   void weigh_hidden_push() {
+    if (push_left_share_ <= push_noise_share_) {
+      return;
+    }
     const std::size_t begin = std::min(t_.scratch.size(), first_of_histories() + t_.key.delay);
     const auto many = static_cast<std::size_t>(first_return_s() * rate_Hz_);
     const std::size_t count = std::min(many, t_.scratch.size() - begin);
-    const std::span<double> rate = std::span(t_.scratch).first(count);
-    carry(&CarryingKernels::strain_rate, rate, begin);
+    const std::span<const double> rate = strain_rate().subspan(begin, count);
     double strain = 0.0;
     double most = 0.0;
     std::size_t end = 0;
@@ -293,16 +296,18 @@ class Pass {
     std::transform(hidden.begin(), hidden.end(), t_.hidden_in_rest.begin(),
                    [](Complex value) { return -value; });
     bars_.kernels.rate_of_front({hidden, in_band(t_.hidden_in_rest), {}}, in_band(t_.work));
-    t_.transform.inverse(in_band(t_.work), rate.first(end), begin);
-    const double missing =
-        std::accumulate(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+    const std::span<double> of_hidden = std::span(t_.scratch).first(end);
+    t_.transform.inverse(in_band(t_.work), of_hidden, begin);
+    const double missing = std::accumulate(of_hidden.begin(), of_hidden.end(), 0.0);
     strain_per_push_ = most > 0.0 ? std::abs(missing) / most : 1.0;
   }
 
   /// The share of the push that may be left: it takes no more than so much off the largest strain,
   /// or does not stand out of the noise.
   [[nodiscard]] double overlap_limit() const {
-    return std::max(kOverlapLimit / std::max(1.0, strain_per_push_), push_noise_share_);
+    return strain_per_push_
+               ? std::max(kOverlapLimit / std::max(1.0, *strain_per_push_), push_noise_share_)
+               : push_noise_share_;
   }
 
   /// t = 0: the foot of the incident pulse after it has been carried to interface A.
@@ -415,6 +420,15 @@ class Pass {
     t_.transform.inverse(in_band(t_.work), history, first);
   }
 
+  /// Of the specimen, late as `t_.history` is.
+  std::span<const double> strain_rate() {
+    if (!strain_rate_known_) {
+      carry(&CarryingKernels::strain_rate, t_.strain_rate);
+      strain_rate_known_ = true;
+    }
+    return t_.strain_rate;
+  }
+
   /// The same, cut to the window.
   std::vector<double> history(Kernel kernel) {
     std::vector<double> cut(count_);
@@ -436,10 +450,10 @@ class Pass {
     reduction_.reflected = history(&CarryingKernels::left_going_front);
     reduction_.transmitted = history(&CarryingKernels::right_going_back);
     front_rate_per_s_ = history(&CarryingKernels::rate_of_front);
-    carry(&CarryingKernels::strain_rate, t_.history);
-    reduction_.strain_rate_per_s = window();
-    strain_before_ = strain_before_window(
-        std::span<const double>(t_.history).subspan(t_.key.delay, shot_.samples()));
+    const std::span<const double> rate = strain_rate().subspan(t_.key.delay, shot_.samples());
+    const std::span<const double> seen = rate.subspan(first_, count_);
+    reduction_.strain_rate_per_s.assign(seen.begin(), seen.end());
+    strain_before_ = strain_before_window(rate);
   }
 
   void take_separated() {
@@ -501,7 +515,7 @@ class Pass {
     q.push_limit = overlap_limit();
     q.gauge_to_specimen_m = in_.gauge_to_specimen_m;
     q.wave_speed_m_per_s = wave_speed_m_per_s();
-    q.strain_per_push = strain_per_push_;
+    q.strain_per_push = strain_per_push_.value_or(0.0);
     q.returns_from_s = 2.0 * std::min(bars_.input.front_time_s(in_.gauge_to_far_end_m),
                                       far_end_time_s(out_.gauge_to_far_end_m));
     q.may_shorten = !options_.duration_s;
@@ -572,7 +586,8 @@ class Pass {
   double push_peak_Pa_ = 0.0;
   double push_left_share_ = 0.0;
   double push_noise_share_ = 0.0;  ///< what that must exceed to stand out of the noise
-  double strain_per_push_ = 0.0;
+  std::optional<double> strain_per_push_;
+  bool strain_rate_known_ = false;
   double band_loss_ = 0.0;
   double strain_before_ = 0.0;
   double missing_s_ = 0.0;

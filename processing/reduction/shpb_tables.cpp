@@ -85,6 +85,7 @@ ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
       output_strain(k.samples),
       history(k.samples + k.delay),
       scratch(k.samples + k.delay),
+      strain_rate(k.samples + k.delay),
       incident(transform.bins()),
       rest(transform.bins()),
       output_spectrum(transform.bins()),

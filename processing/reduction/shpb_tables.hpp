@@ -53,7 +53,7 @@ struct ShpbPlans {
   DampedTransform transform;
   BandLimit band;
   std::vector<Complex> path;
-  std::vector<double> input_strain, output_strain, history, scratch;
+  std::vector<double> input_strain, output_strain, history, scratch, strain_rate;
   std::vector<Complex> incident, rest, output_spectrum, work, hidden, hidden_in_rest;
 
   explicit ShpbPlans(const ShpbPlanKey& k);
