@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "processing/identification/followed_phase.hpp"
 #include "processing/identification/spectrum_gathering.hpp"
 
 namespace kolsky {
@@ -70,7 +70,7 @@ class StraightLines {
         band_(band),
         spectra_(band.spectra[shot]),
         records_(data.records()[shot]),
-        phase_before_(data.gauges(), 0.0) {
+        phase_(data.gauges()) {
     for (const double x : data.records().front().position_m) {
       sum_x_ += x;
       sum_xx_ += x * x;
@@ -89,22 +89,26 @@ class StraightLines {
     Line line;
     for (std::size_t j = 0; j < data_.gauges(); ++j) {
       const double share = (sum_x_ - gauges * records_.position_m[j]) / spread;
-      line.gamma += share * log_of(j, k);
-      line.variance += 0.5 * share * share * power[j] / std::norm(spectra_[j][k]);
+      line.gamma += share * log_of(j, k, power);
+      line.variance += share * share * variance_of(j, k, power);
     }
     return line;
   }
 
  private:
+  /// Of a logarithm's parts.
+  [[nodiscard]] double variance_of(std::size_t j, std::size_t k,
+                                   const std::vector<double>& power) const {
+    return 0.5 * power[j] / std::norm(spectra_[j][k]);
+  }
+
   /// Of what gauge j reads over gauge 0. Less the delay, its phase is small at low frequencies and
   /// moves slowly.
-  Complex log_of(std::size_t j, std::size_t k) {
-    constexpr double kTurn = 2.0 * std::numbers::pi;
+  Complex log_of(std::size_t j, std::size_t k, const std::vector<double>& power) {
     const Complex delay = band_.path[k] * records_.rise_behind_first_s(j);
     const Complex turned = spectra_[j][k] / spectra_[0][k] * std::exp(delay);
-    double phase = std::arg(turned);
-    phase -= kTurn * std::round((phase - phase_before_[j]) / kTurn);
-    phase_before_[j] = phase;
+    const double variance = variance_of(j, k, power) + variance_of(0, k, power);
+    const double phase = phase_[j].at_next(std::arg(turned), variance);
     return Complex(std::log(std::abs(turned)), phase) - delay -
            band_.path[k] * records_.late_of_s(j);
   }
@@ -113,7 +117,7 @@ class StraightLines {
   const DampedBand& band_;
   const std::vector<std::vector<Complex>>& spectra_;
   const BarRecords& records_;
-  std::vector<double> phase_before_;
+  std::vector<FollowedPhase> phase_;  ///< by gauge
   double sum_x_ = 0.0;
   double sum_xx_ = 0.0;
 };
