@@ -37,7 +37,7 @@ Body::Body(Mesh mesh, std::vector<Solid> solids, const ElementKernel& kernel)
        {&ur_, &uz_, &vr_, &vz_, &fr_, &fz_, &mass_, &by_mass_r_, &by_mass_z_, &kept_r_, &kept_z_}) {
     array->assign(nodes, 0.0);
   }
-  contributions_.assign(kForceArrays * nodes, 0.0);
+  contributions_.assign(kForceArrays * nodes, Real{});
   volume_m3_.assign(solids_.size(), 0.0);
   ranges_.resize(mesh_.regions.size());
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
@@ -62,30 +62,30 @@ void Body::measure(Range& range) {
   const std::size_t stride = block.stride();
   const std::size_t count = range.region.rows * stride;
   const std::size_t pitch = padded(count);
-  range.geometry.assign(kGeometryArrays * pitch, 0.0);
-  range.state.assign(kStatePerBranch * solid.arms.size() * pitch, 0.0);
+  range.geometry.assign(kGeometryArrays * pitch, Real{});
+  range.state.assign(kStatePerBranch * solid.arms.size() * pitch, Real{});
   for (std::size_t j = 0; j < range.region.rows; ++j) {
     for (std::size_t i = 0; i < block.columns; ++i) {
       const auto nodes = corners(block, i, range.region.first_row + j);
-      double* const element = range.geometry.data() + j * stride + i;
+      Real* const element = range.geometry.data() + j * stride + i;
+      std::array<double, 4> share{};
       double volume = 0.0;
       for (std::size_t g = 0; g < 4; ++g) {
         const Jacobian J = jacobian_at(mesh_, nodes, gauss_xi(g), gauss_eta(g));
         const double determinant = J.determinant();
-        const double share = 0.25 * 2.0 * std::numbers::pi * J.R * std::abs(determinant);
-        double* const at = element + kGeometryPerPoint * g * pitch;
-        at[0] = J.Z_eta / determinant;
-        at[pitch] = -J.R_eta / determinant;
-        at[2 * pitch] = -J.Z_xi / determinant;
-        at[3 * pitch] = J.R_xi / determinant;
-        at[4 * pitch] = share;
-        at[5 * pitch] = 1.0 / J.R;
-        volume += share;
+        share[g] = 0.25 * 2.0 * std::numbers::pi * J.R * std::abs(determinant);
+        Real* const at = element + kGeometryPerPoint * g * pitch;
+        at[0] = static_cast<Real>(J.Z_eta / determinant);
+        at[pitch] = static_cast<Real>(-J.R_eta / determinant);
+        at[2 * pitch] = static_cast<Real>(-J.Z_xi / determinant);
+        at[3 * pitch] = static_cast<Real>(J.R_xi / determinant);
+        at[5 * pitch] = static_cast<Real>(1.0 / J.R);
+        volume += share[g];
       }
       for (std::size_t g = 0; g < 4; ++g) {
-        element[(kGeometryPerPoint * g + 4) * pitch] /= volume;
+        element[(kGeometryPerPoint * g + 4) * pitch] = static_cast<Real>(share[g] / volume);
       }
-      element[(kGeometryArrays - 1) * pitch] = volume;
+      element[(kGeometryArrays - 1) * pitch] = static_cast<Real>(volume);
       volume_m3_[range.region.solid] += volume;
     }
   }
@@ -100,15 +100,17 @@ void Body::measure(Range& range) {
   e.geometry = range.geometry.data();
   e.state = range.state.data();
   e.force = contributions_.data() + first;
-  e.shear_Pa = 2.0 * solid.shear_relaxed_Pa;
-  e.bulk_Pa = solid.bulk_relaxed_Pa;
-  e.nonlinearity = solid.nonlinearity;
-  e.cauchy = solid.law == FiniteStrain::cauchy ? 1.0 : 0.0;
+  e.shear_Pa = static_cast<Real>(2.0 * solid.shear_relaxed_Pa);
+  e.bulk_Pa = static_cast<Real>(solid.bulk_relaxed_Pa);
+  e.nonlinearity = static_cast<Real>(solid.nonlinearity);
+  e.cauchy = solid.law == FiniteStrain::cauchy ? 1.0F : 0.0F;
   e.branches = static_cast<int>(solid.arms.size());
   range.wave_speed_squared = solid.fastest_wave_m_per_s() * solid.fastest_wave_m_per_s();
   for (std::size_t b = 0; b < solid.arms.size(); ++b) {
     const SolidArm& arm = solid.arms[b];
-    e.branch[b] = {2.0 * arm.shear_Pa, arm.bulk_Pa, 1.0 / arm.time_s, 0.0, 0.0, 0.0};
+    e.branch[b].shear_Pa = static_cast<Real>(2.0 * arm.shear_Pa);
+    e.branch[b].bulk_Pa = static_cast<Real>(arm.bulk_Pa);
+    e.branch[b].rate_per_s = static_cast<Real>(1.0 / arm.time_s);
   }
 }
 
@@ -118,7 +120,7 @@ void Body::spread_mass(const Range& range, double density_kg_m3) {
     for (std::size_t i = 0; i < block.columns; ++i) {
       const auto nodes = corners(block, i, range.region.first_row + j);
       const std::size_t pitch = range.elements.pitch;
-      const double* const element = range.geometry.data() + j * block.stride() + i;
+      const Real* const element = range.geometry.data() + j * block.stride() + i;
       const double mass = density_kg_m3 * element[(kGeometryArrays - 1) * pitch];
       for (std::size_t g = 0; g < 4; ++g) {
         const double share = mass * element[(kGeometryPerPoint * g + 4) * pitch];
@@ -135,11 +137,12 @@ void Body::set_steps(double now_s, double next_s) {
   for (Range& range : ranges_) {
     for (int b = 0; b < range.elements.branches; ++b) {
       BranchStep& step = range.elements.branch[b];
-      const double now = now_s * step.rate_per_s;
-      const double next = next_s * step.rate_per_s;
-      step.weight_now = now > 0.0 ? 1.0 + std::expm1(-now) / now : 0.0;
-      step.decay = std::exp(-next);
-      step.weight_next = next > 0.0 ? -std::expm1(-next) / next - step.decay : 0.0;
+      const double now = now_s * static_cast<double>(step.rate_per_s);
+      const double next = next_s * static_cast<double>(step.rate_per_s);
+      step.weight_now = static_cast<Real>(now > 0.0 ? 1.0 + std::expm1(-now) / now : 0.0);
+      step.loss = static_cast<Real>(-std::expm1(-next));
+      step.weight_next =
+          static_cast<Real>(next > 0.0 ? -std::expm1(-next) / next - std::exp(-next) : 0.0);
     }
   }
 }
@@ -171,13 +174,16 @@ void Body::gather(const Block& block) {
   const std::size_t pitch = mesh_.R_m.size();
   const std::size_t stride = block.stride();
   const std::size_t end = block.first_node + block.nodes();
-  const auto add = [&](const double* of, double* into) {
-    const double* const n0 = of;
-    const double* const n1 = of + pitch;
-    const double* const n2 = of + 2 * pitch;
-    const double* const n3 = of + 3 * pitch;
+  const auto add = [&](const Real* of, double* into) {
+    const Real* const n0 = of;
+    const Real* const n1 = of + pitch;
+    const Real* const n2 = of + 2 * pitch;
+    const Real* const n3 = of + 3 * pitch;
+    const auto wide = [](Real force) { return static_cast<double>(force); };
     for (std::size_t n = block.first_node; n < end; ++n) {
-      into[n] = -(n0[n] + n1[n - 1] + n2[n - stride] + n3[n - stride - 1]);
+      const double inner = wide(n0[n]) + wide(n1[n - 1]);
+      const double outer = wide(n2[n - stride]) + wide(n3[n - stride - 1]);
+      into[n] = -(inner + outer);
     }
   };
   add(contributions_.data(), fr_.data());
@@ -233,7 +239,7 @@ void Body::set_axial_velocity(double velocity_m_per_s) {
 
 void Body::forget() {
   for (Range& range : ranges_) {
-    std::fill(range.state.begin(), range.state.end(), 0.0);
+    std::fill(range.state.begin(), range.state.end(), Real{});
   }
   for (std::vector<double>* array : {&ur_, &uz_, &fr_, &fz_}) {
     std::fill(array->begin(), array->end(), 0.0);
@@ -245,7 +251,8 @@ double Body::highest_frequency(const std::vector<Spring>& springs, int steps) {
   for (Range& range : ranges_) {
     for (int b = 0; b < range.elements.branches; ++b) {
       BranchStep& step = range.elements.branch[b];
-      step.weight_now = step.decay = step.weight_next = 0.0;
+      step.weight_now = step.weight_next = 0.0F;
+      step.loss = 1.0F;
     }
   }
   // In q = M^(1/2) u, radial then axial. Tied nodes share one unknown: the copy follows.

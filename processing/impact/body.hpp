@@ -118,8 +118,8 @@ class Body {
     Region region;
     ElementRange elements;
     double wave_speed_squared = 0.0;
-    std::vector<double> geometry;
-    std::vector<double> state;
+    std::vector<Real> geometry;
+    std::vector<Real> state;
   };
   struct Gradient {
     double rR, rZ, zR, zZ, hoop;
@@ -147,7 +147,7 @@ class Body {
   std::vector<Range> ranges_;
   std::vector<double> ur_, uz_, vr_, vz_, fr_, fz_, mass_, by_mass_r_, by_mass_z_;
   std::vector<double> kept_r_, kept_z_;
-  std::vector<double> contributions_;
+  std::vector<Real> contributions_;
   std::vector<double> volume_m3_;  // by solid
   double steepness_ = 0.0;
 };

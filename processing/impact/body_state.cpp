@@ -79,7 +79,7 @@ double Body::law_at(const Range& range, std::size_t index, Component component,
     const BranchStep& step = e.branch[b];
     const std::size_t array = kStatePerBranch * static_cast<std::size_t>(b) + component.number;
     const double dashpot =
-        (e.state[array * e.pitch + index] - step.weight_next * strain) / step.decay;
+        (e.state[array * e.pitch + index] - step.weight_next * strain) / (1.0 - step.loss);
     stress += (volume ? step.bulk_Pa : step.shear_Pa) * (strain - dashpot);
   }
   return stress;

@@ -4,8 +4,11 @@
 
 namespace kolsky::impact {
 
+/// What elements are reckoned in. Displacements are double: only what nodes are apart is rounded.
+using Real = float;
+
 inline constexpr int kMostBranches = 6;
-inline constexpr std::size_t kMostLanes = 8;  ///< of any kernel; arrays are padded to it
+inline constexpr std::size_t kMostLanes = 16;  ///< of any kernel; arrays are padded to it
 
 /// Arrays of one element, each `pitch` long, in this order: for each of the four points the inverse
 /// of the reference Jacobian (dxi/dR, dxi/dZ, deta/dR, deta/dZ), its share of the element's volume
@@ -20,14 +23,14 @@ inline constexpr std::size_t kForceArrays = 8;
 inline constexpr std::size_t kStatePerBranch = 13;
 
 /// One Maxwell arm over a step. With strain linear in time over each step, its dashpot's strain is
-/// a = kept + weight_now x; kept' = decay a + weight_next x.
+/// a = kept + weight_now x; kept' = (1 - loss) a + weight_next x.
 struct BranchStep {
-  double shear_Pa = 0.0;  ///< 2 G of the arm
-  double bulk_Pa = 0.0;   ///< K of the arm
-  double rate_per_s = 0.0;
-  double weight_now = 0.0;
-  double decay = 0.0;
-  double weight_next = 0.0;
+  Real shear_Pa = 0.0F;  ///< 2 G of the arm
+  Real bulk_Pa = 0.0F;   ///< K of the arm
+  Real rate_per_s = 0.0F;
+  Real weight_now = 0.0F;
+  Real loss = 1.0F;
+  Real weight_next = 0.0F;
 };
 
 /// Elements of one material that follow one another in a structured block. Element e of the range
@@ -40,14 +43,14 @@ struct ElementRange {
   std::size_t force_pitch = 0;     ///< of the force arrays
   const double* radial = nullptr;  ///< displacements, at the range's first node
   const double* axial = nullptr;
-  const double* geometry = nullptr;
-  double* state = nullptr;
-  double* force = nullptr;  ///< the arrays begin at the range's first element
+  const Real* geometry = nullptr;
+  Real* state = nullptr;
+  Real* force = nullptr;  ///< the arrays begin at the range's first element
 
-  double shear_Pa = 0.0;  ///< 2 G, fully relaxed
-  double bulk_Pa = 0.0;   ///< K, fully relaxed
-  double nonlinearity = 0.0;
-  double cauchy = 0.0;  ///< 1: the law's stress is per deformed area, 0: per undeformed
+  Real shear_Pa = 0.0F;  ///< 2 G, fully relaxed
+  Real bulk_Pa = 0.0F;   ///< K, fully relaxed
+  Real nonlinearity = 0.0F;
+  Real cauchy = 0.0F;  ///< 1: the law's stress is per deformed area, 0: per undeformed
   int branches = 0;
   BranchStep branch[kMostBranches];
 };

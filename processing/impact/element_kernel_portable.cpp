@@ -1,4 +1,5 @@
-#define KOLSKY_LANES 2
+#define KOLSKY_LANES 4
+#define KOLSKY_LANE_NUMBERS 0, 1, 2, 3
 #include "processing/impact/element_kernel.inc"
 
 namespace kolsky::impact {

@@ -12,7 +12,7 @@ std::string digits(double value, int significant) {
 }
 
 std::string agreed(double reference, double ours) {
-  constexpr double kSame = 1e-12;
+  constexpr double kSame = 1e-7;  // single precision, in which a ball's elements are
   const double off = std::abs(ours - reference) / std::abs(reference);
   return fmt::format("{:.1f}", -std::log10(std::max(off, kSame)));
 }

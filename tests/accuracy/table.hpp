@@ -22,7 +22,7 @@ using Part = std::optional<Section> (*)();
 /// A number to so many significant digits.
 [[nodiscard]] std::string digits(double value, int significant);
 
-/// How many digits two numbers share: -log10 of their relative difference, 12 for the same.
+/// How many digits two numbers share: -log10 of their relative difference, 7 at most.
 [[nodiscard]] std::string agreed(double reference, double ours);
 
 std::optional<Section> elastic_waves();

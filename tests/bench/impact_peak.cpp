@@ -13,9 +13,9 @@ constexpr int kRounds = 4096;
 // Vectors of one width in registers: a function per width, as a target belongs to a function.
 #define KOLSKY_FUSED_IN_REGISTERS(name, instructions, bytes)                  \
   [[gnu::target(instructions)]] static double name() {                        \
-    using Lanes [[gnu::vector_size(bytes)]] = double;                         \
+    using Lanes [[gnu::vector_size(bytes)]] = float;                          \
     Lanes sums[kChains] = {};                                                 \
-    Lanes factor = Lanes{} + 0.999999;                                        \
+    Lanes factor = Lanes{} + 0.9999F;                                         \
     asm volatile("" : "+v"(factor));                                          \
     for (Lanes & sum : sums) {                                                \
       asm volatile("" : "+v"(sum)); /* else twelve equal chains become one */ \
@@ -28,7 +28,7 @@ constexpr int kRounds = 4096;
     for (Lanes & sum : sums) {                                                \
       asm volatile("" : "+v"(sum));                                           \
     }                                                                         \
-    return 2.0 * (bytes / 8.0) * kChains * kRounds;                           \
+    return 2.0 * (bytes / 4.0) * kChains * kRounds;                           \
   }
 
 #if defined(__x86_64__)
@@ -38,7 +38,7 @@ KOLSKY_FUSED_IN_REGISTERS(fused_avx512, "avx512f,avx512dq,avx512vl,fma", 64)
 
 FusedLoop fused_in_registers(int lanes) {
 #if defined(__x86_64__)
-  return lanes == 8 ? fused_avx512 : lanes == 4 ? fused_avx2 : nullptr;
+  return lanes == 16 ? fused_avx512 : lanes == 8 ? fused_avx2 : nullptr;
 #else
   return nullptr;
 #endif

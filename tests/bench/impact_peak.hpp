@@ -6,7 +6,7 @@ namespace kolsky::testing {
 /// done
 using FusedLoop = double (*)();
 
-/// The loop on vectors as wide as the element loop's. @param lanes  8: AVX-512, 4: AVX2; the
+/// The loop on vectors as wide as the element loop's. @param lanes  16: AVX-512, 8: AVX2; the
 /// processor has to run it
 /// @return nothing for any other width
 [[nodiscard]] FusedLoop fused_in_registers(int lanes);

@@ -45,8 +45,10 @@ JsonObject describe(const BarSpectrum& spectrum) {
           {"J2_sd_of_mean", spectrum.J2_per_Pa.sd_of_mean},
           {"alpha_per_m", spectrum.alpha_per_m.mean},
           {"alpha_sd", spectrum.alpha_per_m.sd},
+          {"alpha_sd_of_mean", spectrum.alpha_per_m.sd_of_mean},
           {"wavenumber_per_m", spectrum.wavenumber_per_m.mean},
-          {"wavenumber_sd", spectrum.wavenumber_per_m.sd}};
+          {"wavenumber_sd", spectrum.wavenumber_per_m.sd},
+          {"wavenumber_sd_of_mean", spectrum.wavenumber_per_m.sd_of_mean}};
 }
 
 JsonObject describe(const Choice& choice) {

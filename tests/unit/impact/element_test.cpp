@@ -92,7 +92,7 @@ TEST(Element, ForceOfAHomogeneousDeformationIsTheLaws) {
         (law == FiniteStrain::cauchy ? std::exp(dilatation) : 1.0);
     const double area_m2 = std::numbers::pi * kRadius_m * kRadius_m;
     EXPECT_NEAR(face_force(body), -kirchhoff / axial * area_m2,
-                1e-9 * std::abs(kirchhoff) * area_m2);
+                1e-6 * std::abs(kirchhoff) * area_m2);
   }
 }
 
@@ -133,6 +133,45 @@ TEST(Element, NothingComesOfAShiftAlongTheAxis) {
   }
 }
 
+// A strained body's forces are those it has where it was made: what is rounded is how far its nodes
+// are apart, not where they are.
+TEST(Element, ForceDoesNotChangeWithAShiftAlongTheAxis) {
+  const auto force_at = [](double shift_m) {
+    Body body(cylinder(), {viscoelastic()});
+    Placed placed = shaken(body.mesh(), 3, 1e-6);
+    for (double& axial : placed.axial) {
+      axial += shift_m;
+    }
+    body.place(placed.radial, placed.axial);
+    body.set_steps(0.0, 1e-7);
+    (void)body.find_forces(false);
+    return face_force(body);
+  };
+  const double here = force_at(0.0);
+  EXPECT_NEAR(force_at(0.25), here, 1e-6 * std::abs(here));
+}
+
+// A slow arm: a step's decay is as near to 1 as single precision goes.
+TEST(Element, SlowArmsRelaxAsTheyShould) {
+  Solid solid = viscoelastic();
+  solid.arms = {{15e6, 40e6, 0.5}};
+  Body body(cylinder(), {solid});
+  const double step_s = 1e-7;
+  const double strain = -0.01;
+  const Placed placed = stretched(body.mesh(), std::exp(-0.5 * strain), std::exp(strain));
+  body.place(placed.radial, placed.axial);
+  body.set_steps(0.0, step_s);
+  (void)body.find_forces(false);
+  const double at_once = face_force(body);
+  constexpr int kSteps = 4000;
+  for (int n = 0; n < kSteps; ++n) {
+    body.set_steps(step_s, step_s);
+    (void)body.find_forces(false);
+  }
+  const double relaxed = 15.0 / 35.0 * (1.0 - std::exp(-kSteps * step_s / 0.5));
+  EXPECT_NEAR((at_once - face_force(body)) / at_once, relaxed, 0.01 * relaxed + 2e-7);
+}
+
 // Forces are the slope of the stored energy: stress and strain conjugate, volume averaging
 // included.
 TEST(Element, ForcesAreTheSlopeOfTheStoredEnergy) {
@@ -149,15 +188,24 @@ TEST(Element, ForcesAreTheSlopeOfTheStoredEnergy) {
       return body.find_forces(true).stored_J;
     };
     const Block& block = body.mesh().blocks.front();
-    const double step_m = 1e-8;
+    // Long steps, since the energy is a sum of single precision; so to the sixth order.
+    const double step_m = 3e-5;
+    const auto slope = [&](std::size_t node, double radial, double axial) {
+      double sum = 0.0;
+      for (const auto& [steps, weight] :
+           {std::pair{1.0, 45.0}, std::pair{2.0, -9.0}, std::pair{3.0, 1.0}}) {
+        const double by_m = steps * step_m;
+        sum += weight * (energy_at(node, radial * by_m, axial * by_m) -
+                         energy_at(node, -radial * by_m, -axial * by_m));
+      }
+      return sum / (60.0 * step_m);
+    };
     for (const std::size_t node : {block.node(1, 2), block.node(3, 0), block.node(2, 5)}) {
-      const double by_r =
-          (energy_at(node, step_m, 0.0) - energy_at(node, -step_m, 0.0)) / (2.0 * step_m);
-      const double by_z =
-          (energy_at(node, 0.0, step_m) - energy_at(node, 0.0, -step_m)) / (2.0 * step_m);
+      const double by_r = slope(node, 1.0, 0.0);
+      const double by_z = slope(node, 0.0, 1.0);
       (void)energy_at(node, 0.0, 0.0);
-      EXPECT_NEAR(body.force(node).first, -by_r, 1e-5 * std::abs(by_r) + 1e-4);
-      EXPECT_NEAR(body.force(node).second, -by_z, 1e-5 * std::abs(by_z) + 1e-4);
+      EXPECT_NEAR(body.force(node).first, -by_r, 2e-5 * std::abs(by_r) + 1e-3);
+      EXPECT_NEAR(body.force(node).second, -by_z, 2e-5 * std::abs(by_z) + 1e-3);
     }
   }
 }
@@ -182,14 +230,17 @@ TEST(Element, EveryKernelGivesTheSame) {
         forces[k].push_back(body.force(n).second);
       }
     }
+    double largest = 0.0;
+    for (const double force : forces[0]) {
+      largest = std::max(largest, std::abs(force));
+    }
     for (std::size_t k = 1; k < count; ++k) {
       for (std::size_t i = 0; i < forces[0].size(); ++i) {
-        EXPECT_NEAR(forces[k][i], forces[0][i], 1e-9 * (1.0 + std::abs(forces[0][i])))
-            << kernels[k]->name;
+        EXPECT_NEAR(forces[k][i], forces[0][i], 1e-6 * largest) << kernels[k]->name;
       }
-      EXPECT_NEAR(sums[k].stored_J, sums[0].stored_J, 1e-10 * sums[0].stored_J);
-      EXPECT_NEAR(sums[k].dissipated_W, sums[0].dissipated_W, 1e-9 * sums[0].dissipated_W);
-      EXPECT_NEAR(sums[k].least_area_ratio, sums[0].least_area_ratio, 1e-12);
+      EXPECT_NEAR(sums[k].stored_J, sums[0].stored_J, 1e-6 * sums[0].stored_J);
+      EXPECT_NEAR(sums[k].dissipated_W, sums[0].dissipated_W, 1e-6 * sums[0].dissipated_W);
+      EXPECT_NEAR(sums[k].least_area_ratio, sums[0].least_area_ratio, 1e-6);
     }
   }
 }
@@ -220,7 +271,7 @@ TEST(Element, AxialStressIsTheLaws) {
   const double kirchhoff =
       2.0 * 40e6 * (1.0 + 0.5 * std::abs(deviator)) * deviator + 130e6 * dilatation;
   EXPECT_NEAR(body.axial_stress_Pa({0, 1, 2}), kirchhoff / std::exp(dilatation),
-              1e-8 * std::abs(kirchhoff));
+              3e-7 * std::abs(kirchhoff));
   EXPECT_NEAR(body.axial_log_stretch({0, 1, 2}), std::log(axial), 1e-12);
 }
 
