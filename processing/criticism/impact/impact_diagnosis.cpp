@@ -269,6 +269,9 @@ class Diagnostician {
     if (contradicts) {
       doubts.push_back(filed_note(filed, claims));
     }
+    if (claims && leaves_too_much(first, current)) {
+      doubts.push_back(left_of_claim_note(diagnosis_.held_out));
+    }
     if (remains(first, current) || overruled_ || (claims && !doubts.empty())) {
       give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {
@@ -301,6 +304,24 @@ class Diagnostician {
     diagnosis_.unexplained_log_p = study_.unexplained_log_p(current.fit.residual);
     return diagnosis_.unexplained_log_p < kUnexplained &&
            chi2 - freedom > kAllowedRest * std::max(0.0, explained);
+  }
+
+  /// What is missing closes the misfit of speeds that the fit did not see, as far as noise and the
+  /// calculation leave it closed. What only resembles it closes a part, or nothing once it is
+  /// settled, unless it is for what is filed that it is claimed.
+  [[nodiscard]] bool leaves_too_much(const Studied& first, const Studied& current) const {
+    constexpr double kPart = 0.5;
+    constexpr double kMost = 0.75;
+    constexpr double kMuch = 2.0;  // of noise alone: another code's coarse mesh leaves less
+    const HeldOut& misfit = diagnosis_.held_out;
+    const double closed = misfit.before - misfit.after;
+    if (study_.allowance(current) != Allowance::kept) {
+      const double share = closed / (misfit.before - misfit.floor);
+      return share < kPart || (share < kMost && misfit.after > kMuch * misfit.floor);
+    }
+    const double explained = first.fit.objective() - current.fit.objective();
+    const bool of_filed = first.fit.penalty - current.fit.penalty > 0.5 * explained;
+    return closed <= 0.0 && !of_filed;
   }
 
   void set_held_out(const Studied& before, const Studied& after) {

@@ -192,6 +192,18 @@ std::string law_pressed_note(double beyond) {
       beyond);
 }
 
+std::string left_of_claim_note(const HeldOut& misfit) {
+  if (!(misfit.after < misfit.before)) {
+    return "what came nearest does not bring the speeds closer that the fit did not see: something "
+           "else is missing";
+  }
+  return fmt::format(
+      "what came nearest explains {:.0f} % of what noise does not of speeds that the fit did not "
+      "see, and what it leaves stands out of noise and of what is allowed for the calculation: "
+      "something else is missing, or more",
+      1e2 * (misfit.before - misfit.after) / (misfit.before - misfit.floor));
+}
+
 std::vector<std::string> left_notes(const ImpactStudy& study, const Studied& current,
                                     const HeldOut& held_out) {
   switch (study.allowance(current)) {

@@ -28,6 +28,9 @@ inline constexpr double kPressed = 2.0;
 /// Why nothing is claimed though something is certified. @param beyond  of law_beyond_bounds()
 [[nodiscard]] std::string law_pressed_note(double beyond);
 
+/// Why nothing is claimed where a claim leaves too much of what it would explain.
+[[nodiscard]] std::string left_of_claim_note(const HeldOut& misfit);
+
 /// Where what repeats stands out of noise and of what is allowed for the calculation though the
 /// verdict names nothing more: that an error of its kind may look so, or that what is left is small
 /// beside what was explained.

@@ -315,6 +315,20 @@ TEST(LongImpactDiagnosis, AClaimThatContradictsTheFiledMaterialsIsNone) {
   EXPECT_FALSE(noted(softened, "contradict what is filed")) << told(softened);
 }
 
+/// Less damage presses neither the law nor the materials that far. A relaxation stands before
+/// nothing, and leaves four fifths of what shots at the other speed show.
+TEST(LongImpactDiagnosis, WhatClosesAPartOfTheMisfitIsNotClaimed) {
+  testing::ImpactWishes own = two_speeds(39, 4);
+  own.core_damage = 0.5;
+  own.across = 9;
+  own.speed_error = 1e-3;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(own), filed_ball());
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_TRUE(diagnosis.effects.empty()) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "what came nearest explains")) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "nearest came core-second-relaxation")) << told(diagnosis);
+}
+
 /// Adequate is said with what it stands on where more repeats than is allowed for the calculation.
 TEST(LongImpactDiagnosis, WhatAnErrorOfTheCalculationMayLookLikeIsSaid) {
   const auto noted = [](std::size_t across) {
