@@ -73,6 +73,10 @@ double equivalent_square(double log_tail) {
   return 0.5 * (low + high);
 }
 
+double square_on_noise(double square, double known) {
+  return square > 0.0 ? equivalent_square(log_f_tail(square, 1.0, known)) : square;
+}
+
 double combined_log_p(std::span<const double> log_ps, std::span<const double> weights) {
   constexpr double kFarOut = -30.0;  // the tangent is the reciprocal there
   constexpr double kMost = 0.99;     // a chance of nearly 1 would cancel any other

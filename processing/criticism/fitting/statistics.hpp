@@ -22,6 +22,10 @@ namespace kolsky {
 /// with this two-sided tail probability.
 [[nodiscard]] double equivalent_square(double log_tail);
 
+/// The same for a square that is measured by noise of which so many degrees of freedom are known
+/// (Student's t); what is not above 0 stays.
+[[nodiscard]] double square_on_noise(double square, double known);
+
 /// ln of the chance of several tests taken together, whatever depends on what among them (Cauchy's
 /// combination; Liu and Xie 2020): of one that stands out, its own chance over its weight.
 /// @param weights  of sum 1

@@ -84,7 +84,8 @@ bool of_material(const Candidate& candidate) {
 }  // namespace
 
 double lead(const Refit& ahead, const Refit& behind) {
-  return (ahead.evidence - behind.evidence) / std::max(ahead.doubt, behind.doubt);
+  const double apart = (ahead.evidence - behind.evidence) / std::max(ahead.doubt, behind.doubt);
+  return square_on_noise(apart, std::min(ahead.known, behind.known));
 }
 
 Search::Search(Study& study, const Studied& base, const Model& start, const Safeguards& safeguards)
@@ -571,6 +572,7 @@ void Search::rate(std::vector<Refit>& list) const {
     return;
   }
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
+  constexpr double kKnown = 1e4;  // additions are weighed by what their shots scatter already
   for (Refit& refit : list) {
     double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
     refit.beside = share_beside_unconfirmed(
@@ -585,6 +587,7 @@ void Search::rate(std::vector<Refit>& list) const {
     // than their rivals.
     const bool addition = is_addition(*candidates_[refit.candidate].use.effect);
     refit.doubt = addition ? 1.0 : refit.scatter;
+    refit.known = addition ? kKnown : std::min(kKnown, known_of(candidates_[refit.candidate].use));
     refit.rival_log_p = addition ? refit.log_p : chance_of(refit, over_noise);
     refit.evidence = equivalent_square(
         log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));

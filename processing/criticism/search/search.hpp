@@ -28,6 +28,7 @@ struct Refit {
   double gain = 0.0;        ///< the same over the shots' scatter, too
   double evidence = 0.0;    ///< as a square of a normal deviate, the search not counted
   double doubt = 1.0;       ///< the scatter, where the evidence is that over the noise alone
+  double known = 1e4;       ///< degrees of freedom by which the noise is known that weighs it
   double log_p = 0.0;
   /// ln of the chance of a rival's gain: by how much its shots scatter it is no less of one.
   double rival_log_p = 0.0;
@@ -37,7 +38,8 @@ struct Refit {
 };
 
 /// By how much one refit stands before another, as a square of a normal deviate. Noise that is
-/// greater in the direction of either than its spectrum says makes the difference weigh less.
+/// greater in the direction of either than its spectrum says makes the difference weigh less, and
+/// so does noise that is known roughly.
 [[nodiscard]] double lead(const Refit& ahead, const Refit& behind);
 
 /// One search for what a fitted model lacks: every candidate tested at first order, those near the

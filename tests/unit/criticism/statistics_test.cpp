@@ -29,6 +29,15 @@ TEST(EquivalentSquare, UndoesTheTailOfOneDegreeOfFreedom) {
   }
 }
 
+// Student's t of 26 and 3 degrees of freedom at 0.5 %, from tables, against the normal deviate.
+TEST(SquareOnNoise, AgreesWithTables) {
+  EXPECT_NEAR(square_on_noise(2.7787 * 2.7787, 26.0), 2.5758 * 2.5758, 1e-3);
+  EXPECT_NEAR(square_on_noise(5.8409 * 5.8409, 3.0), 2.5758 * 2.5758, 1e-3);
+  EXPECT_NEAR(square_on_noise(7.5, 1e4), 7.5, 0.01);
+  EXPECT_EQ(square_on_noise(-3.0, 20.0), -3.0);
+  EXPECT_EQ(square_on_noise(0.0, 20.0), 0.0);
+}
+
 TEST(CombinedChance, OfOneThatStandsOutIsItsOwnOverItsWeight) {
   const std::vector<double> weights{0.5, 0.3, 0.2};
   for (const double log_p : {-12.0, -29.0, -31.0, -400.0}) {
