@@ -172,22 +172,12 @@ ElementSums Body::find_forces(bool survey) {
 
 void Body::gather(const Block& block) {
   const std::size_t pitch = mesh_.R_m.size();
-  const std::size_t stride = block.stride();
-  const std::size_t end = block.first_node + block.nodes();
-  const auto add = [&](const Real* of, double* into) {
-    const Real* const n0 = of;
-    const Real* const n1 = of + pitch;
-    const Real* const n2 = of + 2 * pitch;
-    const Real* const n3 = of + 3 * pitch;
-    const auto wide = [](Real force) { return static_cast<double>(force); };
-    for (std::size_t n = block.first_node; n < end; ++n) {
-      const double inner = wide(n0[n]) + wide(n1[n - 1]);
-      const double outer = wide(n2[n - stride]) + wide(n3[n - stride - 1]);
-      into[n] = -(inner + outer);
-    }
-  };
-  add(contributions_.data(), fr_.data());
-  add(contributions_.data() + 4 * pitch, fz_.data());
+  const std::size_t first = block.first_node;
+  const Real* const contributions = contributions_.data() + first;
+  const std::size_t of_one_direction = kForceArrays / 2 * pitch;
+  kernel_->gather({block.nodes(), block.stride(), contributions, pitch, fr_.data() + first});
+  kernel_->gather(
+      {block.nodes(), block.stride(), contributions + of_one_direction, pitch, fz_.data() + first});
 }
 
 void Body::keep_forces() {
@@ -208,15 +198,10 @@ void Body::join_ties() {
 
 void Body::advance(double velocity_step_s, double step_s) {
   const std::size_t nodes = ur_.size();
-  const auto move = [&](const double* force, const double* by_mass, double* velocity,
-                        double* displacement) {
-    for (std::size_t n = 0; n < nodes; ++n) {
-      velocity[n] += velocity_step_s * force[n] * by_mass[n];
-      displacement[n] += step_s * velocity[n];
-    }
-  };
-  move(fr_.data(), by_mass_r_.data(), vr_.data(), ur_.data());
-  move(fz_.data(), by_mass_z_.data(), vz_.data(), uz_.data());
+  kernel_->move({nodes, fr_.data(), by_mass_r_.data(), vr_.data(), ur_.data()}, velocity_step_s,
+                step_s);
+  kernel_->move({nodes, fz_.data(), by_mass_z_.data(), vz_.data(), uz_.data()}, velocity_step_s,
+                step_s);
 }
 
 void Body::place(std::span<const double> radial_m, std::span<const double> axial_m) {

@@ -63,6 +63,24 @@ struct ElementSums {
   double steepest_per_m2 = 0.0;  ///< largest squared gradient of an element's own coordinates
 };
 
+/// A block's nodes, as `ElementRange` numbers them, and what the elements put on them.
+struct NodeRange {
+  std::size_t count = 0;
+  std::size_t stride = 0;
+  const Real* contributions = nullptr;  ///< of one direction, at the block's first node
+  std::size_t pitch = 0;                ///< of the four contributions
+  double* force = nullptr;              ///< at the block's first node
+};
+
+/// One component of the nodes' motion.
+struct NodeMotion {
+  std::size_t count = 0;
+  const double* force = nullptr;
+  const double* by_mass = nullptr;
+  double* velocity = nullptr;
+  double* displacement = nullptr;
+};
+
 /// Internal forces of axisymmetric four-node quadrilaterals, 2 x 2 points, dilatation averaged over
 /// the element, for stress that is linear viscoelastic in Hencky's strain (docs/impact.md).
 struct ElementKernel {
@@ -70,6 +88,9 @@ struct ElementKernel {
   int lanes;
   void (*advance)(const ElementRange&, ElementSums&);
   void (*survey)(const ElementRange&, ElementSums&);  ///< the same, and what the ledger asks for
+  void (*gather)(const NodeRange&);                   ///< the force that resists, node by node
+  /// Velocities by so much of the acceleration, displacements by so much of the velocity.
+  void (*move)(const NodeMotion&, double velocity_step_s, double step_s);
 };
 
 /// The fastest kernel that this processor runs.

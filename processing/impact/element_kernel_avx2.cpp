@@ -4,5 +4,5 @@
 
 namespace kolsky::impact {
 extern const ElementKernel kAvx2Kernel;
-const ElementKernel kAvx2Kernel{"AVX2", KOLSKY_LANES, run<false>, run<true>};
+const ElementKernel kAvx2Kernel{"AVX2", KOLSKY_LANES, run<false>, run<true>, gather, move};
 }  // namespace kolsky::impact

@@ -4,5 +4,5 @@
 
 namespace kolsky::impact {
 extern const ElementKernel kAvx512Kernel;
-const ElementKernel kAvx512Kernel{"AVX-512", KOLSKY_LANES, run<false>, run<true>};
+const ElementKernel kAvx512Kernel{"AVX-512", KOLSKY_LANES, run<false>, run<true>, gather, move};
 }  // namespace kolsky::impact

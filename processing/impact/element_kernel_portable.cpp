@@ -4,5 +4,5 @@
 
 namespace kolsky::impact {
 extern const ElementKernel kPortableKernel;
-const ElementKernel kPortableKernel{"portable", KOLSKY_LANES, run<false>, run<true>};
+const ElementKernel kPortableKernel{"portable", KOLSKY_LANES, run<false>, run<true>, gather, move};
 }  // namespace kolsky::impact
