@@ -311,13 +311,12 @@ class Diagnostician {
   /// settled, unless it is for what is filed that it is claimed.
   [[nodiscard]] bool leaves_too_much(const Studied& first, const Studied& current) const {
     constexpr double kPart = 0.5;
-    constexpr double kMost = 0.75;
     constexpr double kMuch = 2.0;  // of noise alone: another code's coarse mesh leaves less
     const HeldOut& misfit = diagnosis_.held_out;
     const double closed = misfit.before - misfit.after;
     if (study_.allowance(current) != Allowance::kept) {
       const double share = closed / (misfit.before - misfit.floor);
-      return share < kPart || (share < kMost && misfit.after > kMuch * misfit.floor);
+      return share < kPart || (share < 1.0 - kAllowedRest && misfit.after > kMuch * misfit.floor);
     }
     const double explained = first.fit.objective() - current.fit.objective();
     const bool of_filed = first.fit.penalty - current.fit.penalty > 0.5 * explained;

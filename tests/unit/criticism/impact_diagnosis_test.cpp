@@ -288,7 +288,7 @@ TEST(LongImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
 /// them.
 TEST(LongImpactDiagnosis, WhatPressesTheLawBesideAClaimIsNotClaimed) {
   testing::ImpactWishes own = two_speeds(36, 3);
-  own.core_damage = 0.65;
+  own.core_damage = 0.75;
   own.across = 14;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
