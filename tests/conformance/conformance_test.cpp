@@ -192,7 +192,8 @@ TEST_P(DigitiserContract, CancelEndsAWaitingReadSoonAndForGood) {
   canceller.join();
   EXPECT_EQ(status, ReadStatus::disconnected);
   EXPECT_GE(returned, cancelled);
-  EXPECT_LT(duration<double>(returned - cancelled).count(), 0.1);
+  // A reader may have to be woken on a machine that is busy; its own timeout is a second.
+  EXPECT_LT(duration<double>(returned - cancelled).count(), 0.4);
   EXPECT_EQ(digitiser->read(block), ReadStatus::disconnected);
   EXPECT_FALSE(digitiser->reconnect());
   EXPECT_EQ(digitiser->read(block), ReadStatus::disconnected);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <regex>
+#include <string>
 #include <thread>
 
 #include "daemon/daemon.hpp"
@@ -164,10 +166,15 @@ TEST_F(WithDaemon, WatchShowsTracesShotsAndTheLoopOnce) {
   EXPECT_EQ(page.code, 0) << page.err;
   for (const std::string& wanted :
        {std::string("armed"), std::string("g1"), std::string("g2"), std::string("noise"), id,
-        std::string("pass"), std::string("stress [MPa]"), std::string("strain [%]"),
-        std::string("messages lost on the way here: 0")}) {
+        std::string("pass"), std::string("stress [MPa]"), std::string("strain [%]")}) {
     EXPECT_NE(page.out.find(wanted), std::string::npos) << wanted << "\n" << page.out;
   }
+  // Traces are dropped where a busy machine falls behind; shots and results never.
+  EXPECT_TRUE(
+      page.out.find("messages lost on the way here: 0") != std::string::npos ||
+      std::regex_search(page.out,
+                        std::regex(R"(messages lost on the way here: (\d+) \(\1 of preview\))")))
+      << page.out;
 }
 
 TEST_F(WithDaemon, WatchEndsInTimeWithoutAResult) {
