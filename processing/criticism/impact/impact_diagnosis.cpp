@@ -315,8 +315,9 @@ class Diagnostician {
     const HeldOut& misfit = diagnosis_.held_out;
     const double closed = misfit.before - misfit.after;
     if (study_.allowance(current) != Allowance::kept) {
-      const double share = closed / (misfit.before - misfit.floor);
-      return share < kPart || (share < 1.0 - kAllowedRest && misfit.after > kMuch * misfit.floor);
+      const double shown = std::max(0.0, misfit.before - misfit.floor);
+      return closed <= 0.0 || closed < kPart * shown ||
+             (closed < (1.0 - kAllowedRest) * shown && misfit.after > kMuch * misfit.floor);
     }
     const double explained = first.fit.objective() - current.fit.objective();
     const bool of_filed = first.fit.penalty - current.fit.penalty > 0.5 * explained;

@@ -193,7 +193,7 @@ std::string law_pressed_note(double beyond) {
 }
 
 std::string left_of_claim_note(const HeldOut& misfit) {
-  if (!(misfit.after < misfit.before)) {
+  if (!(misfit.after < misfit.before && misfit.floor < misfit.before)) {
     return "what came nearest does not bring the speeds closer that the fit did not see: something "
            "else is missing";
   }

@@ -572,7 +572,6 @@ void Search::rate(std::vector<Refit>& list) const {
     return;
   }
   const double noise = noise_of(best->studied.misfit, study_.campaign().shots.size());
-  constexpr double kKnown = 1e4;  // additions are weighed by what their shots scatter already
   for (Refit& refit : list) {
     double over_noise = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
     refit.beside = share_beside_unconfirmed(
@@ -587,7 +586,9 @@ void Search::rate(std::vector<Refit>& list) const {
     // than their rivals.
     const bool addition = is_addition(*candidates_[refit.candidate].use.effect);
     refit.doubt = addition ? 1.0 : refit.scatter;
-    refit.known = addition ? kKnown : std::min(kKnown, known_of(candidates_[refit.candidate].use));
+    // Additions are weighed by what their shots scatter already.
+    refit.known =
+        addition ? kKnownWell : std::min(kKnownWell, known_of(candidates_[refit.candidate].use));
     refit.rival_log_p = addition ? refit.log_p : chance_of(refit, over_noise);
     refit.evidence = equivalent_square(
         log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));

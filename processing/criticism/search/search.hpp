@@ -12,6 +12,9 @@
 
 namespace kolsky {
 
+/// Degrees of freedom from which on noise counts as known exactly: Student's t is normal there.
+inline constexpr double kKnownWell = 1e4;
+
 /// A candidate refitted in full beside the model.
 struct Refit {
   std::size_t candidate = 0;
@@ -28,7 +31,7 @@ struct Refit {
   double gain = 0.0;        ///< the same over the shots' scatter, too
   double evidence = 0.0;    ///< as a square of a normal deviate, the search not counted
   double doubt = 1.0;       ///< the scatter, where the evidence is that over the noise alone
-  double known = 1e4;       ///< degrees of freedom by which the noise is known that weighs it
+  double known = kKnownWell;  ///< degrees of freedom by which the noise is known that weighs it
   double log_p = 0.0;
   /// ln of the chance of a rival's gain: by how much its shots scatter it is no less of one.
   double rival_log_p = 0.0;
