@@ -21,6 +21,12 @@ BarPrior::BarPrior(const Material& m) : material(m) {
   covariance[2][2] = m.eta2_Pa_s.sd * m.eta2_Pa_s.sd;
 }
 
+double sd_by_temperature(const Bench& bench, const BarPrior& bars) {
+  const bool viscoelastic =
+      !bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa);
+  return viscoelastic && bench.temperature_K ? bars.softening_per_K * bench.temperature_K->sd : 0.0;
+}
+
 std::optional<std::size_t> bar_of_density(const Bench& bench, const BarPrior& bars) {
   const std::size_t first = bench.input.youngs_modulus_Pa ? 1 : 0;
   const Bar* const bar = first == 0 ? &bench.input : bench.output ? &*bench.output : nullptr;

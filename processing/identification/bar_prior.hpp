@@ -17,10 +17,17 @@ struct BarPrior {
   /// Identified from waves, which show the moduli over the density alone: the deviation of the
   /// material's density is part of the covariance, as the moduli are off by what it is off by.
   bool from_waves = false;
+  /// Relative loss of E1 and E2 by which a deviation of the bench's temperature counts. PMMA at
+  /// room temperature: 0.3 % per kelvin.
+  double softening_per_K = 3e-3;
 
   /// With the material's covariance; without one its own deviations, as if they were independent.
   explicit BarPrior(const Material& m);
 };
+
+/// By what E1 and E2 may be off, relative, because the temperature at which the shots were fired is
+/// known to a deviation only; 0 where none is filed or no bar is viscoelastic.
+[[nodiscard]] double sd_by_temperature(const Bench& bench, const BarPrior& bars);
 
 /// The bar, 0 input or 1 output, with whose density the moduli go: the first viscoelastic one,
 /// where they are from waves and its density may be off.

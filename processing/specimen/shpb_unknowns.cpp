@@ -57,6 +57,7 @@ std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<Shp
       add(list, "bar-model:" + std::to_string(i + 1), Of::bar_material, i, moves ? 1.0 : 0.0);
     }
   }
+  add(list, "temperature", Of::temperature, 0, sd_by_temperature(bench, bars));
   const Specimen& specimen = *bench.specimen;
   add(list, "specimen-length", Of::specimen_length, 0, relative_sd(specimen.length_m));
   add(list, "specimen-diameter", Of::specimen_diameter, 0, relative_sd(specimen.diameter_m));
@@ -108,6 +109,9 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         break;
       case Of::bar_material:
         relative += root.col(static_cast<int>(u.index)) * move;
+        break;
+      case Of::temperature:
+        relative -= move * Eigen::Vector3d(1.0, 1.0, 0.0);
         break;
       case Of::specimen_length:
         scale(specimen.length_m, move);

@@ -24,6 +24,7 @@ struct ShpbUnknown {
     bar_poisson,
     bar_modulus,   ///< of an elastic bar
     bar_material,  ///< one of three independent directions of a viscoelastic bar's moduli
+    temperature,   ///< at which viscoelastic bars soften
     specimen_length,
     specimen_diameter,
     specimen_density
@@ -31,7 +32,8 @@ struct ShpbUnknown {
   std::string name;  ///< as the effect that would name it: "gauge-position:g1"
   Of of = Of::gain;
   std::size_t index = 0;  ///< station, bar (0 input, 1 output) or direction
-  double sd = 0.0;        ///< relative, but metres for position and length; 1 for bar_material
+  double sd = 0.0;        ///< relative, but metres for position and length; 1 for bar_material;
+                          ///< for temperature that of the moduli
 };
 
 [[nodiscard]] std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench,

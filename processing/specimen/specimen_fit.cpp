@@ -39,6 +39,13 @@ std::vector<SpecimenWaves> kinds_of_waves(const SpecimenFitOptions& options,
   return kinds;
 }
 
+std::vector<double> logarithms(const std::vector<double>& values) {
+  std::vector<double> logs(values.size());
+  std::transform(values.begin(), values.end(), logs.begin(),
+                 [](double value) { return std::log(value); });
+  return logs;
+}
+
 /// Fits under every set of assumptions that is open; the simplest of those that explain the data.
 class TheoryChoice {
  public:
@@ -54,8 +61,7 @@ class TheoryChoice {
 
   Fitted choose() {
     if (three_element_ == nullptr) {
-      starts_ =
-          SpecimenSearch(likelihood_, solid_, {WaveTheory::elementary, kinds_.front()}).starts();
+      starts_ = first_starts();
     }
     const WaveTheory first = options_.bars.value_or(WaveTheory::elementary);
     for (const SpecimenWaves kind : kinds_) {
@@ -96,6 +102,13 @@ class TheoryChoice {
   }
 
  private:
+  [[nodiscard]] std::vector<std::vector<double>> first_starts() {
+    if (solid_ == SolidKind::three_element && !options_.start.empty()) {
+      return {logarithms(options_.start)};
+    }
+    return SpecimenSearch(likelihood_, solid_, {WaveTheory::elementary, kinds_.front()}).starts();
+  }
+
   [[nodiscard]] SpecimenMinimum minimum_under(const ShpbTheory& theory) {
     for (const Fitted& fit : fits_) {
       if (fit.theory == theory) {
@@ -489,6 +502,7 @@ SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
   fit.chi2_reduced = minimum.chi2 / decision.dof();
   fit.band_limit_Hz = decision.likelihood->band_limit_Hz();
   fit.judged_s = decision.likelihood->judged_s();
+  fit.after_foot_s = decision.likelihood->after_foot_s();
   fill_numbers(*decision.likelihood, minimum, fit);
   fill_spectrum(*decision.likelihood, minimum, fit);
   warn(fit);

@@ -18,6 +18,8 @@ struct SpecimenFitOptions {
   /// Judged after the pulse's foot at the first station. None: until a far end answers, and on to
   /// the record's end where the same model holds there too.
   std::optional<double> after_foot_s;
+  /// Three elements' parameters to begin from; none: a coarse grid's best places.
+  std::vector<double> start{};
 };
 
 /// A set of assumptions that was tried, and how far it leaves more than noise.
@@ -61,8 +63,9 @@ struct SpecimenFit {
   double chi2_reduced = 0.0;  ///< 1 where the model leaves noise alone
   std::size_t degrees_of_freedom = 0;
   double band_limit_Hz = 0.0;
-  double judged_s = 0.0;    ///< of each record
-  bool to_the_end = false;  ///< judged past the far ends' first answers
+  double judged_s = 0.0;      ///< of each record
+  double after_foot_s = 0.0;  ///< until so long after the pulse's foot; 0: to the record's end
+  bool to_the_end = false;    ///< judged past the far ends' first answers
   std::vector<CompliancePoint> spectrum;
   std::vector<std::string> warnings;  ///< what keeps the result from being taken at its word
 };

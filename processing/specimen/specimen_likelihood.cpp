@@ -93,10 +93,11 @@ SpecimenLikelihood::SpecimenLikelihood(const std::vector<Shot>& shots, const Bar
       records_(read_shpb_records(shots, stations_)),
       unknowns_(shpb_unknowns(bench_, stations_, bars_)),
       period_s_(shots.front().rate.period_s()),
+      after_foot_s_(window.after_foot_s),
       model_(stations_) {
   find_first_return();
   choose_band(window.band_limit_Hz);
-  choose_judged(window.after_foot_s);
+  choose_judged();
   prepare_spectra();
   prepare_noise();
 }
@@ -143,18 +144,18 @@ void SpecimenLikelihood::choose_band(double asked_Hz) {
           1;
 }
 
-void SpecimenLikelihood::choose_judged(double after_foot_s) {
+void SpecimenLikelihood::choose_judged() {
   const std::size_t samples = shortest(records_);
   // Away from the cut ends, where the filter sees samples that are not there.
   const std::size_t last = samples > lead_ ? samples - lead_ : 0;
   std::size_t end = last;
-  if (after_foot_s > 0.0) {
+  if (after_foot_s_ > 0.0) {
     double foot_s = std::numeric_limits<double>::infinity();
     for (const ShpbRecords& records : records_) {
       foot_s = std::min(foot_s, records.foot_s);
     }
     // The filter's kernel reaches ahead by a few of its 1/wc.
-    const double until_s = foot_s + after_foot_s - 2.0 * BandLimit::smear_s(filter_limit_Hz_);
+    const double until_s = foot_s + after_foot_s_ - 2.0 * BandLimit::smear_s(filter_limit_Hz_);
     end = std::min(last, static_cast<std::size_t>(std::max(0.0, until_s / period_s_)));
   }
   begin_ = std::min(lead_, records_.front().quiet_samples / 2);

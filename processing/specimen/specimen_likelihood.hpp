@@ -73,6 +73,8 @@ class SpecimenLikelihood {
   [[nodiscard]] const Bench& bench() const { return bench_; }
   [[nodiscard]] const BarPrior& bars() const { return bars_; }
   [[nodiscard]] double band_limit_Hz() const { return band_limit_Hz_; }
+  /// As asked for in the window.
+  [[nodiscard]] double after_foot_s() const { return after_foot_s_; }
   [[nodiscard]] double judged_s() const { return static_cast<double>(judged_) * period_s_; }
   [[nodiscard]] double period_s() const { return period_s_; }
   /// Power of a station's noise per sample at the judged frequencies.
@@ -87,7 +89,7 @@ class SpecimenLikelihood {
   void judged_part(const Spectrum& of_first, const Spectrum* own, const Spectrum& first);
   void find_first_return();
   void choose_band(double asked_Hz);
-  void choose_judged(double after_foot_s);
+  void choose_judged();
   void prepare_spectra();
   void prepare_noise();
   [[nodiscard]] Eigen::MatrixXd noise_response(const Spectrum& transfer);
@@ -98,6 +100,7 @@ class SpecimenLikelihood {
   std::vector<ShpbRecords> records_;
   std::vector<ShpbUnknown> unknowns_;
   double period_s_;
+  double after_foot_s_;
   double first_return_s_ = 0.0;
   double band_limit_Hz_ = 0.0;
   double filter_limit_Hz_ = 0.0;

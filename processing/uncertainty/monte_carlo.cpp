@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "processing/reduction/loop_summary.hpp"
-#include "processing/uncertainty/noise.hpp"
+#include "processing/uncertainty/noisy_shot.hpp"
+#include "processing/uncertainty/scatter.hpp"
 
 namespace kolsky {
 
@@ -67,35 +67,6 @@ std::vector<double> at_times(const std::vector<double>& times, const Reduction& 
   return values;
 }
 
-/// How far a channel's codes can be divided, at most 64 times, with room for noise.
-std::int32_t division(const ChannelRecord& channel) {
-  std::int64_t most = 1;
-  for (const std::int32_t code : channel.codes) {
-    most = std::max(most, std::abs(static_cast<std::int64_t>(code)));
-  }
-  std::int32_t parts = 64;
-  while (parts > 1 && most * parts > std::numeric_limits<std::int32_t>::max() / 2) {
-    parts /= 2;
-  }
-  return parts;
-}
-
-/// The shot with codes fine enough for noise below one of its own to be added.
-Shot finer(const Shot& shot) {
-  Shot fine = shot;
-  for (ChannelRecord& channel : fine.channels) {
-    const std::int32_t parts = division(channel);
-    channel.scale /= parts;
-    channel.offset *= parts;
-    channel.code_min = std::numeric_limits<std::int32_t>::min();
-    channel.code_max = std::numeric_limits<std::int32_t>::max();
-    for (std::int32_t& code : channel.codes) {
-      code *= parts;
-    }
-  }
-  return fine;
-}
-
 /// The band, the histories' length and how waves are separated are the shot's.
 ReductionOptions held(ReductionOptions options, const Reduction& nominal) {
   options.band_limit_Hz = nominal.band_limit_Hz;
@@ -110,19 +81,10 @@ class Worker {
   Worker(const Shot& shot, const ReductionOptions& options, const Reduction& nominal,
          const std::vector<UncertaintySource>& sources)
       : shot_(shot),
-        moved_(finer(shot)),
-        fine_(moved_.channels),
+        moved_(shot, nominal.quiet_samples),
         options_(held(options, nominal)),
         nominal_(nominal),
-        sources_(sources),
-        noise_(shot.samples()) {
-    const std::size_t quiet = nominal.quiet_samples;
-    for (const ChannelRecord& channel : fine_) {
-      const std::vector<double> codes(channel.codes.begin(),
-                                      channel.codes.begin() + static_cast<std::ptrdiff_t>(quiet));
-      makers_.emplace_back(codes, shot.samples());
-    }
-  }
+        sources_(sources) {}
 
   /// @param moves  one per source
   /// @param random draws the noise; none: the samples as they are
@@ -131,13 +93,11 @@ class Worker {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       sources_[i].move(numbers, moves[i]);
     }
-    moved_.bench = std::move(numbers.bench);
-    for (std::size_t c = 0; c < fine_.size(); ++c) {
-      add_noise(c, random);
-    }
+    moved_.set_bench(std::move(numbers.bench));
+    moved_.record(random);
     reducer_.set_bar_model(numbers.bars);
     reducer_.set_push_goes_on(numbers.push_goes_on);
-    const Reduction reduction = reducer_.reduce(moved_);
+    const Reduction reduction = reducer_.reduce(moved_.shot());
     Draw result;
     result.good = reduction.quality.reducible && reduction.time_s.size() > 1;
     if (result.good) {
@@ -151,51 +111,13 @@ class Worker {
   }
 
  private:
-  void add_noise(std::size_t c, RandomStream* random) {
-    auto& codes = moved_.channels[c].codes;
-    if (random == nullptr) {
-      codes = fine_[c].codes;
-      return;
-    }
-    makers_[c].make(*random, noise_);
-    for (std::size_t n = 0; n < codes.size(); ++n) {
-      codes[n] = fine_[c].codes[n] + static_cast<std::int32_t>(std::lrint(noise_[n]));
-    }
-  }
-
   const Shot& shot_;
-  Shot moved_;
-  const std::vector<ChannelRecord> fine_;
+  NoisyShot moved_;
   ReductionOptions options_;
   const Reduction& nominal_;
   const std::vector<UncertaintySource>& sources_;
-  std::vector<NoiseMaker> makers_;
-  std::vector<double> noise_;
   Reducer reducer_{options_};
 };
-
-/// The p-quantile of values, which it reorders.
-double quantile(std::vector<double>& values, double p) {
-  const double index = p * static_cast<double>(values.size() - 1);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::lround(index));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-double sd_of(const std::vector<double>& values) {
-  double mean = 0.0;
-  for (const double value : values) {
-    mean += value / static_cast<double>(values.size());
-  }
-  double squares = 0.0;
-  for (const double value : values) {
-    squares += (value - mean) * (value - mean);
-  }
-  return values.size() > 1 ? std::sqrt(squares / static_cast<double>(values.size() - 1)) : 0.0;
-}
-
-constexpr double kLow = 0.025;
-constexpr double kHigh = 0.975;
 
 Band band_of(const std::vector<Draw>& draws, std::size_t history, std::size_t samples) {
   Band band;
@@ -327,8 +249,7 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   if (!told.bar_model) {
     told.bar_model = shot.bar_model.value_or(paper_pmma());
   }
-  result.sources = uncertainty_sources(shot.bench, wanted.bars.value_or(BarPrior(*told.bar_model)),
-                                       wanted.softening_per_K);
+  result.sources = uncertainty_sources(shot.bench, wanted.bars.value_or(BarPrior(*told.bar_model)));
   if (reduction.separation == Separation::never && reduction.push_left_share > 0.0) {
     result.sources.push_back(hidden_push_source(reduction.push_left_share));
   }
@@ -359,9 +280,8 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   });
   const Figures nominal = figures_of(reduction);
   for (std::size_t f = 0; f < kFigures.size(); ++f) {
-    std::vector<double> values = figure_values(joint, f);
-    result.figures.push_back({kFigures[f].name, nominal[f], sd_of(values), quantile(values, kLow),
-                              quantile(values, kHigh)});
+    result.figures.push_back(
+        uncertain_figure(kFigures[f].name, nominal[f], figure_values(joint, f)));
   }
   result.budget = budget_of(campaign, draws, result.sources);
   return result;

@@ -8,6 +8,7 @@
 #include "processing/base/budget.hpp"
 #include "processing/base/workers.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/uncertainty/scatter.hpp"
 #include "processing/uncertainty/sources.hpp"
 
 namespace kolsky {
@@ -17,8 +18,6 @@ struct UncertaintyOptions {
   std::uint64_t seed = 1;
   /// What is not known of the reduction's bar model; none: its own deviations, as independent.
   std::optional<BarPrior> bars;
-  /// Relative loss of viscoelastic bars' moduli. PMMA at room temperature: 0.3 % per kelvin.
-  double softening_per_K = 3e-3;
 };
 
 /// A history's standard deviation and 95 % interval, at each of its times.
@@ -26,15 +25,6 @@ struct Band {
   std::vector<double> sd;
   std::vector<double> low;
   std::vector<double> high;
-};
-
-/// One number read off the curve.
-struct UncertainFigure {
-  std::string name;  ///< with its unit: "peak_stress_Pa"
-  double value = 0.0;
-  double sd = 0.0;
-  double low = 0.0;
-  double high = 0.0;
 };
 
 struct Uncertainty {
@@ -45,8 +35,8 @@ struct Uncertainty {
   Band strain_rate_per_s;
   Band force_front_N;
   Band force_back_N;
-  std::vector<UncertainFigure> figures;
-  std::vector<BudgetLine> budget;  ///< the largest contribution to the first figure first
+  std::vector<UncertainFigure> figures;  ///< read off the curve
+  std::vector<BudgetLine> budget;        ///< the largest contribution to the first figure first
   std::vector<UncertaintySource> sources;
   /// Names of sources that the budget lacks: moved by one deviation the shot cannot be reduced.
   std::vector<std::string> uncounted;

@@ -50,32 +50,6 @@ void add_gauge(Sources& sources, const Bench& bench, std::size_t i) {
   }
 }
 
-void add_bar(Sources& sources, const Bench& bench, bool input) {
-  const auto bar = [input](Bench& b) -> Bar& { return input ? b.input : *b.output; };
-  const std::string name = input ? "bars.input." : "bars.output.";
-  add(sources, bench, name + "length_m", "bar lengths",
-      [bar](Bench& b) -> Measured& { return bar(b).length_m; });
-  const Measured diameter = (input ? bench.input : *bench.output).diameter_m;
-  if (diameter.sd > 0.0) {
-    sources.push_back({name + "diameter_m", "bar diameters", diameter.value, diameter.sd,
-                       [bar](ShotNumbers& numbers, double deviations) {
-                         Bar& moved = bar(numbers.bench);
-                         const double factor =
-                             1.0 + deviations * moved.diameter_m.sd / moved.diameter_m.value;
-                         moved.diameter_m.value *= factor;
-                         if (moved.side_m) {
-                           moved.side_m->value *= factor;
-                         }
-                       }});
-  }
-  add(sources, bench, name + "poisson_ratio", "Poisson's ratios",
-      [bar](Bench& b) -> Measured& { return bar(b).poisson_ratio; });
-  if ((input ? bench.input : *bench.output).youngs_modulus_Pa) {
-    add(sources, bench, name + "youngs_modulus_Pa", "bar moduli",
-        [bar](Bench& b) -> Measured& { return *bar(b).youngs_modulus_Pa; });
-  }
-}
-
 void scale(Material& moduli, double E1, double E2, double eta2) {
   moduli.E1_Pa.value *= 1.0 + E1;
   moduli.E2_Pa.value *= 1.0 + E2;
@@ -100,7 +74,38 @@ void add_density(Sources& sources, const Bench& bench, const BarPrior& bars, boo
   }
 }
 
-void add_bar_model(Sources& sources, const Bench& bench, const BarPrior& bars) {
+void add_bar(Sources& sources, const Bench& bench, const BarPrior& bars, bool input) {
+  const auto bar = [input](Bench& b) -> Bar& { return input ? b.input : *b.output; };
+  const std::string name = input ? "bars.input." : "bars.output.";
+  add(sources, bench, name + "length_m", "bar lengths",
+      [bar](Bench& b) -> Measured& { return bar(b).length_m; });
+  const Measured diameter = (input ? bench.input : *bench.output).diameter_m;
+  if (diameter.sd > 0.0) {
+    sources.push_back({name + "diameter_m", "bar diameters", diameter.value, diameter.sd,
+                       [bar](ShotNumbers& numbers, double deviations) {
+                         Bar& moved = bar(numbers.bench);
+                         const double factor =
+                             1.0 + deviations * moved.diameter_m.sd / moved.diameter_m.value;
+                         moved.diameter_m.value *= factor;
+                         if (moved.side_m) {
+                           moved.side_m->value *= factor;
+                         }
+                       }});
+  }
+  add(sources, bench, name + "poisson_ratio", "Poisson's ratios",
+      [bar](Bench& b) -> Measured& { return bar(b).poisson_ratio; });
+  if ((input ? bench.input : *bench.output).youngs_modulus_Pa) {
+    add(sources, bench, name + "youngs_modulus_Pa", "bar moduli",
+        [bar](Bench& b) -> Measured& { return *bar(b).youngs_modulus_Pa; });
+  }
+  add_density(sources, bench, bars, input);
+}
+
+/// Of viscoelastic bars.
+void add_moduli(Sources& sources, const Bench& bench, const BarPrior& bars) {
+  if (bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa)) {
+    return;
+  }
   const Eigen::Matrix3d directions = moduli_directions(bench, bars);
   for (int i = 2; i >= 0; --i) {
     const Eigen::Vector3d along = directions.col(i);
@@ -112,30 +117,15 @@ void add_bar_model(Sources& sources, const Bench& bench, const BarPrior& bars) {
                          }});
     }
   }
-}
-
-}  // namespace
-
-Sources uncertainty_sources(const Bench& bench, const BarPrior& bars, double softening_per_K) {
-  Sources sources;
-  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
-    add_gauge(sources, bench, i);
-  }
-  for (const bool input : {true, false}) {
-    add_bar(sources, bench, input);
-    add_density(sources, bench, bars, input);
-  }
-  const bool viscoelastic = !bench.input.youngs_modulus_Pa || !bench.output->youngs_modulus_Pa;
-  if (viscoelastic) {
-    add_bar_model(sources, bench, bars);
-  }
-  if (viscoelastic && bench.temperature_K && bench.temperature_K->sd > 0.0) {
-    const double change = softening_per_K * bench.temperature_K->sd;
+  if (const double change = sd_by_temperature(bench, bars); change > 0.0) {
     sources.push_back({"temperature_K", "temperature", bench.temperature_K->value,
                        bench.temperature_K->sd, [change](ShotNumbers& moved, double deviations) {
                          scale(moved.bars, -deviations * change, -deviations * change, 0.0);
                        }});
   }
+}
+
+void add_specimen(Sources& sources, const Bench& bench) {
   add(sources, bench, "specimen.length_m", "specimen length",
       [](Bench& b) -> Measured& { return b.specimen->length_m; });
   add(sources, bench, "specimen.diameter_m", "specimen diameter",
@@ -148,6 +138,25 @@ Sources uncertainty_sources(const Bench& bench, const BarPrior& bars, double sof
   if (bench.specimen->poisson_ratio) {
     add(sources, bench, "specimen.poisson_ratio", "specimen inertia",
         [](Bench& b) -> Measured& { return *b.specimen->poisson_ratio; });
+  }
+}
+
+}  // namespace
+
+Sources uncertainty_sources(const Bench& bench, const BarPrior& bars) {
+  Sources sources;
+  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
+    add_gauge(sources, bench, i);
+  }
+  add_bar(sources, bench, bars, true);
+  if (bench.output) {
+    add_bar(sources, bench, bars, false);
+  }
+  if (bench.kind != BenchKind::bar) {
+    add_moduli(sources, bench, bars);
+  }
+  if (bench.specimen) {
+    add_specimen(sources, bench);
   }
   return sources;
 }

@@ -27,11 +27,10 @@ struct UncertaintySource {
   std::function<void(ShotNumbers&, double)> move;
 };
 
-/// Everything of a specimen bench and its bars that is filed with a deviation.
-/// @param softening_per_K  relative loss of the bars' moduli
+/// Everything of a bench and its bars that is filed with a deviation. Of a bench of kind "bar" not
+/// the bar's moduli, nor what softens them: they are what its shots are to tell.
 [[nodiscard]] std::vector<UncertaintySource> uncertainty_sources(const Bench& bench,
-                                                                 const BarPrior& bars,
-                                                                 double softening_per_K);
+                                                                 const BarPrior& bars);
 
 inline constexpr const char* kHiddenPush = "push_left_share";
 

@@ -3,7 +3,10 @@
 
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/doubts.hpp"
 #include "clients/cli/reports/bar_report.hpp"
+#include "clients/cli/reports/fit_draws.hpp"
+#include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/captures/new_file.hpp"
@@ -14,6 +17,7 @@ namespace kolsky::cli {
 namespace {
 
 constexpr mode_t kReadableByAll = 0644;
+constexpr const char* kName = "kolsky identify bar";
 
 struct Settings {
   std::vector<std::string> captures;
@@ -24,6 +28,7 @@ struct Settings {
   std::optional<double> band_limit_Hz;
   std::optional<std::string> svg;
   bool waveforms = false;
+  std::optional<std::uint64_t> draws;
 };
 
 BarIdentificationOptions options_from(const Settings& settings) {
@@ -42,7 +47,7 @@ BarIdentificationOptions options_from(const Settings& settings) {
   }
   if (settings.band_limit_Hz) {
     if (!(*settings.band_limit_Hz > 0.0)) {
-      throw InputError("kolsky identify bar: --band-limit", "must be above 0 Hz",
+      throw InputError(std::string(kName) + ": --band-limit", "must be above 0 Hz",
                        "give a positive number in Hz");
     }
     options.band_limit_Hz = *settings.band_limit_Hz;
@@ -71,13 +76,23 @@ void write_material(const std::string& path, const BarIdentification& result,
   try {
     check(material);
   } catch (const InputError& error) {
-    throw InputError("kolsky identify bar: --model-out",
+    throw InputError(std::string(kName) + ": --model-out",
                      "cannot file this fit: " + error.place() + " " + error.problem(),
                      "file an elastic bar by bars.*.youngs_modulus_Pa in the bench instead");
   }
   NewFile file(path);
   file.write(format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced}));
   file.publish(kReadableByAll);
+}
+
+std::optional<FitDraws> drawn(const std::vector<Shot>& shots, const BarIdentification& result,
+                              const Settings& settings) {
+  if (!settings.draws) {
+    return std::nullopt;
+  }
+  SlowWork progress(kName);
+  return draw_bar_fits(shots, result.three_element, draw_options(*settings.draws, progress),
+                       all_cores());
 }
 
 BarIdentification identify(const std::vector<Shot>& shots, const Settings& settings) {
@@ -90,6 +105,9 @@ BarIdentification identify(const std::vector<Shot>& shots, const Settings& setti
 }
 
 int run(const Settings& settings, Context& context) {
+  if (settings.draws) {
+    require_draws(kName, *settings.draws);
+  }
   const std::vector<Shot> shots = captured_shots(settings.captures);
   BarIdentification result = identify(shots, settings);
   // Three elements are what there is by default, too.
@@ -98,6 +116,7 @@ int run(const Settings& settings, Context& context) {
   if (settings.waveforms || settings.svg) {
     foretold = foretell(shots, result.fit);
   }
+  const std::optional<FitDraws> draws = drawn(shots, result, settings);
   if (settings.model_out) {
     write_material(*settings.model_out, result, shots);
   }
@@ -109,7 +128,8 @@ int run(const Settings& settings, Context& context) {
   if (!settings.waveforms) {
     foretold.clear();
   }
-  context.out << (context.json ? to_text(describe(result, foretold)) + "\n" : report(result));
+  context.out << (context.json ? to_text(describe(result, foretold, draws)) + "\n"
+                               : report(result, draws));
   return kDone;
 }
 
@@ -129,6 +149,7 @@ Command identify_bar_command() {
   command.examples =
       "  kolsky identify bar shot1.h5 shot2.h5 --model-out pmma.toml\n"
       "  kolsky identify bar shots/ --json > bar.json\n"
+      "  kolsky identify bar shots/ --draws 500\n"
       "  kolsky identify bar shot.h5 --dispersion elementary --svg bar.svg\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of shots on one bar, or folders of them", &s.captures),
@@ -161,6 +182,7 @@ Command identify_bar_command() {
       flag("--waveforms",
            "in --json also what the first gauge foretells for the others, and what is left",
            &s.waveforms),
+      option("--draws", "N", kDrawsHelp, &s.draws),
       option("--svg", "FILE", "a page of plots to write", &s.svg)};
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;

@@ -6,6 +6,7 @@
 
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/doubts.hpp"
 #include "clients/cli/reports/ball_report.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/threads.hpp"
@@ -22,6 +23,8 @@ namespace kolsky::cli {
 namespace {
 
 constexpr mode_t kReadableByAll = 0644;
+
+constexpr const char* kName = "kolsky reduce";
 
 struct Settings {
   std::vector<std::string> captures;
@@ -67,28 +70,21 @@ Asked asked_by(const Settings& settings, const std::optional<BarModelFile>& bars
     asked.most_band_Hz = bars->band_limit_Hz;
     require_band(*bars, settings.request.band_limit_Hz);
   }
-  if (settings.softening_per_K.has_value() &&
-      !(*settings.softening_per_K >= 0.0 && *settings.softening_per_K < 1.0)) {
-    throw InputError("kolsky reduce: --softening", "is outside 0 to 1 per kelvin",
-                     "0.003 is usual: polymers soften as they warm");
+  if (settings.draws) {
+    require_draws(kName, *settings.draws);
+  }
+  if (settings.softening_per_K) {
+    require_softening(kName, *settings.softening_per_K);
   }
   return asked;
 }
 
 UncertaintyOptions uncertainty_options(const Settings& settings,
-                                       const std::optional<BarModelFile>& bars) {
-  constexpr std::uint64_t kFewest = 20;
-  constexpr std::uint64_t kMost = 1'000'000;
+                                       const std::optional<BarModelFile>& bars, const Shot& shot) {
   UncertaintyOptions options;
   options.draws = settings.draws.value_or(options.draws);
-  if (options.draws < kFewest || options.draws > kMost) {
-    throw InputError("kolsky reduce: --draws", "is outside 20 to 1000000",
-                     "1000 give the deviations to 2 %");
-  }
-  if (bars.has_value()) {
-    options.bars = bars->prior;
-  }
-  options.softening_per_K = settings.softening_per_K.value_or(options.softening_per_K);
+  options.bars = bars ? bars->prior : BarPrior(shot.bar_model.value_or(paper_pmma()));
+  options.bars->softening_per_K = settings.softening_per_K.value_or(options.bars->softening_per_K);
   return options;
 }
 
@@ -186,7 +182,7 @@ int run(const Settings& settings, Context& context) {
   }
   if (settings.uncertainty || settings.draws.has_value()) {
     reduced.uncertainty = propagate(reduced.shot, reduced.options, reduced.reduction,
-                                    uncertainty_options(settings, bars), all_cores());
+                                    uncertainty_options(settings, bars, reduced.shot), all_cores());
   }
   write_files(settings, reduced);
   context.out << (context.json ? to_text(describe(reduced)) + "\n"
@@ -255,11 +251,7 @@ Command reduce_command() {
            "propagate noise and every <key>_sd of bench and bar model: bands, intervals, budget",
            &s.uncertainty),
       option("--draws", "N", "how many draws the uncertainty is from; 1000 by default", &s.draws),
-      option(
-          "--softening", "PER_KELVIN",
-          "relative loss of viscoelastic bars' moduli per kelvin, for temperature_K_sd; 0.003 by "
-          "default",
-          &s.softening_per_K),
+      option("--softening", "PER_KELVIN", kSofteningHelp, &s.softening_per_K),
       option("--bench", "BENCH.toml",
              "a corrected bench file: a new result beside the one with the capture's own",
              &s.bench),

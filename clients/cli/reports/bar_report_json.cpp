@@ -2,6 +2,7 @@
 
 #include "clients/cli/reports/bar_report.hpp"
 #include "clients/cli/reports/budget.hpp"
+#include "clients/cli/reports/fit_draws.hpp"
 #include "processing/identification/parameter_budget.hpp"
 
 namespace kolsky::cli {
@@ -130,7 +131,8 @@ JsonList describe(const std::vector<ForetoldShot>& foretold) {
 
 }  // namespace
 
-JsonValue describe(const BarIdentification& result, const std::vector<ForetoldShot>& foretold) {
+JsonValue describe(const BarIdentification& result, const std::vector<ForetoldShot>& foretold,
+                   const std::optional<FitDraws>& draws) {
   const BarFit& three = result.three_element;
   JsonObject object = {
       {"parameters", numbers(three.parameters)},
@@ -151,6 +153,7 @@ JsonValue describe(const BarIdentification& result, const std::vector<ForetoldSh
       {"bench", numbers(three.bench)},
       {"budget", budget_json(parameter_budget(three.parameters, three.by_bench, three.bench),
                              names_of(three.parameters))},
+      {"draws", describe(draws)},
       {"over_shots", numbers(result.over_shots)},
       {"shots", shots_of(result)},
       {"spectrum", describe(result.spectrum)},

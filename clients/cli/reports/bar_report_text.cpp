@@ -5,6 +5,7 @@
 
 #include "clients/cli/reports/bar_report.hpp"
 #include "clients/cli/reports/budget.hpp"
+#include "clients/cli/reports/fit_draws.hpp"
 #include "clients/figure/layout.hpp"
 #include "processing/identification/parameter_budget.hpp"
 
@@ -86,7 +87,7 @@ Complex compliance_at(const BarFit& fit, double frequency_Hz) {
 
 }  // namespace
 
-std::string report(const BarIdentification& result) {
+std::string report(const BarIdentification& result, const std::optional<FitDraws>& draws) {
   const BarFit& three = result.three_element;
   std::string text =
       fmt::format("bar from {} shot{}, up to {}\n", result.shot_ids.size(),
@@ -98,6 +99,7 @@ std::string report(const BarIdentification& result) {
   text += table_of(three.parameters);
   text += budget_table(parameter_budget(three.parameters, three.by_bench, three.bench),
                        names_of(three.parameters));
+  text += report(draws);
   text +=
       fmt::format("    reduced chi2 {:.4f} of {}\n", three.chi2_reduced, three.degrees_of_freedom);
   text += "  waves: " + name_of(three.theory) + " (" + choice_text(result.wave_theory) + ")\n";

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "clients/cli/reports/budget.hpp"
+#include "clients/cli/reports/intervals.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
 
@@ -15,17 +16,6 @@ void add_band(const Band& band, const std::string& name, const std::string& unit
   object.push_back({name + "_sd" + unit, band.sd});
   object.push_back({name + "_low" + unit, band.low});
   object.push_back({name + "_high" + unit, band.high});
-}
-
-JsonObject figures_json(const Uncertainty& uncertainty) {
-  JsonObject figures;
-  for (const UncertainFigure& figure : uncertainty.figures) {
-    figures.push_back({figure.name, JsonObject{{"value", figure.value},
-                                               {"sd", figure.sd},
-                                               {"low", figure.low},
-                                               {"high", figure.high}}});
-  }
-  return figures;
 }
 
 std::string unit_of(const std::string& figure) {
@@ -71,7 +61,7 @@ void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object) {
       {"uncertainty", JsonObject{{"draws", static_cast<std::uint64_t>(uncertainty.draws)},
                                  {"failed", static_cast<std::uint64_t>(uncertainty.failed)},
                                  {"coverage", 0.95},
-                                 {"figures", figures_json(uncertainty)},
+                                 {"figures", intervals_json(uncertainty.figures)},
                                  {"sources", std::move(sources)},
                                  {"uncounted", uncertainty.uncounted}}});
   std::vector<std::string> numbers;

@@ -84,6 +84,19 @@ TEST_F(IdentifyBar, ASolidThatIsAskedForIsSaidToBe) {
   EXPECT_EQ(result["choice"]["solid"]["asked"], true);
 }
 
+TEST_F(IdentifyBar, IsDrawnThroughItsFit) {
+  const scene::Answer text =
+      scene::kolsky({"identify", "bar", captures_[0], captures_[1], "--draws", "20"});
+  EXPECT_NE(text.out.find("by 20 draws"), std::string::npos) << text.out << text.err;
+  const json told = json_of(
+      scene::kolsky({"identify", "bar", captures_[0], captures_[1], "--draws", "20", "--json"}));
+  const json& drawn = told["draws"]["parameters"]["E1_Pa"];
+  const double stated = told["parameters"]["E1_Pa"]["sd"];
+  EXPECT_NEAR(drawn["sd"].get<double>(), stated, 0.6 * stated);
+  EXPECT_LT(drawn["low"].get<double>(), drawn["value"].get<double>());
+  EXPECT_GT(drawn["high"].get<double>(), drawn["value"].get<double>());
+}
+
 TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
   std::vector<std::string> words = {"identify", "bar"};
   words.insert(words.end(), captures_.begin(), captures_.end());

@@ -117,6 +117,21 @@ class SpecimenFiles : public ::testing::Test {
   std::vector<std::string> captures_;
 };
 
+TEST_F(SpecimenFiles, AreDrawnThroughBothEstimators) {
+  const json told =
+      json_of(kolsky(identify({"--bar-model", folder_ / "pmma.toml", "--draws", "20", "--json"})));
+  EXPECT_EQ(told["draws"]["draws"], 20);
+  EXPECT_EQ(told["draws"]["failed"], 0);
+  for (const char* name : {"E1_Pa", "E2_Pa", "eta2_Pa_s"}) {
+    const json& drawn = told["draws"]["parameters"][name];
+    EXPECT_EQ(drawn["value"], told["parameters"][name]["value"]) << name;
+    EXPECT_LT(drawn["low"].get<double>(), drawn["high"].get<double>()) << name;
+    EXPECT_GT(told["draws"]["spectral"][name]["sd"].get<double>(), 0.0) << name;
+  }
+  EXPECT_TRUE(json_of(kolsky(identify({"--bar-model", folder_ / "pmma.toml", "--json"})))["draws"]
+                  .is_null());
+}
+
 TEST_F(SpecimenFiles, AreIdentifiedWithBothEstimatorsAndAFileToGoOnWith) {
   const std::string file = folder_ / "core.toml";
   const json told = json_of(
@@ -242,6 +257,8 @@ TEST_F(SpecimenFiles, RefuseWhatMakesNoSense) {
   EXPECT_TRUE(refused(kolsky(identify({"--solid", "fractional", "--model-out", "x.toml"})),
                       {"--model-out"}));
   EXPECT_TRUE(refused(kolsky({"identify", "specimen"}), {"CAPTURE is missing"}));
+  EXPECT_TRUE(refused(kolsky(identify({"--draws", "1"})), {"--draws", "20"}));
+  EXPECT_TRUE(refused(kolsky(identify({"--softening", "2"})), {"--softening", "0.003"}));
   folder_.write("core.toml",
                 "density_kg_m3 = 1140.0\npoisson_ratio = 0.376\nE1_Pa = 121e6\n"
                 "E2_Pa = 143e6\neta2_Pa_s = 2860.0\n");

@@ -193,7 +193,7 @@ TEST(Uncertainty, ModuliFromWavesGoWithTheDensity) {
   for (const bool from_waves : {true, false}) {
     bars.from_waves = from_waves;
     double variance = 0.0;
-    for (const UncertaintySource& source : uncertainty_sources(bench, bars, 0.0)) {
+    for (const UncertaintySource& source : uncertainty_sources(bench, bars)) {
       ShotNumbers moved{bench, material};
       source.move(moved, 1.0);
       const double faster = moved.bars.E1_Pa / material.E1_Pa * bench.input.density_kg_m3 /

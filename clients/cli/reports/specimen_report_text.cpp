@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include "clients/cli/reports/budget.hpp"
+#include "clients/cli/reports/fit_draws.hpp"
+#include "clients/cli/reports/specimen_report.hpp"
+#include "clients/figure/layout.hpp"
+#include "processing/identification/parameter_budget.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+std::string table_of(const std::vector<FittedNumber>& list) {
+  std::string text;
+  for (const FittedNumber& p : list) {
+    text +=
+        fmt::format("    {:<12}{:>12.5g} ± {:.2g} %\n", p.name, p.value, 100.0 * p.sd / p.value);
+  }
+  return text;
+}
+
+}  // namespace
+
+bool elastic_bars(const Bench& bench) {
+  return bench.input.youngs_modulus_Pa && bench.output && bench.output->youngs_modulus_Pa;
+}
+
+std::string bars_in_words(const IdentifiedSpecimen& outcome) {
+  const Shot& first = outcome.shots.front();
+  if (elastic_bars(first.bench)) {
+    return "elastic, moduli from the bench";
+  }
+  if (outcome.bars) {
+    return outcome.bars->name;
+  }
+  return first.bar_model ? first.bar_model->source
+                         : paper_pmma().source + ", assumed because no bar model was given";
+}
+
+std::string name_of_theory(WaveTheory theory) {
+  return theory == WaveTheory::elementary ? "elementary"
+         : theory == WaveTheory::love     ? "love"
+                                          : "exact";
+}
+
+std::string report(const IdentifiedSpecimen& outcome) {
+  const SpecimenFit& fit = outcome.fit;
+  std::string text = fmt::format("specimen from {} shot{}, bars: {}\n", outcome.shots.size(),
+                                 outcome.shots.size() == 1 ? "" : "s", bars_in_words(outcome));
+  text += fmt::format("  direct fit to the records ({}, up to {}, {} of each record)\n",
+                      name_of(fit.solid), with_unit(fit.band_limit_Hz, "Hz"),
+                      with_unit(fit.judged_s, "s"));
+  text += table_of(fit.parameters);
+  text += budget_table(parameter_budget(fit.parameters, fit.by_bench, fit.bench),
+                       names_of(fit.parameters));
+  text += fmt::format("    chi2 per degree of freedom {:.3f} ({} of them); bars {}, specimen {}\n",
+                      fit.chi2_reduced, fit.degrees_of_freedom, name_of_theory(fit.theory.bars),
+                      name_of(fit.theory.specimen));
+  for (const TriedTheory& tried : fit.tried) {
+    text +=
+        fmt::format("      tried: bars {:<10} specimen {:<9} {}{}\n",
+                    name_of_theory(tried.theory.bars), name_of(tried.theory.specimen),
+                    tried.refused.empty() ? fmt::format("chi2 {:.1f}", tried.chi2) : tried.refused,
+                    tried.solid == fit.solid ? "" : ", three elements");
+  }
+  if (fit.three_element) {
+    text +=
+        fmt::format("    three elements leave {:.1f} more of chi2\n", fit.three_element->chi2_gain);
+  }
+  if (outcome.spectral) {
+    text += fmt::format("  strain over stress, frequency by frequency (eq. 25, up to {})\n",
+                        with_unit(outcome.spectral->band_limit_Hz, "Hz"));
+    text += table_of(outcome.spectral->parameters);
+    if (outcome.spectral->separation == Separation::equilibrium) {
+      text += "    waves overlap: told apart by the output bar's force, as if in equilibrium\n";
+    }
+    for (const std::string& warning : outcome.spectral->warnings) {
+      text += "    warning: " + warning + "\n";
+    }
+  } else {
+    text += "  no estimate from the histories: " + outcome.spectral_refused + "\n";
+  }
+  text += report(outcome.draws);
+  for (const std::string& warning : fit.warnings) {
+    text += "  warning: " + warning + "\n";
+  }
+  return text;
+}
+
+}  // namespace kolsky::cli

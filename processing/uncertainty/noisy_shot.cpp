@@ -1,0 +1,65 @@
+#include "processing/uncertainty/noisy_shot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace kolsky {
+
+namespace {
+
+/// How far a channel's codes can be divided, at most 64 times, with room for noise.
+std::int32_t division(const ChannelRecord& channel) {
+  std::int64_t most = 1;
+  for (const std::int32_t code : channel.codes) {
+    most = std::max(most, std::abs(static_cast<std::int64_t>(code)));
+  }
+  std::int32_t parts = 64;
+  while (parts > 1 && most * parts > std::numeric_limits<std::int32_t>::max() / 2) {
+    parts /= 2;
+  }
+  return parts;
+}
+
+Shot finer(const Shot& shot) {
+  Shot fine = shot;
+  for (ChannelRecord& channel : fine.channels) {
+    const std::int32_t parts = division(channel);
+    channel.scale /= parts;
+    channel.offset *= parts;
+    channel.code_min = std::numeric_limits<std::int32_t>::min();
+    channel.code_max = std::numeric_limits<std::int32_t>::max();
+    for (std::int32_t& code : channel.codes) {
+      code *= parts;
+    }
+  }
+  return fine;
+}
+
+}  // namespace
+
+NoisyShot::NoisyShot(const Shot& shot, std::size_t quiet_samples)
+    : shot_(finer(shot)), as_recorded_(shot_.channels), noise_(shot.samples()) {
+  for (const ChannelRecord& channel : as_recorded_) {
+    const std::vector<double> quiet(
+        channel.codes.begin(), channel.codes.begin() + static_cast<std::ptrdiff_t>(quiet_samples));
+    makers_.emplace_back(quiet, shot.samples());
+  }
+}
+
+void NoisyShot::record(RandomStream* random) {
+  for (std::size_t c = 0; c < as_recorded_.size(); ++c) {
+    auto& codes = shot_.channels[c].codes;
+    if (random == nullptr) {
+      codes = as_recorded_[c].codes;
+      continue;
+    }
+    makers_[c].make(*random, noise_);
+    for (std::size_t n = 0; n < codes.size(); ++n) {
+      codes[n] = as_recorded_[c].codes[n] + static_cast<std::int32_t>(std::lrint(noise_[n]));
+    }
+  }
+}
+
+}  // namespace kolsky
