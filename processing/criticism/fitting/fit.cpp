@@ -11,6 +11,8 @@ namespace kolsky {
 namespace {
 
 constexpr int kMostIterations = 25;
+constexpr double kIdle = 0.02;
+constexpr int kMostIdle = 6;
 constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
 /// The same where residuals are calculated and rough by as much (a contact grows by nodes), and a
 /// square of a deviate counts over several.
@@ -73,6 +75,7 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
   double damping = 0.0;
   bool fresh = false;
   bool short_before = false;  ///< the last step gained as little
+  int idle = 0;               ///< steps on end that gained next to nothing of what was promised
   bool converged = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     if (chord != nullptr && !fresh) {
@@ -108,6 +111,10 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
     // longer one decides.
     const bool at_rest = gain < kSettled && (damping == 0.0 || promised < kSettled || short_before);
     short_before = gain < kSettled;
+    idle = gain < kIdle * promised ? idle + 1 : 0;
+    if (idle == kMostIdle) {
+      break;
+    }
     if (!better || at_rest) {
       converged = better || damping > 1e3;
       break;

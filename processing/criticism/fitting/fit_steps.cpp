@@ -101,7 +101,39 @@ void FitSteps::linearise() {
       information_(i, i) = 1.0;
     }
   }
-  promised_ = downhill_.dot(solve_symmetric(information_, downhill_));
+  const Eigen::VectorXd move = move_inside(information_);
+  promised_ = move.dot(2.0 * downhill_ - information_ * move);
+}
+
+/// The step to the least of a parabola. What would leave its bounds by it goes to them and no
+/// further, and the others go where they are best beside that.
+Eigen::VectorXd FitSteps::move_inside(const Eigen::MatrixXd& information) const {
+  constexpr int kMostRounds = 4;
+  Eigen::VectorXd move = solve_symmetric(information, downhill_);
+  Eigen::MatrixXd held = information;
+  Eigen::VectorXd downhill = downhill_;
+  for (int round = 0; round < kMostRounds; ++round) {
+    bool leaves = false;
+    for (Eigen::Index i = 0; i < move.size(); ++i) {
+      const double theta = fit_.theta[static_cast<std::size_t>(i)];
+      const double inside =
+          composition_.numbers()[static_cast<std::size_t>(i)].inside(theta + move[i]);
+      if (inside != theta + move[i]) {
+        leaves = true;
+        const double to_bound = inside - theta;
+        downhill -= held.col(i) * to_bound;
+        held.row(i).setZero();
+        held.col(i).setZero();
+        held(i, i) = 1.0;
+        downhill[i] = to_bound;
+      }
+    }
+    if (!leaves) {
+      break;
+    }
+    move = solve_symmetric(held, downhill);
+  }
+  return move;
 }
 
 FitSteps::Step FitSteps::tried(double damping) {
@@ -109,13 +141,18 @@ FitSteps::Step FitSteps::tried(double damping) {
   Eigen::MatrixXd damped = information_;
   damped.diagonal() += damping * information_.diagonal() +
                        Eigen::VectorXd::Constant(count, 1e-12 * information_.diagonal().maxCoeff());
-  const Eigen::VectorXd move = solve_symmetric(damped, downhill_);
-  Step step;
-  step.theta = fit_.theta;
+  const Eigen::VectorXd move = move_inside(damped);
+  std::vector<double> theta = fit_.theta;
   for (Eigen::Index i = 0; i < count; ++i) {
-    step.theta[static_cast<std::size_t>(i)] += move[i];
+    theta[static_cast<std::size_t>(i)] += move[i];
   }
-  keep_inside(composition_, step.theta);
+  keep_inside(composition_, theta);
+  return at(std::move(theta));
+}
+
+FitSteps::Step FitSteps::at(std::vector<double> theta) {
+  Step step;
+  step.theta = std::move(theta);
   step.residual = residuals_.evaluate_on(executor_, composition_, step.theta);
   step.chi2 = step.residual.squaredNorm();
   step.penalty = penalty_of(composition_, precision_, step.theta);

@@ -43,6 +43,8 @@ class FitSteps {
 
  private:
   void linearise();
+  [[nodiscard]] Eigen::VectorXd move_inside(const Eigen::MatrixXd& information) const;
+  [[nodiscard]] Step at(std::vector<double> theta);
 
   const Composition& composition_;
   ShotResiduals& residuals_;
