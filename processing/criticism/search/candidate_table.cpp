@@ -229,6 +229,32 @@ void set_amplitude(const Studied& studied, const std::string& id, CandidateResul
   }
 }
 
+/// Root mean square of strengths that shots have of their own, about none, of the sign of their
+/// sum: a mean of slopes to either side would say that there is none.
+void set_over_shots(const Studied& studied, const std::string& id, CandidateResult& result) {
+  const ModelFit& fit = studied.fit;
+  const EffectUse& use = *studied.model.find(id);
+  const std::size_t strength = use.effect->about().strength;
+  const double null_value = use.effect->about().parameters[strength].null_value;
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.theta.size()));
+  double scale = 1.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.shot >= 0 && number.parameter == strength && number.power == 1.0 &&
+        studied.composition.uses()[number.use].id() == id) {
+      off[static_cast<Eigen::Index>(i)] = fit.theta[i] - number.theta_of(null_value);
+      scale = number.scale;
+      count += 1.0;
+    }
+  }
+  const double size = count > 0.0 ? std::sqrt(off.squaredNorm() / count) : 0.0;
+  if (size > 0.0) {
+    result.strength = null_value + std::copysign(scale * size, off.sum());
+    result.sd = scale * std::sqrt(off.dot(fit.covariance * off)) / (count * size);
+  }
+}
+
 }  // namespace
 
 namespace {
@@ -347,6 +373,8 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
     } else {
       set_amplitude(studied, id, result);
     }
+  } else if (use->per_shot) {
+    set_over_shots(studied, id, result);
   }
 }
 

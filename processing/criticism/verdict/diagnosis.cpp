@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "processing/criticism/fitting/held_out.hpp"
@@ -13,6 +14,8 @@
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
+#include "processing/criticism/verdict/filed_bars.hpp"
+#include "processing/criticism/verdict/loud_pulses.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 
 namespace kolsky {
@@ -51,11 +54,19 @@ std::string name_of(DiagnosisVerdict verdict) {
 
 namespace {
 
+/// Where earlier beginnings of a search have been.
+struct Trail {
+  std::set<std::set<std::string>> pairs;  ///< that stood beside each other
+  double excess = 0.0;                    ///< misfit that was left where the last one ended
+};
+
 class Diagnostician {
  public:
   /// @param barred  is not what the search begins with
-  Diagnostician(Study& study, const DiagnosisOptions& options, std::vector<std::string> barred)
-      : study_(study), options_(options), barred_(std::move(barred)) {}
+  /// @param trail   of earlier beginnings, to which this one's is added; outlives this
+  Diagnostician(Study& study, const DiagnosisOptions& options, std::vector<std::string> barred,
+                Trail& trail)
+      : study_(study), options_(options), barred_(std::move(barred)), trail_(trail) {}
 
   /// What the search began with, where that led nowhere and what came next to it was not beaten:
   /// what was left unexplained outweighs its lead, and may be what made the lead.
@@ -69,6 +80,11 @@ class Diagnostician {
     diagnosis_.before = first.misfit;
     Studied current = first;
     const bool settled = seek(current);
+    if (trodden_) {
+      led_nowhere_ = outweighed_by(trail_.excess) ? std::optional(begun_with_) : std::nullopt;
+      diagnosis_.effects.clear();
+      return std::move(diagnosis_);
+    }
     if (diagnosis_.effects.size() == 1 && any_beyond_belief(current)) {
       // Nothing was found beside it that takes its part.
       drop(0, "rejected", without(current, diagnosis_.effects[0]), current);
@@ -97,12 +113,27 @@ class Diagnostician {
       if (two && !gone_back && options_.safeguards.backward) {
         go_back(current);
         gone_back = true;
+        if (has_been_here()) {
+          return true;
+        }
       }
       if (!add_one(current)) {
         return two && gone_back && diagnosis_.effects.size() == 2;
       }
     }
     return false;
+  }
+
+  /// Whether an earlier beginning came by the same pair: from there on the way is the same.
+  bool has_been_here() {
+    const std::set<std::string> here(diagnosis_.effects.begin(), diagnosis_.effects.end());
+    trodden_ = here.size() == 2 && !trail_.pairs.insert(here).second;
+    return trodden_;
+  }
+
+  /// Whether what is left weighs more than the lead of what the search began with.
+  [[nodiscard]] bool outweighed_by(double excess) const {
+    return lead_over_next_ && *lead_over_next_ < excess;
   }
 
   bool add_one(Studied& current) {
@@ -311,28 +342,53 @@ class Diagnostician {
         (diagnosis_.effects.empty() || excess > allowed_rest() * std::max(0.0, explained));
     diagnosis_.held_out =
         held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
-    const std::vector<std::string> reasons =
+    std::vector<std::string> reasons =
         options_.safeguards.unknown
             ? why_unknown(diagnosis_, current, study_.campaign(),
                           remains ? std::optional(left) : std::nullopt, options_.log_alpha)
             : std::vector<std::string>{};
+    if (options_.safeguards.unknown && reasons.empty() && diagnosis_.effects.empty()) {
+      if (const std::optional<LoudPulses> loud = loud_pulses(study_, current)) {
+        reasons.push_back(loud_text(*loud, study_.campaign()));
+      }
+    }
+    if (!reasons.empty() || !diagnosis_.effects.empty()) {
+      judge_filed_bars(before, current, noise, reasons);
+    }
     if (reasons.empty()) {
       settle_claims(diagnosis_, [&](CandidateResult& result) {
         set_strength(current, result.effect, study_.residuals().per_shot(), result);
         result.sd = std::hypot(result.sd, variants_differ_[result.effect]);
       });
+      if (blames_bar_of_two_gauges(diagnosis_, study_.campaign())) {
+        diagnosis_.notes.push_back(two_gauges_text());
+      }
     } else {
       // What shots or gauges have of their own says nothing of what the search began with.
-      if (lead_over_next_ && remains && left.common_log_p < options_.log_alpha &&
-          *lead_over_next_ < excess) {
+      if (remains && left.common_log_p < options_.log_alpha && outweighed_by(excess)) {
         led_nowhere_ = begun_with_;
       }
+      trail_.excess = excess;
       give_up(diagnosis_, reasons, before.model,
               floor_of(before, true, study_.campaign().shots.size()));
     }
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
           "one shot: held out were parts of its record, not shots; repeat the shot to certify");
+    }
+  }
+
+  /// What is claimed must do at least as well as other bars would.
+  void judge_filed_bars(const Studied& before, const Studied& current, double noise,
+                        std::vector<std::string>& reasons) {
+    constexpr double kBetter = 7.5;  // as far as rivals are not told apart
+    const std::optional<Model> any = with_bars_of_any_moduli(before.model);
+    if (!options_.safeguards.unknown || !any) {
+      return;
+    }
+    const Studied other = changed(before, *any);
+    if (other.fit.objective() < current.fit.objective() - kBetter * noise) {
+      reasons.push_back(other_bars_text(before.model, other.model));
     }
   }
 
@@ -359,6 +415,8 @@ class Diagnostician {
   Model start_;                                    ///< unfitted, with the effects found so far
   std::map<std::string, double> variants_differ_;  ///< strengths of what is claimed, see `Choice`
   std::vector<std::string> barred_;
+  Trail& trail_;
+  bool trodden_ = false;
   std::string begun_with_;
   std::optional<double> lead_over_next_;  ///< of that
   std::optional<std::string> led_nowhere_;
@@ -373,9 +431,10 @@ class Diagnostician {
 Diagnosis begun_rightly(Study& study, const Model& model, const DiagnosisOptions& options) {
   constexpr std::size_t kMostBeginnings = 3;
   std::vector<std::string> barred;
+  Trail trail;
   std::optional<Diagnosis> first;
   while (true) {
-    Diagnostician diagnostician(study, options, barred);
+    Diagnostician diagnostician(study, options, barred, trail);
     Diagnosis diagnosis = diagnostician.run(model);
     const std::optional<std::string>& dead_end = diagnostician.led_nowhere();
     if (!dead_end || barred.size() + 1 == kMostBeginnings) {

@@ -46,6 +46,30 @@ bool at_all_gauges_but_one(const Diagnosis& diagnosis, const Campaign& campaign)
                                  [&](const auto& own) { return own.second >= most; });
 }
 
+/// A relaxation of which the records tell no strength and no time apart, only what both do
+/// together, is the beginning of something slow. What the library has of that is fitted beside it,
+/// and what fits better than that, at no time of its own, is something that the library lacks.
+bool only_imitates(const Studied& studied, const std::string& id) {
+  constexpr double kKnown = 3.0;  // deviations; of true ones 8 and more
+  const EffectUse* use = studied.model.find(id);
+  if (use == nullptr) {
+    return false;
+  }
+  bool strength_known = false;
+  bool has_time = false;
+  bool time_known = false;
+  const auto& parameters = use->effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ModelValue& own = use->values[p];
+    const bool known = std::abs(own.value - parameters[p].null_value) > kKnown * own.sd;
+    const bool time = parameters[p].auxiliary() && parameters[p].unit == "s";
+    has_time = has_time || (time && own.free);
+    time_known = time_known || (time && known);
+    strength_known = strength_known || (p == use->effect->about().strength && known);
+  }
+  return has_time && !time_known && !strength_known;
+}
+
 /// What explains so much that noise hardly would, though the shots do not foretell it of each other
 /// or disagree on it: something is there, and it is not that. @return nothing where something is
 /// claimed
@@ -92,6 +116,30 @@ bool beyond_belief(const Studied& studied, const std::string& id, const Campaign
   return false;
 }
 
+bool blames_bar_of_two_gauges(const Diagnosis& diagnosis, const Campaign& campaign) {
+  return campaign.bench.kind == BenchKind::bar && campaign.gauges() == 2 &&
+         std::ranges::any_of(diagnosis.effects, [](const std::string& id) {
+           const Effect* effect = find_effect(id);
+           return effect != nullptr && (effect->about().stage == Stage::material ||
+                                        effect->about().stage == Stage::propagation);
+         });
+}
+
+std::string two_gauges_text() {
+  return "of two gauges nothing tells what the bar does from what one of their channels does to "
+         "all "
+         "it reads (an amplifier that droops, an echo in a cable): exchange the channels, or add a "
+         "gauge, and ask again";
+}
+
+std::string loud_text(const LoudPulses& loud, const Campaign& campaign) {
+  return fmt::format(
+      "{} reads the pulses with {:.2g} times the noise power of the quiet before them, which noise "
+      "does {}, and not alike in every shot: something of it goes with what it reads; look at its "
+      "bond, amplifier and converter",
+      campaign.bench.gauges[loud.gauge].name, loud.power, chance_text(loud.log_p));
+}
+
 std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& current,
                                      const Campaign& campaign,
                                      const std::optional<Unexplained>& remains, double log_alpha) {
@@ -125,6 +173,12 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
   for (const std::string& id : diagnosis.effects) {
     if (beyond_belief(current, id, campaign, 1.0)) {
       reasons.push_back(id + " would have to be stronger than anything is built");
+    }
+    if (only_imitates(current, id)) {
+      reasons.push_back(
+          id +
+          " has neither a strength nor a time of its own: it stands for something slow "
+          "that the library lacks");
     }
   }
   return reasons;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processing/criticism/verdict/diagnosis.hpp"
+#include "processing/criticism/verdict/loud_pulses.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 
 namespace kolsky {
@@ -18,6 +19,14 @@ inline constexpr std::size_t kMostBelieved = 2;
 /// @param slack  while effects beside it are still missing, it stands for a part of these, too
 [[nodiscard]] bool beyond_belief(const Studied& studied, const std::string& id,
                                  const Campaign& campaign, double slack);
+
+/// Whether a claim is of what happens to waves on their way, on a bar with two gauges: a linear
+/// fault of one channel, which the library lacks, would do the same to what one has over the other.
+[[nodiscard]] bool blames_bar_of_two_gauges(const Diagnosis& diagnosis, const Campaign& campaign);
+[[nodiscard]] std::string two_gauges_text();
+
+/// What gauges that are loud show, in a sentence.
+[[nodiscard]] std::string loud_text(const LoudPulses& loud, const Campaign& campaign);
 
 /// Why what was claimed is not what is missing, in sentences; empty: it may be.
 /// @param current  fitted with what was claimed

@@ -1,0 +1,115 @@
+// What no effect of the library is, on benches that leave most room for one to take its place.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "processing/criticism/verdict/diagnosis.hpp"
+#include "tests/generators/campaign.hpp"
+#include "tests/unit/criticism/filed_bars.hpp"
+
+namespace kolsky {
+namespace {
+
+Diagnosis diagnosed(const std::vector<Shot>& shots, const Model& model) {
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, 0.0, Workers{});
+  return diagnose(study, model, {});
+}
+
+bool says(const Diagnosis& diagnosis, const std::string& words) {
+  return std::ranges::any_of(diagnosis.notes, [&](const std::string& note) {
+    return note.find(words) != std::string::npos;
+  });
+}
+
+// Bars of another lot than the material file's, with one gauge each: a relaxation or a damping of
+// the bars does nearly as well, and less well than their moduli.
+TEST(FiledBars, OfOtherModuliAreNoEffect) {
+  for (std::uint64_t seed = 841; seed < 843; ++seed) {
+    testing::Campaign truth = testing::draw_campaign(
+        {.seed = seed, .shots = 5, .gauges = 2, .samples = 1400, .rate_Hz = 1e6, .split = true});
+    truth.filed_bars->E2_Pa.value *= seed % 2 == 0 ? 1.03 : 0.97;
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), filed_split_bar(truth));
+    EXPECT_EQ(name_of(diagnosis.verdict), "unknown") << seed;
+    EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [](const std::string& note) {
+      return note.find("identify the bars again") != std::string::npos;
+    })) << seed;
+  }
+}
+
+/// A first-order high pass, as of an amplifier that is coupled by a capacitor.
+void couple(std::vector<double>& strain, double corner_Hz, double period_s) {
+  const double kept = std::exp(-2.0 * std::numbers::pi * corner_Hz * period_s);
+  double level = 0.0;
+  for (double& value : strain) {
+    level = kept * level + (1.0 - kept) * value;
+    value -= level;
+  }
+}
+
+// One of two gauges droops: the beginning of a slow creep, of which the records tell neither
+// strength nor time.
+TEST(Droop, OfOneOfTwoGaugesIsNoRelaxation) {
+  const testing::Campaign truth = testing::draw_campaign({.seed = 872,
+                                                          .shots = 8,
+                                                          .gauges = 2,
+                                                          .tolerances = testing::Tolerances::filed,
+                                                          .samples = 1500,
+                                                          .rate_Hz = 1e6});
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(truth);
+  for (auto& of_shot : readings) {
+    couple(of_shot.front(), 1.3, truth.world.timing.period_s());
+  }
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(truth, readings), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+  EXPECT_TRUE(says(diagnosis, "neither a strength nor a time"));
+}
+
+// What one of two channels does to its readings may be what the bar does on its way from one to the
+// other: whoever reads the claim is told.
+TEST(TwoGauges, DoNotTellABarFromAChannelOfItsGauges) {
+  for (const int gauges : {2, 3}) {
+    testing::Campaign truth = testing::draw_campaign(
+        {.seed = 881, .shots = 6, .gauges = gauges, .samples = 1500, .rate_Hz = 1e6});
+    testing::hide(truth, testing::parse_effect("series-dashpot=3e-7"));
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
+    EXPECT_EQ(name_of(diagnosis.verdict), "named") << gauges;
+    EXPECT_EQ(says(diagnosis, "exchange the channels"), gauges == 2) << gauges;
+  }
+}
+
+// Slopes to either side are as strong as they are, whatever their mean.
+TEST(BaselineDrift, OfShotsToEitherSideIsAsStrongAsTheyAre) {
+  constexpr std::size_t kGauge = 1;
+  const testing::Campaign truth =
+      testing::draw_campaign({.seed = 861, .shots = 6, .gauges = 3, .rate_Hz = 1e6});
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(truth);
+  const double slopes[] = {0.04, -0.05, 0.03, 0.06, -0.04, -0.05};
+  double squares = 0.0;
+  for (std::size_t shot = 0; shot < readings.size(); ++shot) {
+    squares += slopes[shot] * slopes[shot];
+    std::vector<double>& strain = readings[shot][kGauge];
+    for (std::size_t n = 0; n < strain.size(); ++n) {
+      const double time_s =
+          (static_cast<double>(n) - static_cast<double>(truth.world.timing.pretrigger)) * 1e-6;
+      strain[n] += slopes[shot] * time_s;
+    }
+  }
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(truth, readings), paper_model(BenchKind::bar, false));
+  const std::string id = "baseline-drift:" + truth.bench.gauges[kGauge].name;
+  ASSERT_EQ(diagnosis.effects, std::vector<std::string>{id});
+  const auto row = std::ranges::find(diagnosis.candidates, id, &CandidateResult::effect);
+  const double size = std::sqrt(squares / static_cast<double>(readings.size()));
+  EXPECT_NEAR(std::abs(row->strength), size, 3.0 * row->sd);
+  EXPECT_LT(row->sd, 0.1 * size);
+}
+
+}  // namespace
+}  // namespace kolsky
