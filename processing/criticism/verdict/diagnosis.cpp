@@ -343,17 +343,10 @@ class Diagnostician {
     diagnosis_.held_out =
         held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
     std::vector<std::string> reasons =
-        options_.safeguards.unknown
-            ? why_unknown(diagnosis_, current, study_.campaign(),
-                          remains ? std::optional(left) : std::nullopt, options_.log_alpha)
-            : std::vector<std::string>{};
-    if (options_.safeguards.unknown && reasons.empty() && diagnosis_.effects.empty()) {
-      if (const std::optional<LoudPulses> loud = loud_pulses(study_, current)) {
-        reasons.push_back(loud_text(*loud, study_.campaign()));
-      }
-    }
-    if (!reasons.empty() || !diagnosis_.effects.empty()) {
-      judge_filed_bars(before, current, noise, reasons);
+        doubts(before, current, remains ? std::optional(left) : std::nullopt, noise);
+    const bool doubted = !reasons.empty();
+    if (options_.safeguards.unknown && !doubted && diagnosis_.effects.empty()) {
+      judge_loud_pulses(current, reasons);
     }
     if (reasons.empty()) {
       settle_claims(diagnosis_, [&](CandidateResult& result) {
@@ -371,6 +364,9 @@ class Diagnostician {
       trail_.excess = excess;
       give_up(diagnosis_, reasons, before.model,
               floor_of(before, true, study_.campaign().shots.size()));
+      if (doubted) {
+        tell_where(before);
+      }
     }
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
@@ -378,17 +374,45 @@ class Diagnostician {
     }
   }
 
+  /// At which gauge most of what nothing explains is.
+  void tell_where(const Studied& before) {
+    const std::vector<LoudPulses> loud = loudness_of_pulses(study_, before);
+    if (at_one_gauge(loud)) {
+      diagnosis_.notes.push_back(where_text(loud.front(), study_.campaign()));
+    }
+  }
+
+  /// Why what was found is not what is missing, by the noise that it was found with.
+  std::vector<std::string> doubts(const Studied& before, const Studied& current,
+                                  const std::optional<Unexplained>& remains, double noise) {
+    if (!options_.safeguards.unknown) {
+      return {};
+    }
+    std::vector<std::string> reasons =
+        why_unknown(diagnosis_, current, study_.campaign(), remains, options_.log_alpha);
+    if (!reasons.empty() || !diagnosis_.effects.empty()) {
+      judge_filed_bars(before, current, noise, reasons);
+    }
+    return reasons;
+  }
+
   /// What is claimed must do at least as well as other bars would.
   void judge_filed_bars(const Studied& before, const Studied& current, double noise,
                         std::vector<std::string>& reasons) {
-    constexpr double kBetter = 7.5;  // as far as rivals are not told apart
-    const std::optional<Model> any = with_bars_of_any_moduli(before.model);
-    if (!options_.safeguards.unknown || !any) {
-      return;
+    constexpr double kBetter = 16.0;  // three numbers gain as much from noise once in a thousand
+    if (const std::optional<Model> any = with_bars_of_any_moduli(before.model)) {
+      const Studied other = changed(before, *any);
+      if (other.fit.objective() < current.fit.objective() - kBetter * noise) {
+        reasons.push_back(other_bars_text(before.model, other.model));
+      }
     }
-    const Studied other = changed(before, *any);
-    if (other.fit.objective() < current.fit.objective() - kBetter * noise) {
-      reasons.push_back(other_bars_text(before.model, other.model));
+  }
+
+  /// Where nothing comes back and nothing is claimed, by the noise of the quiet parts.
+  void judge_loud_pulses(const Studied& current, std::vector<std::string>& reasons) {
+    const std::vector<LoudPulses> loud = loudness_of_pulses(study_, current);
+    if (study_.campaign().shots.size() > 1 && beyond_noise(loud.front())) {
+      reasons.push_back(loud_text(loud.front(), study_.campaign()));
     }
   }
 

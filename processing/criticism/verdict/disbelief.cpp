@@ -140,6 +140,13 @@ std::string loud_text(const LoudPulses& loud, const Campaign& campaign) {
       campaign.bench.gauges[loud.gauge].name, loud.power, chance_text(loud.log_p));
 }
 
+std::string where_text(const LoudPulses& loud, const Campaign& campaign) {
+  return fmt::format(
+      "most of it is at {}, {:.2g} times the noise power of its quiet; `kolsky compare` shows when "
+      "and in which shots",
+      campaign.bench.gauges[loud.gauge].name, loud.power);
+}
+
 std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& current,
                                      const Campaign& campaign,
                                      const std::optional<Unexplained>& remains, double log_alpha) {

@@ -27,6 +27,7 @@ inline constexpr std::size_t kMostBelieved = 2;
 
 /// What gauges that are loud show, in a sentence.
 [[nodiscard]] std::string loud_text(const LoudPulses& loud, const Campaign& campaign);
+[[nodiscard]] std::string where_text(const LoudPulses& loud, const Campaign& campaign);
 
 /// Why what was claimed is not what is missing, in sentences; empty: it may be.
 /// @param current  fitted with what was claimed

@@ -34,28 +34,34 @@ double power_at(const WhiteResiduals& residuals, const Eigen::VectorXd& white, s
 
 }  // namespace
 
-std::optional<LoudPulses> loud_pulses(Study& study, const Studied& studied) {
-  constexpr double kSure = -11.5;  // 1e-5
-  constexpr double kMuch = 1.2;
-  if (study.campaign().shots.size() < 2) {
-    return std::nullopt;
-  }
+std::vector<LoudPulses> loudness_of_pulses(Study& study, const Studied& studied) {
   const WhiteResiduals& residuals = study.residuals();
   const std::vector<std::size_t>& others = residuals.others();
   const Studied quiet = study.beside_quiet(studied);
   const JudgedBand& band = residuals.band();
   const double freedom =
       2.0 * static_cast<double>(band.bins_judged * study.campaign().shots.size());
-  std::optional<LoudPulses> loudest;
+  std::vector<LoudPulses> list;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const double power = power_at(residuals, quiet.fit.residual, i);
     const double log_p = log_f_tail(power, freedom, quiet_freedom(study.campaign(), band)) +
                          std::log(static_cast<double>(others.size()));
-    if (power > kMuch && log_p < (loudest ? loudest->log_p : kSure)) {
-      loudest = {others[i], power, log_p};
-    }
+    list.push_back({others[i], power, log_p});
   }
-  return loudest;
+  std::ranges::sort(list, {}, &LoudPulses::log_p);
+  return list;
+}
+
+bool beyond_noise(const LoudPulses& pulses) {
+  constexpr double kSure = -11.5;  // 1e-5
+  constexpr double kMuch = 1.2;
+  return pulses.power > kMuch && pulses.log_p < kSure;
+}
+
+bool at_one_gauge(const std::vector<LoudPulses>& pulses) {
+  constexpr double kOver = 2.0;
+  return pulses.size() > 1 && beyond_noise(pulses[0]) &&
+         pulses[0].power - 1.0 > kOver * std::max(0.0, pulses[1].power - 1.0);
 }
 
 }  // namespace kolsky

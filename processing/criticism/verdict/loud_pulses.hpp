@@ -1,24 +1,30 @@
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky {
 
-/// A gauge whose readings of the pulses hold more noise than its quiet parts do.
+/// How a gauge's readings of the pulses stand to its quiet parts.
 struct LoudPulses {
   std::size_t gauge = 0;
-  double power = 1.0;  ///< over that of the quiet parts
+  double power = 1.0;  ///< of the residuals over the noise of the quiet parts
   double log_p = 0.0;  ///< ln of the chance of as much at any gauge
 };
 
-/// The gauge at which the residuals of a fit stand furthest above the noise of the quiet parts,
-/// whether or not they come back from shot to shot: an error of the model whose shape goes with the
-/// amplitude passes for noise otherwise. What slow noise the quiet parts are too short to show, and
-/// what a coarse converter's steps leave of records that move, counts as noise.
+/// How far the residuals of a fit stand above the noise of the quiet parts at each gauge but the
+/// reference, whether or not they come back from shot to shot: an error of the model whose shape
+/// goes with the amplitude passes for noise otherwise. What slow noise the quiet parts are too
+/// short to show, and what a coarse converter's steps leave of records that move, counts as noise.
 /// @param studied  fitted; what is known of the noise is what the quiet parts say afterwards
-/// @return nothing where none stands above it by a fifth and more than noise would
-[[nodiscard]] std::optional<LoudPulses> loud_pulses(Study& study, const Studied& studied);
+/// @return the least likely first
+[[nodiscard]] std::vector<LoudPulses> loudness_of_pulses(Study& study, const Studied& studied);
+
+/// By a fifth at least, and more than noise would in one of 1e5 campaigns.
+[[nodiscard]] bool beyond_noise(const LoudPulses& pulses);
+
+/// Whether the first stands out of the others. @param pulses  the least likely first
+[[nodiscard]] bool at_one_gauge(const std::vector<LoudPulses>& pulses);
 
 }  // namespace kolsky

@@ -69,6 +69,26 @@ TEST(Droop, OfOneOfTwoGaugesIsNoRelaxation) {
   EXPECT_TRUE(says(diagnosis, "neither a strength nor a time"));
 }
 
+// A cable that rings at one of four gauges is nothing of the library, and is seen at that gauge.
+TEST(Echo, OfOneCableIsToldByItsGauge) {
+  constexpr std::size_t kGauge = 2;
+  constexpr std::size_t kLate = 11;
+  const testing::Campaign truth = testing::draw_campaign(
+      {.seed = 891, .shots = 6, .gauges = 4, .samples = 1500, .rate_Hz = 1e6});
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(truth);
+  for (auto& of_shot : readings) {
+    std::vector<double>& strain = of_shot[kGauge];
+    for (std::size_t n = strain.size() - 1; n >= kLate; --n) {
+      strain[n] += 0.05 * strain[n - kLate];
+    }
+  }
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(truth, readings), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+  EXPECT_TRUE(says(diagnosis, "most of it is at " + truth.bench.gauges[kGauge].name));
+}
+
 // What one of two channels does to its readings may be what the bar does on its way from one to the
 // other: whoever reads the claim is told.
 TEST(TwoGauges, DoNotTellABarFromAChannelOfItsGauges) {
