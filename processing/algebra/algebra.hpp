@@ -36,6 +36,12 @@ class SymmetricEigen {
 /// The x of least |A x - b|, A of full column rank.
 [[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
+/// The x that makes x'Ax - 2b'x least of those with low <= x <= high, A symmetric and semidefinite.
+/// On its way there from 0 that falls all the time, so that it is below 0 wherever it ends.
+/// @pre low <= 0 <= high
+[[nodiscard]] Eigen::VectorXd least_in_box(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                           const Eigen::VectorXd& low, const Eigen::VectorXd& high);
+
 /// Singular values in falling order with as many left vectors.
 struct SingularValues {
   Eigen::VectorXd values;

@@ -352,9 +352,10 @@ class PartFit {
   [[nodiscard]] bool explains_nothing() const { return leaves_most() || at_a_limit(); }
 
   /// Whether a released number is as far off as any may be, a gain at ten or a tenth: it goes there
-  /// for want of what is really between the bars, even where enough such numbers leave but noise.
+  /// for want of what is really between the bars, even where enough such numbers leave but noise. A
+  /// fit that describes nothing may stop a little before it gets there.
   [[nodiscard]] bool at_a_limit() const {
-    constexpr double kClose = 1e-6;
+    constexpr double kClose = 1e-3;
     const Composition& composition = fitted_->studied.composition;
     return std::any_of(numbers_.begin(), numbers_.end(), [&](const ModelNumber& number) {
       const std::size_t place = place_of(composition, number);

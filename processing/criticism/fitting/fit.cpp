@@ -11,7 +11,11 @@ namespace kolsky {
 namespace {
 
 constexpr int kMostIterations = 25;
+/// Steps that gain less than this share of what is promised, and less than this of chi2, lead on
+/// along something that no number describes any better; so many of them on end are enough to see
+/// that.
 constexpr double kIdle = 0.02;
+constexpr double kIdleGain = 3.0;
 constexpr int kMostIdle = 6;
 constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
 /// The same where residuals are calculated and rough by as much (a contact grows by nodes), and a
@@ -111,12 +115,12 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
     // longer one decides.
     const bool at_rest = gain < kSettled && (damping == 0.0 || promised < kSettled || short_before);
     short_before = gain < kSettled;
-    idle = gain < kIdle * promised ? idle + 1 : 0;
-    if (idle == kMostIdle) {
-      break;
-    }
     if (!better || at_rest) {
       converged = better || damping > 1e3;
+      break;
+    }
+    idle = gain < std::min(kIdle * promised, kIdleGain) ? idle + 1 : 0;
+    if (idle == kMostIdle) {
       break;
     }
   }

@@ -105,35 +105,20 @@ void FitSteps::linearise() {
   promised_ = move.dot(2.0 * downhill_ - information_ * move);
 }
 
-/// The step to the least of a parabola. What would leave its bounds by it goes to them and no
-/// further, and the others go where they are best beside that.
+/// The step to the least of the parabola within the bounds.
 Eigen::VectorXd FitSteps::move_inside(const Eigen::MatrixXd& information) const {
-  constexpr int kMostRounds = 4;
-  Eigen::VectorXd move = solve_symmetric(information, downhill_);
-  Eigen::MatrixXd held = information;
-  Eigen::VectorXd downhill = downhill_;
-  for (int round = 0; round < kMostRounds; ++round) {
-    bool leaves = false;
-    for (Eigen::Index i = 0; i < move.size(); ++i) {
-      const double theta = fit_.theta[static_cast<std::size_t>(i)];
-      const double inside =
-          composition_.numbers()[static_cast<std::size_t>(i)].inside(theta + move[i]);
-      if (inside != theta + move[i]) {
-        leaves = true;
-        const double to_bound = inside - theta;
-        downhill -= held.col(i) * to_bound;
-        held.row(i).setZero();
-        held.col(i).setZero();
-        held(i, i) = 1.0;
-        downhill[i] = to_bound;
-      }
-    }
-    if (!leaves) {
-      break;
-    }
-    move = solve_symmetric(held, downhill);
+  const Eigen::VectorXd move = solve_symmetric(information, downhill_);
+  Eigen::VectorXd low(move.size());
+  Eigen::VectorXd high(move.size());
+  bool leaves = false;
+  for (Eigen::Index i = 0; i < move.size(); ++i) {
+    const FreeNumber& number = composition_.numbers()[static_cast<std::size_t>(i)];
+    const double theta = fit_.theta[static_cast<std::size_t>(i)];
+    low[i] = std::min(0.0, number.theta_of(number.lower) - theta);
+    high[i] = std::max(0.0, number.theta_of(number.upper) - theta);
+    leaves = leaves || move[i] < low[i] || move[i] > high[i];
   }
-  return move;
+  return leaves ? least_in_box(information, downhill_, low, high) : move;
 }
 
 FitSteps::Step FitSteps::tried(double damping) {
