@@ -169,8 +169,12 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     return text + notes_text(diagnosis);
   }
   const HeldOut& held_out = diagnosis.held_out;
-  text += fmt::format("  held-out misfit {:.4f} -> {:.4f}, noise alone {:.4f}\n", held_out.before,
-                      held_out.after, held_out.floor);
+  // What differs from shot to shot counts as noise, and makes more than 1 of it.
+  constexpr double kScattered = 1.25;
+  text += fmt::format(
+      "  held-out misfit {:.4f} -> {:.4f}, {} {:.4f}\n", held_out.before, held_out.after,
+      held_out.floor > kScattered ? "noise and what differs from shot to shot" : "noise alone",
+      held_out.floor);
   text += notes_text(diagnosis) + candidates_text(diagnosis);
   for (const NextExperiment& next : diagnosis.next_experiment) {
     text += "\n  next: " + next.change + "\n" + separates_text(next);

@@ -229,14 +229,16 @@ void set_amplitude(const Studied& studied, const std::string& id, CandidateResul
   }
 }
 
-/// Root mean square of strengths that shots have of their own, about none, of the sign of their
-/// sum: a mean of slopes to either side would say that there is none.
+/// Root mean square of strengths that shots have of their own, about none, without what their
+/// deviations add to it, and of the sign of their sum where that is known: a mean of slopes to
+/// either side would say that there is none.
 void set_over_shots(const Studied& studied, const std::string& id, CandidateResult& result) {
   const ModelFit& fit = studied.fit;
   const EffectUse& use = *studied.model.find(id);
   const std::size_t strength = use.effect->about().strength;
   const double null_value = use.effect->about().parameters[strength].null_value;
   Eigen::VectorXd off = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.theta.size()));
+  Eigen::VectorXd own = off;
   double scale = 1.0;
   double count = 0.0;
   for (std::size_t i = 0; i < fit.theta.size(); ++i) {
@@ -244,13 +246,16 @@ void set_over_shots(const Studied& studied, const std::string& id, CandidateResu
     if (number.shot >= 0 && number.parameter == strength && number.power == 1.0 &&
         studied.composition.uses()[number.use].id() == id) {
       off[static_cast<Eigen::Index>(i)] = fit.theta[i] - number.theta_of(null_value);
+      own[static_cast<Eigen::Index>(i)] = 1.0;
       scale = number.scale;
       count += 1.0;
     }
   }
-  const double size = count > 0.0 ? std::sqrt(off.squaredNorm() / count) : 0.0;
+  const double by_noise = own.dot(fit.covariance.diagonal());
+  const double size = std::sqrt(std::max(0.0, off.squaredNorm() - by_noise) / std::max(1.0, count));
   if (size > 0.0) {
-    result.strength = null_value + std::copysign(scale * size, off.sum());
+    const bool known = off.sum() * off.sum() > own.dot(fit.covariance * own);
+    result.strength = null_value + (known ? std::copysign(scale * size, off.sum()) : scale * size);
     result.sd = scale * std::sqrt(off.dot(fit.covariance * off)) / (count * size);
   }
 }

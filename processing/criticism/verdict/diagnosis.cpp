@@ -56,8 +56,10 @@ namespace {
 
 /// Where earlier beginnings of a search have been.
 struct Trail {
-  std::set<std::set<std::string>> pairs;  ///< that stood beside each other
-  double excess = 0.0;                    ///< misfit that was left where the last one ended
+  /// Two effects that stood beside each other, and which of them was on trial.
+  using Pair = std::pair<std::set<std::string>, std::string>;
+  std::set<Pair> pairs;
+  double excess = 0.0;  ///< misfit that was left where the last one ended
 };
 
 class Diagnostician {
@@ -127,7 +129,7 @@ class Diagnostician {
   /// Whether an earlier beginning came by the same pair: from there on the way is the same.
   bool has_been_here() {
     const std::set<std::string> here(diagnosis_.effects.begin(), diagnosis_.effects.end());
-    trodden_ = here.size() == 2 && !trail_.pairs.insert(here).second;
+    trodden_ = here.size() == 2 && !trail_.pairs.insert({here, on_trial_.value_or("")}).second;
     return trodden_;
   }
 
@@ -376,9 +378,9 @@ class Diagnostician {
 
   /// At which gauge most of what nothing explains is.
   void tell_where(const Studied& before) {
-    const std::vector<LoudPulses> loud = loudness_of_pulses(study_, before);
-    if (at_one_gauge(loud)) {
-      diagnosis_.notes.push_back(where_text(loud.front(), study_.campaign()));
+    const auto where = where_text(loudness_of_pulses(study_, before), study_.campaign());
+    if (where) {
+      diagnosis_.notes.push_back(*where);
     }
   }
 
@@ -412,7 +414,7 @@ class Diagnostician {
   void judge_loud_pulses(const Studied& current, std::vector<std::string>& reasons) {
     const std::vector<LoudPulses> loud = loudness_of_pulses(study_, current);
     if (study_.campaign().shots.size() > 1 && beyond_noise(loud.front())) {
-      reasons.push_back(loud_text(loud.front(), study_.campaign()));
+      reasons.push_back(loud_text(loud, study_.campaign()));
     }
   }
 

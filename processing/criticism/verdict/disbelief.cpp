@@ -46,11 +46,15 @@ bool at_all_gauges_but_one(const Diagnosis& diagnosis, const Campaign& campaign)
                                  [&](const auto& own) { return own.second >= most; });
 }
 
+bool of_two_gauges(const Campaign& campaign) {
+  return campaign.bench.kind == BenchKind::bar && campaign.gauges() == 2;
+}
+
 /// A relaxation of which the records tell no strength and no time apart, only what both do
-/// together, is the beginning of something slow. What the library has of that is fitted beside it,
-/// and what fits better than that, at no time of its own, is something that the library lacks.
+/// together, is the beginning of something slow. Of a bar with two gauges that is as well a channel
+/// that droops, and a true relaxation that is no better known says no more than that.
 bool only_imitates(const Studied& studied, const std::string& id) {
-  constexpr double kKnown = 3.0;  // deviations; of true ones 8 and more
+  constexpr double kKnown = 3.0;  // deviations
   const EffectUse* use = studied.model.find(id);
   if (use == nullptr) {
     return false;
@@ -117,7 +121,7 @@ bool beyond_belief(const Studied& studied, const std::string& id, const Campaign
 }
 
 bool blames_bar_of_two_gauges(const Diagnosis& diagnosis, const Campaign& campaign) {
-  return campaign.bench.kind == BenchKind::bar && campaign.gauges() == 2 &&
+  return of_two_gauges(campaign) &&
          std::ranges::any_of(diagnosis.effects, [](const std::string& id) {
            const Effect* effect = find_effect(id);
            return effect != nullptr && (effect->about().stage == Stage::material ||
@@ -132,19 +136,27 @@ std::string two_gauges_text() {
          "gauge, and ask again";
 }
 
-std::string loud_text(const LoudPulses& loud, const Campaign& campaign) {
+std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign) {
+  std::string names;
+  for (const std::size_t gauge : loudest(loud)) {
+    names += (names.empty() ? "" : " or ") + campaign.bench.gauges[gauge].name;
+  }
   return fmt::format(
       "{} reads the pulses with {:.2g} times the noise power of the quiet before them, which noise "
       "does {}, and not alike in every shot: something of it goes with what it reads; look at its "
       "bond, amplifier and converter",
-      campaign.bench.gauges[loud.gauge].name, loud.power, chance_text(loud.log_p));
+      names, loud.front().power, chance_text(loud.front().log_p));
 }
 
-std::string where_text(const LoudPulses& loud, const Campaign& campaign) {
+std::optional<std::string> where_text(const std::vector<LoudPulses>& loud,
+                                      const Campaign& campaign) {
+  if (!beyond_noise(loud.front()) || loudest(loud).size() > 1) {
+    return std::nullopt;
+  }
   return fmt::format(
       "most of it is at {}, {:.2g} times the noise power of its quiet; `kolsky compare` shows when "
       "and in which shots",
-      campaign.bench.gauges[loud.gauge].name, loud.power);
+      campaign.bench.gauges[loud.front().gauge].name, loud.front().power);
 }
 
 std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& current,
@@ -181,11 +193,11 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
     if (beyond_belief(current, id, campaign, 1.0)) {
       reasons.push_back(id + " would have to be stronger than anything is built");
     }
-    if (only_imitates(current, id)) {
+    if (of_two_gauges(campaign) && only_imitates(current, id)) {
       reasons.push_back(
           id +
-          " has neither a strength nor a time of its own: it stands for something slow "
-          "that the library lacks");
+          " has neither a strength nor a time of its own: it stands for something slow, of the bar "
+          "or of one of its two channels");
     }
   }
   return reasons;

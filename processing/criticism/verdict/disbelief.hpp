@@ -25,9 +25,11 @@ inline constexpr std::size_t kMostBelieved = 2;
 [[nodiscard]] bool blames_bar_of_two_gauges(const Diagnosis& diagnosis, const Campaign& campaign);
 [[nodiscard]] std::string two_gauges_text();
 
-/// What gauges that are loud show, in a sentence.
-[[nodiscard]] std::string loud_text(const LoudPulses& loud, const Campaign& campaign);
-[[nodiscard]] std::string where_text(const LoudPulses& loud, const Campaign& campaign);
+/// What gauges that are loud show, in a sentence. @param loud  the least likely first
+[[nodiscard]] std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign);
+/// At which gauge most is; nothing where it is not one gauge's.
+[[nodiscard]] std::optional<std::string> where_text(const std::vector<LoudPulses>& loud,
+                                                    const Campaign& campaign);
 
 /// Why what was claimed is not what is missing, in sentences; empty: it may be.
 /// @param current  fitted with what was claimed

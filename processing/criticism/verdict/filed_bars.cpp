@@ -30,7 +30,8 @@ std::string other_bars_text(const Model& model, const Model& fitted) {
   const EffectUse& found = *fitted.find(kBars);
   std::string moduli;
   for (std::size_t p = 0; p < filed.values.size(); ++p) {
-    const double value = filed.values[p].value;
+    const ModelValue& own = filed.values[p];
+    const double value = own.prior_sd > 0.0 ? own.prior_mean : own.value;
     moduli += fmt::format("{}{} {:+.2g} ± {:.1g} %", moduli.empty() ? "" : ", ",
                           filed.effect->about().parameters[p].name,
                           100.0 * (found.values[p].value / value - 1.0),

@@ -18,15 +18,23 @@ double quiet_freedom(const Campaign& campaign, const JudgedBand& band) {
   return std::max(1.0, samples * 2.0 * band.limit_Hz * campaign.period_s);
 }
 
-double power_at(const WhiteResiduals& residuals, const Eigen::VectorXd& white, std::size_t other) {
+/// Power along what an error of one gauge's readings does to the residuals of all, over noise's.
+double power_at(const WhiteResiduals& residuals, const Eigen::VectorXd& white, std::size_t gauge) {
   const std::size_t shots = residuals.campaign().shots.size();
   const std::size_t bins = residuals.band().bins_judged;
+  const auto others = static_cast<Eigen::Index>(residuals.others().size());
   double squares = 0.0;
-  for (std::size_t n = 0; n < shots; ++n) {
-    for (std::size_t k = 0; k < bins; ++k) {
-      const auto at =
-          static_cast<Eigen::Index>(n * residuals.per_shot() + residuals.index(k, other));
-      squares += white[at] * white[at] + white[at + 1] * white[at + 1];
+  for (std::size_t k = 0; k < bins; ++k) {
+    const Eigen::RowVectorXcd along =
+        residuals.spread(k).row(static_cast<Eigen::Index>(gauge)).normalized();
+    for (std::size_t n = 0; n < shots; ++n) {
+      const std::size_t first = n * residuals.per_shot() + residuals.index(k, 0);
+      Complex sum = 0.0;
+      for (Eigen::Index i = 0; i < others; ++i) {
+        const Eigen::Index at = static_cast<Eigen::Index>(first) + 2 * i;
+        sum += along[i] * Complex(white[at], white[at + 1]);
+      }
+      squares += std::norm(sum);
     }
   }
   return squares / static_cast<double>(2 * shots * bins);
@@ -36,17 +44,17 @@ double power_at(const WhiteResiduals& residuals, const Eigen::VectorXd& white, s
 
 std::vector<LoudPulses> loudness_of_pulses(Study& study, const Studied& studied) {
   const WhiteResiduals& residuals = study.residuals();
-  const std::vector<std::size_t>& others = residuals.others();
   const Studied quiet = study.beside_quiet(studied);
   const JudgedBand& band = residuals.band();
+  const std::size_t gauges = study.campaign().gauges();
   const double freedom =
       2.0 * static_cast<double>(band.bins_judged * study.campaign().shots.size());
   std::vector<LoudPulses> list;
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    const double power = power_at(residuals, quiet.fit.residual, i);
+  for (std::size_t gauge = 0; gauge < gauges; ++gauge) {
+    const double power = power_at(residuals, quiet.fit.residual, gauge);
     const double log_p = log_f_tail(power, freedom, quiet_freedom(study.campaign(), band)) +
-                         std::log(static_cast<double>(others.size()));
-    list.push_back({others[i], power, log_p});
+                         std::log(static_cast<double>(gauges));
+    list.push_back({gauge, power, log_p});
   }
   std::ranges::sort(list, {}, &LoudPulses::log_p);
   return list;
@@ -58,10 +66,15 @@ bool beyond_noise(const LoudPulses& pulses) {
   return pulses.power > kMuch && pulses.log_p < kSure;
 }
 
-bool at_one_gauge(const std::vector<LoudPulses>& pulses) {
-  constexpr double kOver = 2.0;
-  return pulses.size() > 1 && beyond_noise(pulses[0]) &&
-         pulses[0].power - 1.0 > kOver * std::max(0.0, pulses[1].power - 1.0);
+std::vector<std::size_t> loudest(const std::vector<LoudPulses>& pulses) {
+  constexpr double kAsLoud = 0.5;
+  std::vector<std::size_t> gauges;
+  for (const LoudPulses& own : pulses) {
+    if (own.power - 1.0 >= kAsLoud * (pulses.front().power - 1.0)) {
+      gauges.push_back(own.gauge);
+    }
+  }
+  return gauges;
 }
 
 }  // namespace kolsky

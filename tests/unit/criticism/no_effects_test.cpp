@@ -69,6 +69,22 @@ TEST(Droop, OfOneOfTwoGaugesIsNoRelaxation) {
   EXPECT_TRUE(says(diagnosis, "neither a strength nor a time"));
 }
 
+// With three gauges a channel's droop is seen to be one's: a slow creep of the bar is what it is,
+// though its strength and its time are hardly known apart.
+TEST(SlowRelaxation, OfABarWithThreeGaugesIsClaimed) {
+  for (std::uint64_t seed = 873; seed < 877; ++seed) {
+    testing::Campaign truth = testing::draw_campaign(
+        {.seed = seed, .shots = 6, .gauges = 3, .samples = 1500, .rate_Hz = 1e6});
+    testing::hide(truth, testing::parse_effect("second-relaxation=1.5e-11,tau=2e-3"));
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
+    ASSERT_FALSE(diagnosis.effects.empty()) << seed;
+    std::vector<std::string> claimed = diagnosis.tied_with.at(diagnosis.effects.front());
+    claimed.push_back(diagnosis.effects.front());
+    EXPECT_EQ(std::ranges::count(claimed, "second-relaxation"), 1) << seed;
+  }
+}
+
 // A cable that rings at one of four gauges is nothing of the library, and is seen at that gauge.
 TEST(Echo, OfOneCableIsToldByItsGauge) {
   constexpr std::size_t kGauge = 2;
