@@ -173,7 +173,9 @@ Eigen::VectorXd jackknife_sd(const std::vector<ShotSpectra>& shots, const std::v
 
 SpectralEstimate estimate_spectrum(const std::vector<Shot>& shots, const Material& bars,
                                    const SpectralOptions& options) {
-  const auto reductions = reduce_apart(shots, bars, options.bars);
+  const auto reductions = options.separation
+                              ? reduce_all(shots, bars, options.bars, *options.separation)
+                              : reduce_apart(shots, bars, options.bars);
   std::size_t samples = std::numeric_limits<std::size_t>::max();
   SpectralEstimate estimate;
   estimate.band_limit_Hz = options.band_limit_Hz;

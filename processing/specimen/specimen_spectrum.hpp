@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct SpectralEstimate {
 struct SpectralOptions {
   WaveTheory bars = WaveTheory::elementary;
   double band_limit_Hz = 15e3;  ///< of the fit and of what is listed
+  /// Held; else as each shot needs it, and by equilibrium where time does not part the waves of
+  /// one.
+  std::optional<Separation> separation{};
 };
 
 /// Strain and stress are transformed along s = eta + i w: on the axis itself a history that is cut

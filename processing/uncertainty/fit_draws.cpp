@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/first_pulse.hpp"
+#include "processing/reduction/formatted.hpp"
 #include "processing/uncertainty/noisy_shot.hpp"
 #include "processing/uncertainty/sources.hpp"
 
@@ -13,22 +15,23 @@ namespace kolsky {
 
 namespace {
 
-/// One draw's numbers; no parameters where the search found nothing.
+/// One draw's numbers; empty where nothing was found.
 struct Draw {
-  std::vector<double> parameters;
+  std::vector<double> fit;
   std::vector<double> spectral;
 };
 
 /// How shots are identified, with bars of this material.
 using Identify = std::function<Draw(const std::vector<Shot>&, const Material& bars)>;
 
-/// Before the pulse has reached any gauge.
-std::size_t quiet_samples(const Shot& shot) {
+/// Before the pulse has reached the first of the gauges.
+std::size_t quiet_samples(const Shot& shot, const std::vector<std::size_t>& first_gauges) {
   std::size_t quiet = shot.samples();
-  for (const ChannelRecord& channel : shot.channels) {
-    const std::vector<double> record(channel.codes.begin(), channel.codes.end());
+  for (const std::size_t channel : first_gauges) {
+    const auto& codes = shot.channels[channel].codes;
+    const std::vector<double> record(codes.begin(), codes.end());
     if (const auto pulse = first_pulse(record, shot.rate.Hz())) {
-      quiet = std::min(quiet, pulse->quiet);
+      quiet = std::min(quiet, std::max(kFewestQuiet, pulse->quiet));
     }
   }
   return quiet;
@@ -36,18 +39,19 @@ std::size_t quiet_samples(const Shot& shot) {
 
 class Repeater {
  public:
-  Repeater(const std::vector<Shot>& shots, const BarPrior& bars, Identify identify)
+  Repeater(const std::vector<Shot>& shots, const std::vector<std::size_t>& first_gauges,
+           const BarPrior& bars, Identify identify)
       : shots_(shots),
-        bars_(bars.material),
+        filed_{shots.front().bench, bars.material},
         sources_(uncertainty_sources(shots.front().bench, bars)),
         identify_(std::move(identify)) {
     for (const Shot& shot : shots) {
-      quiet_.push_back(quiet_samples(shot));
+      quiet_.push_back(quiet_samples(shot, first_gauges));
     }
   }
 
   [[nodiscard]] Draw draw(RandomStream random) const {
-    ShotNumbers numbers{shots_.front().bench, bars_};
+    ShotNumbers numbers = filed_;
     for (const UncertaintySource& source : sources_) {
       source.move(numbers, random.normal());
     }
@@ -58,20 +62,26 @@ class Repeater {
       noisy.record(&random);
       recorded.push_back(noisy.shot());
     }
-    try {
-      return identify_(recorded, numbers.bars);
-    } catch (const InputError&) {
-      return {};
-    }
+    return identify_(recorded, numbers.bars);
   }
 
  private:
   const std::vector<Shot>& shots_;
-  Material bars_;
+  ShotNumbers filed_;
   std::vector<UncertaintySource> sources_;
   Identify identify_;
   std::vector<std::size_t> quiet_;
 };
+
+/// What an estimator finds; nothing where it refuses.
+template <class Estimate>
+std::vector<double> found_by(Estimate estimate) {
+  try {
+    return values_of(estimate());
+  } catch (const InputError&) {
+    return {};
+  }
+}
 
 std::vector<Draw> drawn(const Repeater& repeater, const FitDrawOptions& options,
                         const Workers& workers) {
@@ -84,31 +94,66 @@ std::vector<Draw> drawn(const Repeater& repeater, const FitDrawOptions& options,
   return draws;
 }
 
-std::vector<UncertainFigure> figures_of(const std::vector<FittedNumber>& numbers,
-                                        const std::vector<Draw>& draws,
-                                        std::vector<double> Draw::*member) {
-  std::vector<UncertainFigure> figures;
+/// Numbers a hundred times off were not found: nothing in the shots held them.
+bool without_bounds(const std::vector<double>& drawn, const std::vector<FittedNumber>& numbers) {
+  constexpr double kOff = 100.0;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    std::vector<double> values;
-    for (const Draw& draw : draws) {
-      values.push_back((draw.*member)[i]);
+    const double ratio = drawn[i] / numbers[i].value;
+    if (!(ratio < kOff && ratio * kOff > 1.0)) {
+      return true;
     }
-    figures.push_back(uncertain_figure(numbers[i].name, numbers[i].value, std::move(values)));
   }
-  return figures;
+  return false;
 }
 
-/// @param spectral  empty: not drawn
-FitDraws summary(std::vector<Draw> draws, const std::vector<FittedNumber>& parameters,
-                 const std::vector<FittedNumber>& spectral) {
-  FitDraws result;
-  result.failed = std::erase_if(draws, [](const Draw& draw) { return draw.parameters.empty(); });
-  result.draws = draws.size();
-  if (!draws.empty()) {
-    result.parameters = figures_of(parameters, draws, &Draw::parameters);
-    result.spectral = figures_of(spectral, draws, &Draw::spectral);
+/// @param numbers  what draws scatter about; draws may hold more behind them
+DrawnNumbers summary(const std::vector<Draw>& draws, std::vector<double> Draw::*member,
+                     const std::vector<FittedNumber>& numbers) {
+  DrawnNumbers result;
+  std::vector<const std::vector<double>*> found;
+  for (const Draw& draw : draws) {
+    const std::vector<double>& own = draw.*member;
+    if (own.empty() || without_bounds(own, numbers)) {
+      ++result.failed;
+    } else {
+      found.push_back(&own);
+    }
+  }
+  result.draws = found.size();
+  constexpr std::size_t kMany = 20;
+  if (result.draws < kFewestDraws) {
+    result.warnings.push_back(formatted("%zu of %zu draws found numbers: too few to state anything",
+                                        result.draws, draws.size()));
+    return result;
+  }
+  if (result.failed * kMany > draws.size()) {
+    result.warnings.push_back(
+        formatted("%zu of %zu draws found no numbers, and are not in these intervals",
+                  result.failed, draws.size()));
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::vector<double> values;
+    for (const std::vector<double>* own : found) {
+      values.push_back((*own)[i]);
+    }
+    result.figures.push_back(
+        uncertain_figure(numbers[i].name, numbers[i].value, std::move(values)));
   }
   return result;
+}
+
+/// Says where a fit states more than its draws scatter.
+void hold_against(const std::vector<FittedNumber>& stated, DrawnNumbers& drawn) {
+  const double more = std::max(1.3, 1.0 + 4.0 / std::sqrt(2.0 * static_cast<double>(drawn.draws)));
+  for (std::size_t i = 0; i < drawn.figures.size(); ++i) {
+    const UncertainFigure& own = drawn.figures[i];
+    if (stated[i].sd > more * own.sd) {
+      drawn.warnings.push_back(formatted(
+          "the fit states %.2g times as much for %s: with what its model leaves undescribed or "
+          "undecided, which draws do not hold",
+          stated[i].sd / own.sd, own.name.c_str()));
+    }
+  }
 }
 
 SpecimenFitOptions as_fitted(const SpecimenFit& fit) {
@@ -134,30 +179,53 @@ FitDraws draw_specimen_fits(const std::vector<Shot>& shots, const BarPrior& bars
   const SpecimenFitOptions fitted = as_fitted(fit);
   SpectralOptions by_spectrum;
   by_spectrum.bars = fit.theory.bars;
+  if (spectral != nullptr) {
+    by_spectrum.band_limit_Hz = spectral->band_limit_Hz;
+    by_spectrum.separation = spectral->separation == Separation::equilibrium
+                                 ? Separation::equilibrium
+                                 : Separation::as_needed;
+  }
   const Repeater repeater(
-      shots, bars, [&](const std::vector<Shot>& recorded, const Material& moved) {
+      shots, shpb_stations(shots.front().bench).front().channels, bars,
+      [&](const std::vector<Shot>& recorded, const Material& moved) {
         BarPrior prior = bars;
         prior.material = moved;
         Draw draw;
-        draw.parameters = values_of(fit_specimen(recorded, prior, fitted).parameters);
+        draw.fit = found_by([&] { return fit_specimen(recorded, prior, fitted).parameters; });
         if (spectral != nullptr) {
-          draw.spectral = values_of(estimate_spectrum(recorded, moved, by_spectrum).parameters);
+          draw.spectral =
+              found_by([&] { return estimate_spectrum(recorded, moved, by_spectrum).parameters; });
         }
         return draw;
       });
-  return summary(drawn(repeater, options, workers), fit.parameters,
-                 spectral != nullptr ? spectral->parameters : std::vector<FittedNumber>());
+  const std::vector<Draw> draws = drawn(repeater, options, workers);
+  FitDraws result{summary(draws, &Draw::fit, fit.parameters), std::nullopt};
+  hold_against(fit.parameters, result.fit);
+  if (spectral != nullptr) {
+    result.spectral = summary(draws, &Draw::spectral, spectral->parameters);
+  }
+  return result;
 }
 
 FitDraws draw_bar_fits(const std::vector<Shot>& shots, const BarFit& fit,
                        const FitDrawOptions& options, const Workers& workers) {
   const BarTheory theory{fit.theory, fit.solid, fit.far_end, fit.lossless};
-  const Repeater repeater(shots, BarPrior(paper_pmma()),
-                          [&](const std::vector<Shot>& recorded, const Material&) {
-                            const BarData data = bar_data(recorded, fit.band_limit_Hz, fit.theory);
-                            return Draw{values_of(fit_bar(data, theory, fit.at).parameters), {}};
-                          });
-  return summary(drawn(repeater, options, workers), fit.parameters, {});
+  const Repeater repeater(
+      shots, {read_bar_records(shots.front()).channel.front()}, BarPrior(paper_pmma()),
+      [&](const std::vector<Shot>& recorded, const Material&) {
+        return Draw{found_by([&] {
+                      const BarData data = bar_data(recorded, fit.band_limit_Hz, fit.theory);
+                      return fit_bar(data, theory, fit.at).parameters;
+                    }),
+                    {}};
+      });
+  std::vector<FittedNumber> numbers = fit.parameters;
+  if (fit.lossless) {
+    numbers.resize(1);
+  }
+  FitDraws result{summary(drawn(repeater, options, workers), &Draw::fit, numbers), std::nullopt};
+  hold_against(numbers, result.fit);
+  return result;
 }
 
 }  // namespace kolsky

@@ -28,7 +28,7 @@ struct UncertaintySource {
 };
 
 /// Everything of a bench and its bars that is filed with a deviation. Of a bench of kind "bar" not
-/// the bar's moduli, nor what softens them: they are what its shots are to tell.
+/// a viscoelastic bar's moduli, nor what softens them: they are what its shots are to tell.
 [[nodiscard]] std::vector<UncertaintySource> uncertainty_sources(const Bench& bench,
                                                                  const BarPrior& bars);
 

@@ -7,13 +7,24 @@
 namespace kolsky::cli {
 namespace {
 
-std::string table_of(const std::vector<UncertainFigure>& figures) {
+std::string table_of(const DrawnNumbers& drawn) {
   std::string text;
-  for (const UncertainFigure& f : figures) {
+  for (const UncertainFigure& f : drawn.figures) {
     text += fmt::format("    {:<12}{:>12.5g} ± {:.2g} %, 95 %: {:.5g} to {:.5g}\n", f.name, f.value,
                         100.0 * f.sd / f.value, f.low, f.high);
   }
+  for (const std::string& warning : drawn.warnings) {
+    text += "    " + warning + "\n";
+  }
   return text;
+}
+
+JsonObject numbers_json(const DrawnNumbers& drawn) {
+  return {{"draws", static_cast<std::uint64_t>(drawn.draws)},
+          {"failed", static_cast<std::uint64_t>(drawn.failed)},
+          {"coverage", 0.95},
+          {"parameters", intervals_json(drawn.figures)},
+          {"warnings", drawn.warnings}};
 }
 
 }  // namespace
@@ -31,24 +42,25 @@ JsonValue describe(const std::optional<FitDraws>& draws) {
   if (!draws) {
     return nullptr;
   }
-  return JsonObject{{"draws", static_cast<std::uint64_t>(draws->draws)},
-                    {"failed", static_cast<std::uint64_t>(draws->failed)},
-                    {"coverage", 0.95},
-                    {"parameters", intervals_json(draws->parameters)},
-                    {"spectral", intervals_json(draws->spectral)}};
+  JsonObject object = numbers_json(draws->fit);
+  object.push_back({"spectral", draws->spectral ? JsonValue(numbers_json(*draws->spectral))
+                                                : JsonValue(nullptr)});
+  return object;
 }
 
 std::string report(const std::optional<FitDraws>& draws) {
   if (!draws) {
     return "";
   }
-  std::string text = fmt::format(
-      "  by {} draws of noise and of what is filed, through the fit itself{}\n", draws->draws,
-      draws->failed > 0 ? fmt::format(" ({} more could not be fitted)", draws->failed) : "");
-  text += table_of(draws->parameters);
-  if (!draws->spectral.empty()) {
-    text += "  strain over stress, whose deviations above are scatter alone, by the same draws\n";
-    text += table_of(draws->spectral);
+  std::string text =
+      fmt::format("  by {} draws of noise and of what is filed, through the fit itself\n",
+                  draws->fit.draws) +
+      table_of(draws->fit);
+  if (draws->spectral) {
+    text += fmt::format(
+        "  strain over stress, whose deviations above are scatter alone, by {} of these draws\n",
+        draws->spectral->draws);
+    text += table_of(*draws->spectral);
   }
   return text;
 }

@@ -126,7 +126,7 @@ TEST_F(SpecimenFiles, AreDrawnThroughBothEstimators) {
     const json& drawn = told["draws"]["parameters"][name];
     EXPECT_EQ(drawn["value"], told["parameters"][name]["value"]) << name;
     EXPECT_LT(drawn["low"].get<double>(), drawn["high"].get<double>()) << name;
-    EXPECT_GT(told["draws"]["spectral"][name]["sd"].get<double>(), 0.0) << name;
+    EXPECT_GT(told["draws"]["spectral"]["parameters"][name]["sd"].get<double>(), 0.0) << name;
   }
   EXPECT_TRUE(json_of(kolsky(identify({"--bar-model", folder_ / "pmma.toml", "--json"})))["draws"]
                   .is_null());
