@@ -234,6 +234,35 @@ std::vector<FittedNumber> numbers_of(SolidKind solid, const SpecimenMinimum& min
   return numbers;
 }
 
+/// The same solid with its Kelvin branches in the order of their retardation times: the search
+/// finds them in any.
+SpecimenMinimum quickest_first(SolidKind solid, SpecimenMinimum minimum) {
+  if (solid != SolidKind::two_kelvin && solid != SolidKind::three_kelvin) {
+    return minimum;
+  }
+  const SpecimenMinimum found = minimum;
+  const auto& logs = found.parameters;
+  std::vector<std::size_t> branches;  // by the place of E
+  for (std::size_t place = 1; place < logs.size(); place += 2) {
+    branches.push_back(place);
+  }
+  std::ranges::sort(branches, {}, [&](std::size_t place) { return logs[place + 1] - logs[place]; });
+  Eigen::VectorXi from = Eigen::VectorXi::LinSpaced(found.covariance.rows(), 0,
+                                                    static_cast<int>(found.covariance.rows()) - 1);
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    for (const std::size_t part : {0U, 1U}) {
+      minimum.parameters[1 + 2 * i + part] = logs[branches[i] + part];
+      from[static_cast<Eigen::Index>(1 + 2 * i + part)] = static_cast<int>(branches[i] + part);
+    }
+  }
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    for (Eigen::Index j = 0; j < from.size(); ++j) {
+      minimum.covariance(i, j) = found.covariance(from[i], from[j]);
+    }
+  }
+  return minimum;
+}
+
 void fill_numbers(const SpecimenLikelihood& likelihood, const SpecimenMinimum& minimum,
                   SpecimenFit& fit) {
   const auto& family = parameters_of(fit.solid);
@@ -493,7 +522,7 @@ SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
   const Windows windows = windows_of(shots, bars, options);
   SpecimenFit fit;
   const Decision decision = decide(windows, options, fit);
-  const SpecimenMinimum& minimum = decision.fitted.minimum;
+  const SpecimenMinimum minimum = quickest_first(decision.solid, decision.fitted.minimum);
   fit.solid = decision.solid;
   fit.theory = decision.fitted.theory;
   fit.tried = decision.tried;

@@ -423,6 +423,18 @@ TEST(SpecimenFamilies, TwoKelvinBranchesAreFound) {
   EXPECT_EQ(fit.theory, ShpbTheory{});
 }
 
+// A fifth and a twentieth of the pulse's length, and longer than it: the third needs quiet gauges.
+TEST(SpecimenFamilies, ThreeKelvinBranchesAreFound) {
+  LinearShpb model;
+  model.chain = testing::KelvinChain{400e6, {{500e6, 4e3}, {400e6, 16e3}, {300e6, 90e3}}};
+  const auto shots = noisy(model, model.solve(), 6, 0.2e-6);
+  const SpecimenFit fit =
+      fit_specimen(shots, BarPrior(paper_pmma()), of_family(SolidKind::three_kelvin));
+  expect_numbers(fit, {400e6, 500e6, 4e3, 400e6, 16e3, 300e6, 90e3});
+  EXPECT_NEAR(fit.chi2_reduced, 1.0, 0.2);
+  EXPECT_EQ(fit.theory, ShpbTheory{});
+}
+
 TEST(SpecimenFamilies, AFluidIsFound) {
   LinearShpb model;
   model.chain = testing::three_element(121e6, 143e6, 2860.0);
