@@ -64,6 +64,7 @@ struct Gauge {
   std::string name{};
   std::string bar{};      ///< "input" or "output"
   Measured position_m{};  ///< input: from the impacted end; output: from the specimen's end
+  Measured delay_s{};     ///< by which its channel records later than the bench's clock
   std::string unit{};     ///< "strain" or "V"
   std::optional<Measured> length_m{};
   std::optional<Bridge> bridge{};          ///< unit "V": either this ...

@@ -18,6 +18,8 @@ constexpr Range kDiameter{0.5e-3, 0.3, "m", "give metres: 15 mm is 0.015"};
 constexpr Range kYoungsModulus{1e8, 1.5e12, "Pa", "give pascals: 113 GPa is 113e9"};
 constexpr Range kWaveSpeed{300.0, 20e3, "m/s", "check youngs_modulus_Pa against density_kg_m3"};
 constexpr Range kGaugeLength{0.1e-3, 0.1, "m", "give metres: 5 mm is 0.005"};
+constexpr Range kDelay{-20e-6, 20e-6, "s", "give seconds, late positive: 0.5 us is 0.5e-6"};
+constexpr double kMostDelaySd_s = 10e-6;
 constexpr Range kStrainPerVolt{1e-9, 1.0, "", "give strain per volt: 500 microstrain/V is 500e-6"};
 constexpr Range kGaugeFactor{0.5, 300.0, "", "metal gauges have about 2, semiconductors about 150"};
 constexpr Range kBeamDistance{1e-3, 20.0, "m", "give metres from the bar's face: 60 mm is 0.06"};
@@ -219,6 +221,8 @@ void check_gauge(const std::string& place, const Gauge& gauge, const Bench& benc
   }
   check_position(place, gauge, bench.bar_of(gauge));
   check_number(place + ".length_m", gauge.length_m, kGaugeLength);
+  require_in_range(place + ".delay_s", gauge.delay_s, kDelay);
+  require_tolerance(place + ".delay_s", gauge.delay_s, kMostDelaySd_s);
   check_unit(place, gauge);
   if (gauge.strain_gain.sd > 0.1) {
     throw InputError(place + ".gauge_factor_sd",

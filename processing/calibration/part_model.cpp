@@ -102,7 +102,7 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
     }
     list.push_back(of_gauge(Of::gain, "gauge-factor", gauge, {1.0, gain_sd(gauge)}, kGainStep));
     list.push_back(of_gauge(Of::position, "gauge-position", gauge, gauge.position_m, kPlaceStep_m));
-    list.push_back(of_gauge(Of::delay, "channel-delay", gauge, {0.0, 0.0}, kDelayStep_s));
+    list.push_back(of_gauge(Of::delay, "channel-delay", gauge, gauge.delay_s, kDelayStep_s));
   }
   if (bench.kind == BenchKind::bar && variant.far_end_seen) {
     ModelNumber number;
@@ -173,13 +173,15 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
     use.values[0].prior_sd = std::max(bench.gauges[1].position_m.sd, kExactly * kPlaceStep_m);
     model.effects.push_back(use);
     for (const Gauge& gauge : bench.gauges) {
-      EffectUse factor = use_named("gauge-factor:" + gauge.name);
-      hold(factor);
-      model.effects.push_back(factor);
+      for (const char* const effect : {"gauge-factor:", "channel-delay:"}) {
+        EffectUse same = use_named(effect + gauge.name);
+        hold(same);
+        model.effects.push_back(same);
+      }
     }
   }
   for (const std::string& gauge : options.trusted) {
-    for (const char* const effect : {"gauge-factor:", "gauge-position:"}) {
+    for (const char* const effect : {"gauge-factor:", "gauge-position:", "channel-delay:"}) {
       EffectUse use = use_named(effect + gauge);
       hold(use);
       model.effects.push_back(use);

@@ -113,6 +113,11 @@ std::optional<BarModel::LogSlope> BarModel::slope_by(const KnownUnknown& unknown
         return LogSlope{unknown.sd, own ? &ratio.by_x : &ratio.by_x0, nullptr};
       }
       return std::nullopt;
+    case Of::delay:
+      if (concerns) {
+        return LogSlope{(own ? 1.0 : -1.0) * unknown.sd, &ratio.by_delay, nullptr};
+      }
+      return std::nullopt;
     case Of::length:
       return LogSlope{unknown.sd, &ratio.by_length, nullptr};
     case Of::density:
@@ -131,8 +136,9 @@ std::optional<BarModel::LogSlope> BarModel::slope_by(const KnownUnknown& unknown
 std::vector<BarModel::Derivative> BarModel::derivatives_of(std::span<const double> at,
                                                            std::size_t gauge,
                                                            const Transfers& transfers,
-                                                           const GammaSlopes& gamma) const {
-  const RatioSlopes ratio(transfers.waves, transfers.bench, gauge);
+                                                           const GammaSlopes& gamma,
+                                                           const std::vector<Complex>& path) const {
+  const RatioSlopes ratio(transfers.waves, transfers.bench, gauge, path);
   const Spectrum& g = transfers.g[gauge - 1];
   std::vector<Derivative> list;
   const auto add = [&](std::size_t parameter, const LogSlope& slope) {
@@ -186,6 +192,10 @@ BarModel::Transfers BarModel::transfers_with(std::span<const double> at, double 
     for (Complex& g : of_gauge) {
       g *= bench.gain[j] / bench.gain[0];
     }
+    const double late_s = bench.delay_s[j] - bench.delay_s[0];
+    for (std::size_t k = 0; late_s != 0.0 && k < of_gauge.size(); ++k) {
+      of_gauge[k] *= std::exp(-path[k] * late_s);
+    }
     if (records_->returned) {
       make_returned(at, path, of_gauge);
     }
@@ -213,7 +223,7 @@ std::vector<std::vector<BarModel::Derivative>> BarModel::derivatives(
                           varies(KnownUnknown::Of::poisson_ratio), path);
   std::vector<std::vector<Derivative>> list;
   for (std::size_t j = 1; j <= transfers.g.size(); ++j) {
-    list.push_back(derivatives_of(at, j, transfers, gamma));
+    list.push_back(derivatives_of(at, j, transfers, gamma, path));
   }
   return list;
 }

@@ -104,7 +104,8 @@ class BarModel {
   [[nodiscard]] std::vector<Derivative> derivatives_of(std::span<const double> at,
                                                        std::size_t gauge,
                                                        const Transfers& transfers,
-                                                       const GammaSlopes& gamma) const;
+                                                       const GammaSlopes& gamma,
+                                                       const std::vector<Complex>& path) const;
 
   Bar bar_;
   const BarRecords* records_;

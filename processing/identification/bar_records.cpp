@@ -7,6 +7,7 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/bridge/channel_delay.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -108,6 +109,7 @@ BarRecords read_bar_records(const Shot& shot) {
   std::vector<FirstPulse> pulses;
   for (const std::size_t index : records.channel) {
     readings.push_back(readings_of(shot.channels[index]));
+    take_out_delay(shot.bench.gauges[index].delay_s, rate_Hz, readings.back());
     pulses.push_back(require_pulse(readings.back(), rate_Hz, shot.bench.gauges[index].name));
   }
   records.quiet_samples = pulses.front().quiet;

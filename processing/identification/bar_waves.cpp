@@ -85,10 +85,12 @@ GammaSlopes::GammaSlopes(WaveTheory theory, const Bar& bar, SolidKind kind,
   }
 }
 
-RatioSlopes::RatioSlopes(const BarWaves& waves, const MovedBench& bench, std::size_t j)
+RatioSlopes::RatioSlopes(const BarWaves& waves, const MovedBench& bench, std::size_t j,
+                         const std::vector<Complex>& path)
     : by_gamma(waves.modes.size()),
       by_x(waves.modes.size()),
       by_x0(waves.modes.size()),
+      by_delay(waves.modes.size()),
       by_length(waves.modes.size()),
       by_reflection(waves.modes.size()) {
   const double to_end_m = bench.bar.length_m - bench.position_m[j];
@@ -105,6 +107,7 @@ RatioSlopes::RatioSlopes(const BarWaves& waves, const MovedBench& bench, std::si
     by_gamma[k] = to_end_m * (1.0 - 2.0 * R * e) - first_to_end_m * (1.0 - 2.0 * R * e0);
     by_x[k] = -gamma * (1.0 - 2.0 * R * e);
     by_x0[k] = gamma * (1.0 - 2.0 * R * e0);
+    by_delay[k] = -path[k];
     by_length[k] = -2.0 * R * gamma * (e - e0);
     by_reflection[k] = e - e0;
   }

@@ -38,11 +38,13 @@ struct GammaSlopes {
               const BarWaves& waves, bool poisson_varies, const std::vector<Complex>& path);
 };
 
-/// How log(h_j / h_0) follows gamma, places, the bar's length and what its end returns.
+/// How log(h_j / h_0) follows gamma, places, gauge j's delay, the bar's length and what its end
+/// returns.
 struct RatioSlopes {
-  BarWaves::Spectrum by_gamma, by_x, by_x0, by_length, by_reflection;
+  BarWaves::Spectrum by_gamma, by_x, by_x0, by_delay, by_length, by_reflection;
 
-  RatioSlopes(const BarWaves& waves, const MovedBench& bench, std::size_t j);
+  RatioSlopes(const BarWaves& waves, const MovedBench& bench, std::size_t j,
+              const std::vector<Complex>& path);
 };
 
 }  // namespace kolsky

@@ -15,6 +15,9 @@ std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& r
     if (gauge.position_m.sd > 0.0) {
       list.push_back({"gauge-position:" + gauge.name, Of::position, j, gauge.position_m.sd});
     }
+    if (gauge.delay_s.sd > 0.0 && !records.returned) {
+      list.push_back({"channel-delay:" + gauge.name, Of::delay, j, gauge.delay_s.sd});
+    }
   }
   if (bench.input.length_m.sd > 0.0) {
     list.push_back({"bar-length", Of::length, 0, bench.input.length_m.sd});
@@ -33,7 +36,10 @@ std::vector<KnownUnknown> known_unknowns(const Bench& bench, const BarRecords& r
 
 MovedBench::MovedBench(const Bar& filed, const BarRecords& records,
                        const std::vector<KnownUnknown>& unknowns, std::span<const double> moves)
-    : bar(filed), position_m(records.position_m), gain(records.position_m.size(), 1.0) {
+    : bar(filed),
+      position_m(records.position_m),
+      gain(records.position_m.size(), 1.0),
+      delay_s(records.position_m.size(), 0.0) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const KnownUnknown& u = unknowns[i];
     const double move = moves[i] * u.sd;
@@ -43,6 +49,9 @@ MovedBench::MovedBench(const Bar& filed, const BarRecords& records,
         break;
       case KnownUnknown::Of::position:
         position_m[u.gauge] += move;
+        break;
+      case KnownUnknown::Of::delay:
+        delay_s[u.gauge] += move;
         break;
       case KnownUnknown::Of::length:
         bar.length_m.value += move;

@@ -79,6 +79,9 @@ Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex>
     g.position_m = gauge.position_m;
     g.length_m = gauge.length_m.value_or(Measured{}).value;
     g.factor.assign(path.size(), 1.0);
+    for (std::size_t k = 0; gauge.delay_s != 0.0 && k < path.size(); ++k) {
+      g.factor[k] = std::exp(-path[k] * gauge.delay_s.value);
+    }
     gauges.push_back(std::move(g));
   }
   if (bench.specimen) {

@@ -6,6 +6,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/bridge/channel_delay.hpp"
 
 namespace kolsky {
 
@@ -18,6 +19,24 @@ double unstrained_reading(const ChannelRecord& channel, std::size_t quiet) {
   }
   const double mean = quiet > 0 ? sum / static_cast<double>(quiet) : 0.0;
   return (mean + channel.offset) * channel.scale;
+}
+
+/// The mean of what `add` gives of each gauge, on the bench's clock.
+template <class Add>
+void add_each(const Shot& shot, const Station& station, std::vector<double>& sum, Add add) {
+  std::fill(sum.begin(), sum.end(), 0.0);
+  const double share = 1.0 / static_cast<double>(station.channels.size());
+  for (const std::size_t index : station.channels) {
+    if (const double delay_s = shot.bench.gauges[index].delay_s; delay_s != 0.0) {
+      std::vector<double> own(sum.size(), 0.0);
+      add(index, 1.0, own);
+      take_out_delay(delay_s, shot.rate.Hz(), own);
+      std::transform(own.begin(), own.end(), sum.begin(), sum.begin(),
+                     [share](double value, double rest) { return rest + share * value; });
+    } else {
+      add(index, share, sum);
+    }
+  }
 }
 
 }  // namespace
@@ -48,38 +67,34 @@ Station station_on(const Bench& bench, const std::string& bar) {
 }
 
 void read_raw_station(const Shot& shot, const Station& station, std::vector<double>& readings) {
-  std::fill(readings.begin(), readings.end(), 0.0);
-  const double share = 1.0 / static_cast<double>(station.channels.size());
-  for (const std::size_t index : station.channels) {
+  add_each(shot, station, readings, [&](std::size_t index, double share, std::vector<double>& sum) {
     const ChannelRecord& channel = shot.channels[index];
-    for (std::size_t n = 0; n < readings.size(); ++n) {
-      readings[n] += share * channel.value(channel.codes[n]);
+    for (std::size_t n = 0; n < sum.size(); ++n) {
+      sum[n] += share * channel.value(channel.codes[n]);
     }
-  }
+  });
 }
 
 void read_station(const Shot& shot, const Station& station, std::size_t quiet,
                   std::vector<double>& strains) {
-  std::fill(strains.begin(), strains.end(), 0.0);
-  const double share = 1.0 / static_cast<double>(station.channels.size());
-  for (const std::size_t index : station.channels) {
+  add_each(shot, station, strains, [&](std::size_t index, double share, std::vector<double>& sum) {
     const ChannelRecord& channel = shot.channels[index];
     const Gauge& gauge = shot.bench.gauges[index];
     const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
     const double unstrained = unstrained_reading(channel, quiet);
     std::array<double, 256> readings;
     std::array<double, 256> part;
-    for (std::size_t begin = 0; begin < strains.size(); begin += part.size()) {
-      const std::size_t count = std::min(part.size(), strains.size() - begin);
+    for (std::size_t begin = 0; begin < sum.size(); begin += part.size()) {
+      const std::size_t count = std::min(part.size(), sum.size() - begin);
       for (std::size_t n = 0; n < count; ++n) {
         readings[n] = channel.value(channel.codes[begin + n]);
       }
       bridge.convert(std::span(readings).first(count), unstrained, std::span(part).first(count));
       for (std::size_t n = 0; n < count; ++n) {
-        strains[begin + n] += share * part[n];
+        sum[begin + n] += share * part[n];
       }
     }
-  }
+  });
 }
 
 }  // namespace kolsky

@@ -148,6 +148,7 @@ void ShpbModel::evaluate(const ShpbTheory& theory, const MovedShpb& moved,
     const Complex reading_out = gamma_out / (s * output[k].mean_over_surface);
     for (std::size_t j = 1; j < stations_.size(); ++j) {
       const double d = moved.to_specimen_m[j];
+      const double late_s = moved.delay_s[j] - moved.delay_s[0];
       if (stations_[j].on_input) {
         transfers[j - 1][k] = moved.gain[j] * reading * std::exp(-gamma * (d0 - d)) *
                               (1.0 + r * std::exp(-2.0 * gamma * d)) / first;
@@ -155,6 +156,9 @@ void ShpbModel::evaluate(const ShpbTheory& theory, const MovedShpb& moved,
         const Complex back = free_end ? std::exp(-gamma_out * (2.0 * far_m - d)) : 0.0;
         transfers[j - 1][k] =
             moved.gain[j] * reading_out * launched * (std::exp(-gamma_out * d) - back);
+      }
+      if (late_s != 0.0) {
+        transfers[j - 1][k] *= std::exp(-s * late_s);
       }
     }
   }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/bridge/channel_delay.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -15,15 +17,25 @@ namespace {
 
 constexpr double kLongestQuiet_s = 500e-6;
 
+/// A channel's readings on the bench's clock.
+std::vector<double> readings_of(const Shot& shot, std::size_t index) {
+  const ChannelRecord& channel = shot.channels[index];
+  std::vector<double> readings(channel.codes.size());
+  std::transform(channel.codes.begin(), channel.codes.end(), readings.begin(),
+                 [&](std::int32_t code) { return channel.value(code); });
+  take_out_delay(shot.bench.gauges[index].delay_s, shot.rate.Hz(), readings);
+  return readings;
+}
+
 std::vector<double> readings_of(const Shot& shot, const ShpbStation& station) {
-  std::vector<double> readings(shot.samples(), 0.0);
+  std::vector<double> mean(shot.samples(), 0.0);
   for (const std::size_t index : station.channels) {
-    const ChannelRecord& channel = shot.channels[index];
-    for (std::size_t n = 0; n < readings.size(); ++n) {
-      readings[n] += channel.value(channel.codes[n]) / static_cast<double>(station.channels.size());
+    const std::vector<double> own = readings_of(shot, index);
+    for (std::size_t n = 0; n < mean.size(); ++n) {
+      mean[n] += own[n] / static_cast<double>(station.channels.size());
     }
   }
-  return readings;
+  return mean;
 }
 
 void require_serving(const Shot& shot, const Shot& first) {
@@ -65,14 +77,11 @@ std::vector<double> strain_of(const Shot& shot, const ShpbStation& station, std:
                               std::size_t quiet) {
   const std::size_t count = shot.samples() - first;
   std::vector<double> strain(count, 0.0);
-  std::vector<double> readings(count);
   std::vector<double> own(count);
   for (const std::size_t index : station.channels) {
-    const ChannelRecord& channel = shot.channels[index];
     const Gauge& gauge = shot.bench.gauges[index];
-    for (std::size_t n = 0; n < count; ++n) {
-      readings[n] = channel.value(channel.codes[first + n]);
-    }
+    const std::vector<double> whole = readings_of(shot, index);
+    const auto readings = std::span(whole).subspan(first);
     const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
     bridge.convert(readings, quiet_before(readings, quiet).baseline, own);
     for (std::size_t n = 0; n < count; ++n) {

@@ -39,14 +39,17 @@ std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<Shp
     const auto& channels = stations[j].channels;
     double gains = 0.0;
     double positions = 0.0;
+    double delays = 0.0;
     for (const std::size_t channel : channels) {
       gains += std::pow(gain_sd(bench.gauges[channel]), 2);
       positions += std::pow(bench.gauges[channel].position_m.sd, 2);
+      delays += std::pow(bench.gauges[channel].delay_s.sd, 2);
     }
     const auto count = static_cast<double>(channels.size());
     const std::string& name = bench.gauges[channels.front()].name;
     add(list, "gauge-factor:" + name, Of::gain, j, std::sqrt(gains) / count);
     add(list, "gauge-position:" + name, Of::position, j, std::sqrt(positions) / count);
+    add(list, "channel-delay:" + name, Of::delay, j, std::sqrt(delays) / count);
   }
   add_bar(list, bench.input, 0);
   add_bar(list, *bench.output, 1);
@@ -73,7 +76,8 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
     : bars{filed.input, *filed.output},
       material(prior.material),
       specimen(*filed.specimen),
-      gain(stations.size(), 1.0) {
+      gain(stations.size(), 1.0),
+      delay_s(stations.size(), 0.0) {
   std::vector<double> shift_m(stations.size(), 0.0);
   Eigen::Vector3d relative = Eigen::Vector3d::Zero();
   const Eigen::Matrix3d root = moduli_directions(filed, prior);
@@ -87,6 +91,9 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         break;
       case Of::position:
         shift_m[u.index] += move;
+        break;
+      case Of::delay:
+        delay_s[u.index] += move;
         break;
       case Of::bar_length:
         bars[u.index].length_m.value += move;

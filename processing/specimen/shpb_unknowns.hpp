@@ -18,6 +18,7 @@ struct ShpbUnknown {
   enum class Of {
     gain,
     position,
+    delay,
     bar_length,
     bar_density,
     bar_diameter,
@@ -32,8 +33,8 @@ struct ShpbUnknown {
   std::string name;  ///< as the effect that would name it: "gauge-position:g1"
   Of of = Of::gain;
   std::size_t index = 0;  ///< station, bar (0 input, 1 output) or direction
-  double sd = 0.0;        ///< relative, but metres for position and length; 1 for bar_material;
-                          ///< for temperature that of the moduli
+  double sd = 0.0;        ///< relative, but metres for position and length; seconds for delay;
+                          ///< 1 for bar_material; for temperature that of the moduli
 };
 
 [[nodiscard]] std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench,
@@ -47,6 +48,7 @@ struct MovedShpb {
   Specimen specimen;
   std::vector<double> to_specimen_m;  ///< by station
   std::vector<double> gain;           ///< reading = gain x strain, by station
+  std::vector<double> delay_s;        ///< beyond what is filed, by station
 
   /// @param moves  one per known unknown, in its standard deviations
   MovedShpb(const Bench& filed, const std::vector<ShpbStation>& stations, const BarPrior& prior,

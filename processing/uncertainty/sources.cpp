@@ -28,6 +28,8 @@ void add_gauge(Sources& sources, const Bench& bench, std::size_t i) {
   const std::string name = "gauges." + gauge.name + ".";
   add(sources, bench, name + "position_m", "gauge positions",
       [i](Bench& b) -> Measured& { return b.gauges[i].position_m; });
+  add(sources, bench, name + "delay_s", "channel delays",
+      [i](Bench& b) -> Measured& { return b.gauges[i].delay_s; });
   if (gauge.strain_per_V) {
     add(sources, bench, name + "strain_per_V", "gauge factors",
         [i](Bench& b) -> Measured& { return *b.gauges[i].strain_per_V; });

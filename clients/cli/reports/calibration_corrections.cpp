@@ -93,6 +93,9 @@ std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay, c
     case Of::position:
       return key_of("gauges", index_of(bench, number.gauge), "gauges." + number.gauge, "position_m",
                     number.combined);
+    case Of::delay:
+      return key_of("gauges", index_of(bench, number.gauge), "gauges." + number.gauge, "delay_s",
+                    number.combined);
     case Of::bar_length:
       return key_of(bar, 0, bar, "length_m", number.combined);
     case Of::elastic_modulus:

@@ -136,9 +136,24 @@ void refuse_bridge_keys_alone(const TomlTable& table, bool strain) {
   }
 }
 
+/// None where nothing is filed; a deviation alone is of a delay that should be none.
+Measured read_delay(const TomlTable& table) {
+  if (table.has("delay_s")) {
+    return table.measured("delay_s");
+  }
+  Measured delay;
+  if (table.has("delay_s_sd")) {
+    delay.sd = table.number("delay_s_sd");
+    if (delay.sd < 0.0) {
+      throw table.error("delay_s_sd", "is below 0", "give a standard deviation in seconds");
+    }
+  }
+  return delay;
+}
+
 Gauge read_gauge(const TomlTable& table) {
-  table.expect({"name", "bar", "position_m", "unit", "length_m", "strain_per_V", "bridge",
-                "gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
+  table.expect({"name", "bar", "position_m", "unit", "length_m", "delay_s", "strain_per_V",
+                "bridge", "gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
                 "gauge_resistance_ohm", "lead_resistance_ohm", "lead_wires", "gauges_in_series",
                 "shunt_resistance_ohm", "shunt_reading_V"});
   Gauge gauge;
@@ -147,6 +162,7 @@ Gauge read_gauge(const TomlTable& table) {
   gauge.position_m = table.measured("position_m");
   gauge.unit = table.text("unit");
   gauge.length_m = table.optional_measured("length_m");
+  gauge.delay_s = read_delay(table);
   gauge.strain_per_V = table.optional_measured("strain_per_V");
   if (table.has("bridge")) {
     gauge.bridge = read_bridge(table);

@@ -57,6 +57,9 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
     if (gauge.position_m.sd > 0.0) {
       list.push_back(filed("gauge-position:" + gauge.name, {gauge.position_m.sd}));
     }
+    if (gauge.delay_s.sd > 0.0) {
+      list.push_back(filed("channel-delay:" + gauge.name, {gauge.delay_s.sd}));
+    }
   }
   if (bench.input.length_m.sd > 0.0) {
     list.push_back(filed("bar-length", {bench.input.length_m.sd}));

@@ -29,8 +29,8 @@ Bench paper_bench() {
   bench.sampling_frequency_Hz = 1e6;
   bench.input = pmma_bar();
   bench.output = pmma_bar();
-  bench.gauges = {{"g1", "input", {0.4, 0.0}, "strain", {}, {}, {}},
-                  {"g2", "output", {0.05, 0.0}, "strain", {}, {}, {}}};
+  bench.gauges = {{"g1", "input", {0.4, 0.0}, {}, "strain", {}, {}, {}},
+                  {"g2", "output", {0.05, 0.0}, {}, "strain", {}, {}, {}}};
   bench.specimen = Specimen{{0.004, 0.0}, {0.012, 0.0}, {}, {}};
   return bench;
 }

@@ -192,6 +192,25 @@ TEST(BenchFile, ReadsHowAGaugeFactorGrows) {
             std::string::npos);
 }
 
+TEST(BenchFile, TakesAChannelsDelayOrItsDeviationAlone) {
+  const auto with = [](const std::string& lines) {
+    return replaced(kShpb, "strain_per_V = 5.01e-4", "strain_per_V = 5.01e-4\n" + lines);
+  };
+  const auto refusal = [&](const std::string& lines) {
+    return refusal_of([&] { (void)parse_bench(with(lines), "b.toml"); });
+  };
+  const Bench late = parse_bench(with("delay_s = 1.5e-6\ndelay_s_sd = 2e-7"), "b.toml");
+  EXPECT_EQ(late.gauges[0].delay_s.value, 0.0);
+  EXPECT_EQ(late.gauges[1].delay_s.value, 1.5e-6);
+  EXPECT_EQ(late.gauges[1].delay_s.sd, 2e-7);
+  const Bench doubtful = parse_bench(with("delay_s_sd = 2e-7"), "b.toml");
+  EXPECT_EQ(doubtful.gauges[1].delay_s.value, 0.0);
+  EXPECT_EQ(doubtful.gauges[1].delay_s.sd, 2e-7);
+  EXPECT_NE(refusal("delay_s = 1.5").find("0.5 us is 0.5e-6"), std::string::npos);
+  EXPECT_NE(refusal("delay_s_sd = -1e-6").find("gauges[1].delay_s_sd"), std::string::npos);
+  EXPECT_NE(refusal("delay_s_sd = 0.2").find("gauges[1].delay_s_sd"), std::string::npos);
+}
+
 TEST(BenchFile, ReadsLeadsSeriesAndShunt) {
   const Bench bench = parse_bench(
       replaced(kShpb, "gain = 500",
