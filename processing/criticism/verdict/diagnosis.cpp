@@ -338,10 +338,13 @@ class Diagnostician {
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     // Smooth distortions show that something is left; how much, all that repeats.
     const double excess = std::max(left.excess, repeated_excess(current.misfit));
-    // Shots that ask for moduli or readings of their own may leave no more than noise does.
-    const bool remains =
-        diagnosis_.unexplained_log_p < options_.log_alpha &&
-        (diagnosis_.effects.empty() || excess > allowed_rest() * std::max(0.0, explained));
+    // Shots that ask for moduli or readings of their own may leave no more than noise does. What a
+    // claim leaves of what it explains is its own inexactness only while noise might leave as much:
+    // ends that return waves explain so much that anything else would be less than a share of it.
+    constexpr double kSure = -11.5;  // 1e-5
+    const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
+                         (diagnosis_.effects.empty() || diagnosis_.unexplained_log_p < kSure ||
+                          excess > allowed_rest() * std::max(0.0, explained));
     diagnosis_.held_out =
         held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
     std::vector<std::string> reasons =
