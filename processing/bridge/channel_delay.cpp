@@ -47,16 +47,16 @@ void take_out_delay(double delay_s, double sample_rate_Hz, std::span<double> rec
   }
   const double whole = std::floor(delay);
   const Taps taps = interpolating(delay - whole);
-  const std::vector<double> late(record.begin(), record.end());
-  const auto last = static_cast<std::ptrdiff_t>(late.size()) - 1;
+  const auto last = static_cast<std::ptrdiff_t>(record.size()) - 1;
   const auto first = static_cast<std::ptrdiff_t>(whole) + 1 - static_cast<std::ptrdiff_t>(kReach);
+  std::vector<double> late(record.size() + taps.size());
+  for (std::size_t n = 0; n < late.size(); ++n) {
+    const std::ptrdiff_t at = first + static_cast<std::ptrdiff_t>(n);
+    late[n] = record[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))];
+  }
   for (std::size_t n = 0; n < record.size(); ++n) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < taps.size(); ++i) {
-      const std::ptrdiff_t at = first + static_cast<std::ptrdiff_t>(n + i);
-      sum += taps[i] * late[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))];
-    }
-    record[n] = sum;
+    record[n] = std::inner_product(taps.begin(), taps.end(),
+                                   late.begin() + static_cast<std::ptrdiff_t>(n), 0.0);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/bridge/channel_delay.hpp"
+#include "processing/identification/bar_records.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
@@ -19,10 +20,7 @@ constexpr double kLongestQuiet_s = 500e-6;
 
 /// A channel's readings on the bench's clock.
 std::vector<double> readings_of(const Shot& shot, std::size_t index) {
-  const ChannelRecord& channel = shot.channels[index];
-  std::vector<double> readings(channel.codes.size());
-  std::transform(channel.codes.begin(), channel.codes.end(), readings.begin(),
-                 [&](std::int32_t code) { return channel.value(code); });
+  std::vector<double> readings = kolsky::readings_of(shot.channels[index]);
   take_out_delay(shot.bench.gauges[index].delay_s, shot.rate.Hz(), readings);
   return readings;
 }

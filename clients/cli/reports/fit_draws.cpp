@@ -13,6 +13,9 @@ std::string table_of(const DrawnNumbers& drawn) {
     text += fmt::format("    {:<12}{:>12.5g} ± {:.2g} %, 95 %: {:.5g} to {:.5g}\n", f.name, f.value,
                         100.0 * f.sd / f.value, f.low, f.high);
   }
+  if (drawn.failed > 0) {
+    text += fmt::format("    {} more found nothing\n", drawn.failed);
+  }
   for (const std::string& warning : drawn.warnings) {
     text += "    " + warning + "\n";
   }

@@ -85,6 +85,42 @@ TEST(SlowRelaxation, OfABarWithThreeGaugesIsClaimed) {
   }
 }
 
+// Waves that come back are most of a record's misfit, beside which nothing else is a hundredth.
+class BesideReturningWaves : public ::testing::Test {
+ protected:
+  static testing::Campaign returning() {
+    testing::Campaign made = testing::draw_campaign(
+        {.seed = 881, .shots = 6, .gauges = 3, .samples = 1536, .rate_Hz = 5e5});
+    testing::hide(made, testing::parse_effect("end-reflection=0"));
+    return made;
+  }
+};
+
+TEST_F(BesideReturningWaves, AnAmplifierThatCannotFollowIsNotPassedOver) {
+  constexpr double kSlew_per_s = 40.0;
+  const testing::Campaign truth = returning();
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(truth);
+  const double most = kSlew_per_s * truth.world.timing.period_s();
+  for (auto& of_shot : readings) {
+    double held = of_shot[1].front();
+    for (double& strain : of_shot[1]) {
+      held += std::clamp(strain - held, -most, most);
+      strain = held;
+    }
+  }
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(truth, readings), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+}
+
+TEST_F(BesideReturningWaves, NothingElseIsMissing) {
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(returning()), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "named");
+  EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"end-reflection"});
+}
+
 // A cable that rings at one of four gauges is nothing of the library, and is seen at that gauge.
 TEST(Echo, OfOneCableIsToldByItsGauge) {
   constexpr std::size_t kGauge = 2;
