@@ -14,6 +14,7 @@ namespace {
 std::string source_of(const std::string& number) {
   constexpr std::array kSources{std::pair{"gauge-factor", "gauge factors"},
                                 std::pair{"gauge-position", "gauge positions"},
+                                std::pair{"channel-delay", "channel delays"},
                                 std::pair{"bar-length", "bar lengths"},
                                 std::pair{"bar-diameter", "bar diameters"},
                                 std::pair{"diameter", "bar diameters"},

@@ -81,6 +81,30 @@ TEST_F(Calibrate, NamesWhatDiffersAndMendsTheBenchFile) {
   EXPECT_TRUE(refused(scene::kolsky(words({"--bench-out", mended})), {"mended.toml"}));
 }
 
+// Of the simulated bar g3 is recorded late, by what the tour tells afterwards.
+TEST(CalibrateLateChannel, FilesTheDelay) {
+  scene::Folder folder;
+  ASSERT_EQ(
+      scene::kolsky({"tour", "--seed", "3", "--quick", "--shots-only", "--folder", folder / "c"})
+          .code,
+      0);
+  std::vector<std::string> words = {"calibrate"};
+  for (const char* shot : {"shot01", "shot02", "shot03", "shot04"}) {
+    words.push_back(folder / (std::string(shot) + ".h5"));
+    (void)json_of(
+        scene::kolsky({"import", "csv", folder / ("c/" + std::string(shot) + ".csv"), "--bench",
+                       folder / "c/bench.toml", "-o", words.back(), "--json"}));
+  }
+  const std::string mended = folder / "mended.toml";
+  words.insert(words.end(), {"--bench-out", mended, "--json"});
+  EXPECT_EQ(json_of(scene::kolsky(words))["differs"], json{"channel-delay:g3"});
+  const json truth =
+      json_of(scene::kolsky({"tour", "--seed", "3", "--quick", "--truth-only", "--json"}));
+  const Measured delay_s = read_bench(mended).bench.gauges[2].delay_s;
+  EXPECT_GT(delay_s.sd, 0.0);
+  EXPECT_NEAR(delay_s, truth["truth"]["strength"].get<double>(), 4.0 * delay_s.sd);
+}
+
 TEST_F(Calibrate, RefusesInOneLine) {
   EXPECT_TRUE(refused(scene::kolsky(words({"--trust", "g9"})), {" more: gauge g9"}));
   EXPECT_TRUE(refused(scene::kolsky(words({"--bench", "none.toml"})), {"none.toml"}));
