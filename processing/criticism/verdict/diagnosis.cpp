@@ -56,7 +56,7 @@ namespace {
 
 /// Where earlier beginnings of a search have been.
 struct Trail {
-  /// Two effects that stood beside each other, and which of them was on trial.
+  /// Effects that stood beside each other when two were found, and which of them was on trial.
   using Pair = std::pair<std::set<std::string>, std::string>;
   std::set<Pair> pairs;
   double excess = 0.0;  ///< misfit that was left where the last one ended
@@ -110,8 +110,8 @@ class Diagnostician {
   /// @return that nothing was added to two that stand beside each other
   bool seek(Studied& current) {
     bool gone_back = false;
-    while (diagnosis_.effects.size() < options_.most_effects) {
-      const bool two = diagnosis_.effects.size() == 2;
+    while (surprises(diagnosis_.effects) < options_.most_effects) {
+      const bool two = surprises(diagnosis_.effects) == 2;
       if (two && !gone_back && options_.safeguards.backward) {
         go_back(current);
         gone_back = true;
@@ -120,7 +120,7 @@ class Diagnostician {
         }
       }
       if (!add_one(current)) {
-        return two && gone_back && diagnosis_.effects.size() == 2;
+        return two && gone_back && surprises(diagnosis_.effects) == 2;
       }
     }
     return false;
@@ -129,7 +129,8 @@ class Diagnostician {
   /// Whether an earlier beginning came by the same pair: from there on the way is the same.
   bool has_been_here() {
     const std::set<std::string> here(diagnosis_.effects.begin(), diagnosis_.effects.end());
-    trodden_ = here.size() == 2 && !trail_.pairs.insert({here, on_trial_.value_or("")}).second;
+    trodden_ = surprises(diagnosis_.effects) == 2 &&
+               !trail_.pairs.insert({here, on_trial_.value_or("")}).second;
     return trodden_;
   }
 
@@ -182,8 +183,9 @@ class Diagnostician {
 
   void go_back(Studied& current) {
     const std::size_t found = diagnosis_.effects.size();
+    const bool many = surprises(diagnosis_.effects) > kMostBelieved;
     // The last was certified beside all others, unless these take its part from another start.
-    drop_unneeded(current, found > kMostBelieved ? 0 : 1);
+    drop_unneeded(current, many ? 0 : 1);
     // It stood beside what is gone now, and its rivals may have been what that took up.
     const std::size_t spared = diagnosis_.effects.size() < found ? 0 : 1;
     if (reconsider(current, spared)) {

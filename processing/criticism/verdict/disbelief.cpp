@@ -91,6 +91,10 @@ const CandidateResult* surest_rejected(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+std::size_t surprises(const std::vector<std::string>& effects) {
+  return effects.size() - static_cast<std::size_t>(std::ranges::count(effects, "end-reflection"));
+}
+
 bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,
                    double slack) {
   const EffectUse* use = studied.model.find(id);
@@ -184,7 +188,7 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
         "the records ask for one effect at every gauge but one: it stands for something of that "
         "one which the library lacks");
   }
-  if (diagnosis.effects.size() > kMostBelieved) {
+  if (surprises(diagnosis.effects) > kMostBelieved) {
     reasons.emplace_back(
         "it takes three effects of the library: likelier than that three are missing is that one "
         "is which the library lacks");

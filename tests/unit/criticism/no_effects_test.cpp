@@ -90,7 +90,7 @@ class BesideReturningWaves : public ::testing::Test {
  protected:
   static testing::Campaign returning() {
     testing::Campaign made = testing::draw_campaign(
-        {.seed = 881, .shots = 6, .gauges = 3, .samples = 1536, .rate_Hz = 5e5});
+        {.seed = 881, .shots = 4, .gauges = 3, .samples = 1536, .rate_Hz = 5e5});
     testing::hide(made, testing::parse_effect("end-reflection=0"));
     return made;
   }
@@ -112,6 +112,16 @@ TEST_F(BesideReturningWaves, AnAmplifierThatCannotFollowIsNotPassedOver) {
   const Diagnosis diagnosis =
       diagnosed(testing::shots_of(truth, readings), paper_model(BenchKind::bar, false));
   EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+}
+
+TEST_F(BesideReturningWaves, TwoEffectsAreNotOneTooMany) {
+  testing::Campaign truth = returning();
+  testing::hide(truth, testing::parse_effect("gauge-factor:g2=0.03"));
+  testing::hide(truth, testing::parse_effect("channel-delay:g3=3e-6"));
+  Diagnosis diagnosis = diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
+  std::ranges::sort(diagnosis.effects);
+  EXPECT_EQ(diagnosis.effects,
+            (std::vector<std::string>{"channel-delay:g3", "end-reflection", "gauge-factor:g2"}));
 }
 
 TEST_F(BesideReturningWaves, NothingElseIsMissing) {
