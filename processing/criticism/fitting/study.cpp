@@ -1,5 +1,6 @@
 #include "processing/criticism/fitting/study.hpp"
 
+#include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
 
@@ -55,6 +56,11 @@ Studied Study::fit(const Model& model, LearnNoise learn) {
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
+  if (auto other = better_afresh(started, composition, fit)) {
+    fit = *std::move(other);
+    residuals_.freeze(composition, fit.theta);
+    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  }
   if (learn == LearnNoise::yes) {
     residuals_.calibrate(composition, fit.theta);
     fit = fit_model(composition, residuals_, executor_, fit.theta);
@@ -65,6 +71,19 @@ Studied Study::fit(const Model& model, LearnNoise learn) {
   const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
   Model after = fitted(started, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};
+}
+
+std::optional<ModelFit> Study::better_afresh(const Model& model, const Composition& composition,
+                                             const ModelFit& fit) {
+  std::optional<Model> afresh = with_unfitted_moduli(model);
+  const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
+  if (!afresh || !astray(fitted(model, composition, fit), misfit)) {
+    return std::nullopt;
+  }
+  start_moduli(*afresh, campaign_, residuals_);
+  ModelFit other =
+      fit_model(composition, residuals_, executor_, Composition(*afresh, campaign_).start());
+  return other.objective() < fit.objective() ? std::optional(std::move(other)) : std::nullopt;
 }
 
 Studied Study::refit(const Studied& studied) {

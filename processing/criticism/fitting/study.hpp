@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,9 @@ class Study {
   /// @param band_limit_Hz  0: where the pulses fall below the noise
   Study(const Campaign& campaign, double band_limit_Hz, Workers executor);
 
-  /// Fits from wherever the model's moduli are. What was just added begins at the best of its
-  /// auxiliary parameters' starts or of a few sizes, and what is free to choose among a few is held
-  /// at the best from then on.
+  /// Fits from wherever the model's moduli are, and where an earlier fit has led them astray from
+  /// the library's too. What was just added begins at the best of its auxiliary parameters' starts
+  /// or of a few sizes, and what is free to choose among a few is held at the best from then on.
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
@@ -48,6 +49,11 @@ class Study {
 
  private:
   [[nodiscard]] Model begun(Model model);
+  /// The fit from where nobody has fitted the moduli, where those of an earlier fit lead astray and
+  /// that is better.
+  [[nodiscard]] std::optional<ModelFit> better_afresh(const Model& model,
+                                                      const Composition& composition,
+                                                      const ModelFit& fit);
 
   const Campaign& campaign_;
   Workers executor_;

@@ -8,13 +8,13 @@
 #include <set>
 #include <utility>
 
-#include "processing/criticism/impact/filed_conflict.hpp"
 #include "processing/criticism/impact/impact_certifier.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
 #include "processing/criticism/impact/impact_search.hpp"
 #include "processing/criticism/impact/next_impact.hpp"
 #include "processing/criticism/impact/rival_readings.hpp"
 #include "processing/criticism/verdict/claims.hpp"
+#include "processing/criticism/verdict/filed_conflict.hpp"
 
 namespace kolsky {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/beside.hpp"
@@ -18,8 +19,6 @@ namespace kolsky {
 namespace {
 
 constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
-/// The same of a specimen, whose spring becomes rigid for little: what is missing moves it decades.
-constexpr double kSpecimenFarOff = 1.2;
 constexpr std::size_t kMostRefits = 14;
 constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
 constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
@@ -43,22 +42,6 @@ bool is_harmonic(const EffectUse& use) {
 bool at_one_gauge(const Candidate& a, const Candidate& b) {
   return !a.use.gauge.empty() && a.use.gauge == b.use.gauge && !a.frees_prior &&
          a.use.effect->about().stage == Stage::sensor;
-}
-
-/// The model's own numbers may have gone far for want of an effect: much misfit shows it, or a
-/// modulus that nothing holds any longer.
-bool astray(const Studied& studied) {
-  const EffectUse* specimen = studied.model.find("three-element-specimen");
-  const bool moves =
-      specimen != nullptr && std::ranges::any_of(specimen->values, &ModelValue::free);
-  return studied.misfit.chi2_reduced > (moves ? kSpecimenFarOff : kFarOff) ||
-         std::any_of(
-             studied.model.effects.begin(), studied.model.effects.end(), [](const auto& use) {
-               return use.effect->about().base &&
-                      std::any_of(use.values.begin(), use.values.end(), [](const ModelValue& own) {
-                        return own.free && own.prior_sd == 0.0 && own.sd > std::abs(own.value);
-                      });
-             });
 }
 
 /// The material's effects take each other's places at a finite size: what a dashpot does, the
@@ -97,7 +80,7 @@ Search::Search(Study& study, const Studied& base, const Model& start, const Safe
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     directions_[i] = direction_of(candidates_[i], base_, study_, worker);
   });
-  if (astray(base_)) {
+  if (astray(base_.model, base_.misfit)) {
     begun_ = start;
     start_moduli(*begun_, study.campaign(), study.residuals());
   }

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
@@ -15,6 +16,7 @@
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/filed_bars.hpp"
+#include "processing/criticism/verdict/filed_conflict.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 
@@ -23,6 +25,8 @@ namespace kolsky {
 namespace {
 
 constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effect explains
+/// ln of a chance that needs no search to be counted: 1e-5.
+constexpr double kSure = -11.5;
 
 HeldOut held_out(const Studied& before, const Studied& after, bool remains, Study& study) {
   const auto mean = [&](const Studied& studied) {
@@ -76,7 +80,7 @@ class Diagnostician {
 
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
-    start_ = model;
+    start_ = with_unfitted_moduli(model).value_or(model);
     Studied first =
         study_.fit(model, options_.safeguards.fitted_noise ? LearnNoise::yes : LearnNoise::no);
     diagnosis_.before = first.misfit;
@@ -343,7 +347,6 @@ class Diagnostician {
     // Shots that ask for moduli or readings of their own may leave no more than noise does. What a
     // claim leaves of what it explains is its own inexactness only while noise might leave as much:
     // ends that return waves explain so much that anything else would be less than a share of it.
-    constexpr double kSure = -11.5;  // 1e-5
     const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
                          (diagnosis_.effects.empty() || diagnosis_.unexplained_log_p < kSure ||
                           excess > allowed_rest() * std::max(0.0, explained));
@@ -397,21 +400,32 @@ class Diagnostician {
     }
     std::vector<std::string> reasons =
         why_unknown(diagnosis_, current, study_.campaign(), remains, options_.log_alpha);
+    if (const FiledConflict filed = conflict_with_filed(current); filed.log_p < kSure) {
+      reasons.push_back(filed_text(filed));
+    }
     if (!reasons.empty() || !diagnosis_.effects.empty()) {
       judge_filed_bars(before, current, noise, reasons);
     }
     return reasons;
   }
 
-  /// What is claimed must do at least as well as other bars would.
+  /// What is claimed must do at least as well as other bars would. Where it is doubted anyway, they
+  /// are told too if they do nearly as well: of a wrong wave speed lengths and positions make up
+  /// three effects.
   void judge_filed_bars(const Studied& before, const Studied& current, double noise,
                         std::vector<std::string>& reasons) {
     constexpr double kBetter = 16.0;  // three numbers gain as much from noise once in a thousand
-    if (const std::optional<Model> any = with_bars_of_any_moduli(before.model)) {
-      const Studied other = changed(before, *any);
-      if (other.fit.objective() < current.fit.objective() - kBetter * noise) {
-        reasons.push_back(other_bars_text(before.model, other.model));
-      }
+    constexpr double kNearly = 0.1;
+    const std::optional<Model> any = with_bars_of_any_moduli(before.model, study_.campaign().bench);
+    if (!any) {
+      return;
+    }
+    const Studied other = changed(before, *any);
+    const double behind = other.fit.objective() - current.fit.objective();
+    const double explained = before.fit.objective() - current.fit.objective();
+    const bool doubted = !reasons.empty() && !diagnosis_.effects.empty();
+    if (behind < (doubted ? kNearly * explained : -kBetter * noise)) {
+      reasons.push_back(other_bars_text(before.model, other.model, behind < 0.0));
     }
   }
 

@@ -2,43 +2,88 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 namespace kolsky {
 
 namespace {
 
-constexpr const char* kBars = "three-element-bar";
+constexpr std::array<const char*, 2> kViscoelastic{"three-element-bar", "output-three-element-bar"};
+constexpr std::array<const char*, 2> kElastic{"bar-modulus", "output-bar-modulus"};
+
+bool is_filed(const ModelValue& value) {
+  return !value.free || value.prior_sd > 0.0;
+}
+
+void let_go(EffectUse& use) {
+  for (ModelValue& value : use.values) {
+    value.free = true;
+    value.prior_sd = 0.0;
+  }
+  use.prior_correlation.clear();
+}
+
+/// A change of elastic bars' modulus, which a bench that states no deviation holds at none.
+EffectUse& elastic_change(Model& model, const std::string& id) {
+  if (model.find(id) == nullptr) {
+    model.effects.push_back(null_use(*find_effect(id), ""));
+  }
+  return *model.find(id);
+}
+
+std::string change_text(const std::string& name, double change, double sd) {
+  return fmt::format("{} {:+.2g} ± {:.1g} %", name, 100.0 * change, 100.0 * sd);
+}
 
 }  // namespace
 
-std::optional<Model> with_bars_of_any_moduli(const Model& model) {
+std::optional<Model> with_bars_of_any_moduli(const Model& model, const Bench& bench) {
   Model any = model;
-  EffectUse* bars = any.find(kBars);
   bool filed = false;
-  if (bars != nullptr) {
-    for (ModelValue& value : bars->values) {
-      filed = filed || !value.free || value.prior_sd > 0.0;
-      value.free = true;
-      value.prior_sd = 0.0;
+  for (const std::string id : kViscoelastic) {
+    if (EffectUse* bars = any.find(id)) {
+      filed = filed || std::ranges::any_of(bars->values, is_filed);
+      let_go(*bars);
     }
-    bars->prior_correlation.clear();
+  }
+  const std::array elastic{bench.input.youngs_modulus_Pa.has_value(),
+                           bench.output && bench.output->youngs_modulus_Pa};
+  for (std::size_t bar = 0; bar < elastic.size(); ++bar) {
+    if (elastic[bar]) {
+      filed = true;
+      let_go(elastic_change(any, kElastic[bar]));
+    }
   }
   return filed ? std::optional(std::move(any)) : std::nullopt;
 }
 
-std::string other_bars_text(const Model& model, const Model& fitted) {
-  const EffectUse& filed = *model.find(kBars);
-  const EffectUse& found = *fitted.find(kBars);
+std::string other_bars_text(const Model& model, const Model& fitted, bool more) {
   std::string moduli;
-  for (std::size_t p = 0; p < filed.values.size(); ++p) {
-    const ModelValue& own = filed.values[p];
-    const double value = own.prior_sd > 0.0 ? own.prior_mean : own.value;
-    moduli += fmt::format("{}{} {:+.2g} ± {:.1g} %", moduli.empty() ? "" : ", ",
-                          filed.effect->about().parameters[p].name,
-                          100.0 * (found.values[p].value / value - 1.0),
-                          100.0 * found.values[p].sd / value);
+  const auto add = [&](const std::string& text) { moduli += (moduli.empty() ? "" : ", ") + text; };
+  for (const std::string id : kViscoelastic) {
+    const EffectUse* filed = model.find(id);
+    const EffectUse* found = fitted.find(id);
+    for (std::size_t p = 0; filed != nullptr && p < filed->values.size(); ++p) {
+      const ModelValue& own = filed->values[p];
+      const double value = own.prior_sd > 0.0 ? own.prior_mean : own.value;
+      add(change_text(filed->effect->about().parameters[p].name,
+                      found->values[p].value / value - 1.0, found->values[p].sd / value));
+    }
   }
-  return "bars of other moduli than filed explain more of it (" + moduli +
-         "): identify the bars again, at the shots' temperature";
+  for (const std::string id : kElastic) {
+    if (const EffectUse* found = fitted.find(id)) {
+      add(change_text(id, found->values[0].value, found->values[0].sd));
+    }
+  }
+  const bool identified = std::ranges::any_of(
+      kViscoelastic, [&](const std::string& id) { return model.find(id) != nullptr; });
+  return std::string("bars of other moduli than filed explain ") +
+         (more ? "more of it (" : "nearly as much (") + moduli + "): " +
+         (identified ? "identify the bars again, at the shots' temperature"
+                     : "measure their wave speed (`kolsky calibrate`); a modulus or density that "
+                       "is filed without a deviation counts as exact");
 }
 
 }  // namespace kolsky

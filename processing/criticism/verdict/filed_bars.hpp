@@ -7,12 +7,14 @@
 
 namespace kolsky {
 
-/// A model whose viscoelastic bars may have any moduli, whatever is filed of them: no effect of the
-/// library is that, and what is one may do as well as it can in its place.
-/// @return nothing where the model's bars have none that are filed
-[[nodiscard]] std::optional<Model> with_bars_of_any_moduli(const Model& model);
+/// A model whose bars may have any moduli, whatever is filed of them: no effect of the library is
+/// that, and what is one may do as well as it can in its place. Of elastic bars only the wave speed
+/// counts much, so that this stands for their density too.
+/// @return nothing where no bar's moduli are filed
+[[nodiscard]] std::optional<Model> with_bars_of_any_moduli(const Model& model, const Bench& bench);
 
 /// How far the moduli of such a fit lie from those of the model, in a sentence.
-[[nodiscard]] std::string other_bars_text(const Model& model, const Model& fitted);
+/// @param more  they explain more than what they are held against, not nearly as much
+[[nodiscard]] std::string other_bars_text(const Model& model, const Model& fitted, bool more);
 
 }  // namespace kolsky

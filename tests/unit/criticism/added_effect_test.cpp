@@ -101,6 +101,29 @@ TEST(Added, LateralInertiaOfASpecimenThatSoftens) {
   EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1);
 }
 
+// A model that lacks the lateral inertia of a soft specimen is fitted by a spring that is as good
+// as rigid. Who adds the inertia then must not be left there.
+TEST(Added, ToAModelWhoseSpecimenRanAwayWithoutIt) {
+  int ran_away = 0;
+  for (std::uint64_t seed = 5; seed < 9; ++seed) {
+    testing::CampaignWishes wished = wishes(true);
+    wished.seed = seed;
+    testing::Campaign truth = testing::draw_campaign(wished);
+    testing::hide(truth, testing::parse_effect("radial-inertia=8"));
+    const Campaign campaign = read_campaign(testing::shots_of(truth));
+    Study study(campaign, 0.0, Workers{});
+    Model model = study.fit(paper_model(BenchKind::shpb, false)).model;
+    const double E1_Pa = truth.split->specimen.E1_Pa;
+    ran_away += model.find("three-element-specimen")->values[0].value > 10.0 * E1_Pa ? 1 : 0;
+    model.effects.push_back(use_named("radial-inertia"));
+    const Studied added = study.fit(model);
+    const ModelValue& found = added.model.find("three-element-specimen")->values[0];
+    EXPECT_LT(std::abs(found.value - E1_Pa), 4.0 * found.sd) << seed;
+    EXPECT_LT(added.misfit.chi2_reduced, 1.1) << seed;
+  }
+  EXPECT_GT(ran_away, 0) << "nothing to find back from";
+}
+
 /// An effect as the generator plants it, on a split bar or a bar.
 struct Planted {
   bool split;

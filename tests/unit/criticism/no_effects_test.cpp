@@ -39,6 +39,45 @@ TEST(FiledBars, OfOtherModuliAreNoEffect) {
   }
 }
 
+testing::Campaign metal_split_bar(std::uint64_t seed) {
+  return testing::draw_campaign({.seed = seed,
+                                 .shots = 5,
+                                 .gauges = 2,
+                                 .samples = 1400,
+                                 .rate_Hz = 1e6,
+                                 .split = true,
+                                 .elastic = true});
+}
+
+// Without a deviation a filed modulus counts as exact: what it leaves is told by what it would be.
+TEST(FiledBars, OfAnotherWaveSpeedAreSaidToBe) {
+  for (std::uint64_t seed = 843; seed < 846; ++seed) {
+    testing::Campaign truth = metal_split_bar(seed);
+    for (Bar* bar : {&truth.bench.input, &*truth.bench.output}) {
+      bar->youngs_modulus_Pa->value *= 1.02;
+    }
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::shpb, true));
+    EXPECT_EQ(name_of(diagnosis.verdict), "unknown") << seed;
+    EXPECT_TRUE(says(diagnosis, "counts as exact")) << seed;
+  }
+}
+
+// A deviation that is filed too small is pulled at, and no misfit need be left.
+TEST(FiledBars, FarOffTheirDeviationAreNotAdequate) {
+  for (std::uint64_t seed = 843; seed < 846; ++seed) {
+    testing::Campaign truth = metal_split_bar(seed);
+    for (Bar* bar : {&truth.bench.input, &*truth.bench.output}) {
+      bar->youngs_modulus_Pa->sd = 0.001 * bar->youngs_modulus_Pa->value;
+      bar->youngs_modulus_Pa->value *= 1.007;
+    }
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::shpb, true));
+    EXPECT_EQ(name_of(diagnosis.verdict), "unknown") << seed;
+    EXPECT_TRUE(says(diagnosis, "of its filed deviations off")) << seed;
+  }
+}
+
 /// A first-order high pass, as of an amplifier that is coupled by a capacitor.
 void couple(std::vector<double>& strain, double corner_Hz, double period_s) {
   const double kept = std::exp(-2.0 * std::numbers::pi * corner_Hz * period_s);

@@ -6,7 +6,8 @@
 
 namespace kolsky {
 
-/// Where a fit has led the materials' numbers to, against what the Hopkinson bar filed of them.
+/// Where a fit has led what no effect claims (materials, densities, diameters), against what is
+/// filed of it.
 struct FiledConflict {
   double log_p = 0.0;       ///< ln of the chance that true numbers lie so far from what is filed
   std::string furthest;     ///< "three-element-core E2_Pa"
@@ -18,7 +19,10 @@ struct FiledConflict {
 /// little (docs/impact.md). A number that took up what the model lacks lies further off.
 [[nodiscard]] FiledConflict conflict_with_filed(const Studied& studied);
 
-/// @param claims  something is certified
+/// Of bars, in a sentence.
+[[nodiscard]] std::string filed_text(const FiledConflict& conflict);
+
+/// Of impacts, whose materials take up much. @param claims  something is certified
 [[nodiscard]] std::string filed_note(const FiledConflict& conflict, bool claims);
 
 }  // namespace kolsky

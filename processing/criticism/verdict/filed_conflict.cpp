@@ -1,4 +1,4 @@
-#include "processing/criticism/impact/filed_conflict.hpp"
+#include "processing/criticism/verdict/filed_conflict.hpp"
 
 #include <fmt/format.h>
 
@@ -37,6 +37,13 @@ FiledConflict conflict_with_filed(const Studied& studied) {
       Eigen::Map<const Eigen::VectorXd>(away.data(), static_cast<Eigen::Index>(away.size()));
   conflict.log_p = log_chi2_tail(off.dot(precision * off), static_cast<double>(filed.size()));
   return conflict;
+}
+
+std::string filed_text(const FiledConflict& conflict) {
+  return fmt::format(
+      "{} would be {:+.1f} of its filed deviations off (by chance {:.1g}): it is not as filed, or "
+      "took up what the model lacks; measure it again, or file how well it is known",
+      conflict.furthest, conflict.deviations, std::exp(conflict.log_p));
 }
 
 std::string filed_note(const FiledConflict& conflict, bool claims) {

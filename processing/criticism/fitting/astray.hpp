@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "processing/criticism/fitting/misfit.hpp"
+#include "processing/models/model.hpp"
+
+namespace kolsky {
+
+/// The model's own numbers may have gone far for want of an effect: much misfit shows it, or a
+/// modulus that nothing holds any longer.
+[[nodiscard]] bool astray(const Model& fitted, const Misfit& misfit);
+
+/// A model whose materials begin where nobody has fitted them: all of a material's moduli that an
+/// earlier fit found go back to the library's. A fit that lacked an effect may have led them to
+/// where what is added since finds no way back (a specimen's E1 a thousandfold, for want of lateral
+/// inertia). What is held, filed or written by hand stays.
+/// @return nothing where no material was fitted before
+[[nodiscard]] std::optional<Model> with_unfitted_moduli(const Model& model);
+
+}  // namespace kolsky
