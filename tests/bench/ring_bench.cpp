@@ -26,6 +26,11 @@ using namespace kolsky;
 
 constexpr std::size_t kCapacity = std::size_t{1} << 22;  ///< samples per channel
 constexpr double kNoise_codes = 20.0;
+constexpr double kLeastRate = 2e9;   ///< samples of 16 bits per second, on one core
+constexpr double kMostCopies = 5.0;  ///< of the same bytes
+/// Smaller blocks, which a digitiser sends below half a megasample per second only, are bound by
+/// what each costs.
+constexpr std::size_t kLeastBlock = 512;
 
 std::vector<std::int16_t> quiet_noise(std::size_t samples) {
   std::mt19937_64 random(7);
@@ -153,8 +158,13 @@ void write_ring(benchmark::State& state, Watch watch) {
     at = (at + samples) % kCapacity;
     best.count_round();
   }
-  state.counters["of_copy"] = best.round_s() / floor_s(channels, samples);
+  const double of_copy = best.round_s() / floor_s(channels, samples);
+  state.counters["of_copy"] = of_copy;
   count_samples(state, channels * samples);
+  if (watch == Watch::all && samples >= kLeastBlock) {
+    const double rate = static_cast<double>(channels * kCapacity) / best.round_s();
+    state.counters["bound_over_time"] = std::min(rate / kLeastRate, kMostCopies / of_copy);
+  }
 }
 
 void ring_alone(benchmark::State& state) {
@@ -180,5 +190,3 @@ BENCHMARK(ring_and_trigger)->Apply(sizes);
 BENCHMARK(ring_trigger_and_levels)->Apply(sizes);
 
 }  // namespace
-
-BENCHMARK_MAIN();
