@@ -38,6 +38,9 @@ struct EffectParameter {
   /// or to what the library lacks; 0: no such limit.
   double most = 0.0;
   double most_times_peak = 0.0;
+  /// First order at null says nothing of a finite size, in which it acts otherwise (a gap that
+  /// closes): fits begin at several.
+  bool sudden = false;
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };

@@ -29,7 +29,7 @@ std::vector<double> starts_of(const EffectUse& use, std::size_t p) {
   if (parameter.auxiliary()) {
     return parameter.starts;
   }
-  if (parameter.power == 1.0) {
+  if (parameter.power == 1.0 && !parameter.sudden) {
     return {};
   }
   // First order at null says nothing of a large one.

@@ -49,18 +49,36 @@ Model Study::begun(Model model) {
                         });
 }
 
-Studied Study::fit(const Model& model, LearnNoise learn) {
-  const Model started = begun(model);
+Study::Attempt Study::attempt(const Model& model) {
+  Model started = begun(model);
   Composition composition(started, campaign_);
   residuals_.freeze(composition, composition.start());
   ModelFit fit = fit_model(composition, residuals_, executor_);
   residuals_.freeze(composition, fit.theta);
   fit = fit_model(composition, residuals_, executor_, fit.theta);
-  if (auto other = better_afresh(started, composition, fit)) {
-    fit = *std::move(other);
-    residuals_.freeze(composition, fit.theta);
-    fit = fit_model(composition, residuals_, executor_, fit.theta);
+  return {std::move(started), std::move(composition), std::move(fit)};
+}
+
+Study::Attempt Study::best_attempt(const Model& model) {
+  Attempt first = attempt(model);
+  const Misfit misfit =
+      misfit_of(residuals_, first.fit.residual, first.fit.degrees_of_freedom(first.composition));
+  const std::optional<Model> unfitted = with_unfitted_moduli(model);
+  if (!unfitted || !astray(fitted(first.begun, first.composition, first.fit), misfit)) {
+    return first;
   }
+  Attempt afresh = attempt(*unfitted);
+  // Both by the same noise, then each by its own.
+  residuals_.freeze(first.composition, first.fit.theta);
+  const ModelFit beside = fit_model(afresh.composition, residuals_, executor_, afresh.fit.theta);
+  Attempt& better = beside.objective() < first.fit.objective() ? afresh : first;
+  residuals_.freeze(better.composition, better.fit.theta);
+  better.fit = fit_model(better.composition, residuals_, executor_, better.fit.theta);
+  return std::move(better);
+}
+
+Studied Study::fit(const Model& model, LearnNoise learn) {
+  auto [started, composition, fit] = best_attempt(model);
   if (learn == LearnNoise::yes) {
     residuals_.calibrate(composition, fit.theta);
     fit = fit_model(composition, residuals_, executor_, fit.theta);
@@ -71,19 +89,6 @@ Studied Study::fit(const Model& model, LearnNoise learn) {
   const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
   Model after = fitted(started, composition, fit);
   return {std::move(after), std::move(composition), std::move(fit), misfit};
-}
-
-std::optional<ModelFit> Study::better_afresh(const Model& model, const Composition& composition,
-                                             const ModelFit& fit) {
-  std::optional<Model> afresh = with_unfitted_moduli(model);
-  const Misfit misfit = misfit_of(residuals_, fit.residual, fit.degrees_of_freedom(composition));
-  if (!afresh || !astray(fitted(model, composition, fit), misfit)) {
-    return std::nullopt;
-  }
-  start_moduli(*afresh, campaign_, residuals_);
-  ModelFit other =
-      fit_model(composition, residuals_, executor_, Composition(*afresh, campaign_).start());
-  return other.objective() < fit.objective() ? std::optional(std::move(other)) : std::nullopt;
 }
 
 Studied Study::refit(const Studied& studied) {

@@ -49,11 +49,16 @@ class Study {
 
  private:
   [[nodiscard]] Model begun(Model model);
-  /// The fit from where nobody has fitted the moduli, where those of an earlier fit lead astray and
-  /// that is better.
-  [[nodiscard]] std::optional<ModelFit> better_afresh(const Model& model,
-                                                      const Composition& composition,
-                                                      const ModelFit& fit);
+  struct Attempt {
+    Model begun;
+    Composition composition;
+    ModelFit fit;
+  };
+  /// A fit from where a model begins, its own residuals known as noise.
+  [[nodiscard]] Attempt attempt(const Model& model);
+  /// The same from where nobody has fitted the moduli, where those of an earlier fit lead astray
+  /// and that is better.
+  [[nodiscard]] Attempt best_attempt(const Model& model);
 
   const Campaign& campaign_;
   Workers executor_;

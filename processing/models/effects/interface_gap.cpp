@@ -14,8 +14,9 @@ class InterfaceGap final : public Effect {
             .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::shpb},
             // A gap below the noise of the strain before the pulse shows nothing of what one does.
-            .parameters = {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}, false, 1.0},
-                           {"reopens", "-", 0.0, 0.0, 1.0, 1.0, {0.0, 1.0}, false, 2e-3, true}},
+            .parameters =
+                {{"delta", "m", 0.0, 0.0, 1e-3, 5e-6, {}, false, 1.0, false, 1.0, 0.0, 0.0, true},
+                 {"reopens", "-", 0.0, 0.0, 1.0, 1.0, {0.0, 1.0}, false, 2e-3, true}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

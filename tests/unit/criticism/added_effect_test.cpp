@@ -66,6 +66,25 @@ TEST_P(Gap, IsFoundWithTheMaterialBehindIt) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Gap, ::testing::Values(3e-6, 10e-6, 20e-6));
 
+// Without the gap the specimen's moduli are nowhere, and with the moduli there no gap of any size is
+// better than none.
+TEST(Added, AGapToAModelWhoseSpecimenRanAwayWithoutIt) {
+  for (std::uint64_t seed = 5; seed < 8; ++seed) {
+    testing::CampaignWishes wished = wishes(true);
+    wished.seed = seed;
+    testing::Campaign truth = testing::draw_campaign(wished);
+    testing::hide(truth, testing::parse_effect("interface-gap=40e-6"));
+    const Campaign campaign = read_campaign(testing::shots_of(truth));
+    Study study(campaign, 0.0, Workers{});
+    Model model = study.fit(paper_model(BenchKind::shpb, false)).model;
+    model.effects.push_back(use_named("interface-gap"));
+    const Studied added = study.fit(model);
+    const ModelValue& gap_m = added.model.find("interface-gap")->values[0];
+    EXPECT_LT(std::abs(gap_m.value - 40e-6), 3.5 * gap_m.sd) << seed;
+    EXPECT_LT(added.misfit.chi2_reduced, 1.1) << seed;
+  }
+}
+
 TEST(Added, CrosstalkTakesTheNeighbourThatItFits) {
   for (const auto* from : {"2", "4"}) {
     const Added added = fitted_with(false, {{"crosstalk:g3", std::string("0.02,from=") + from}});
