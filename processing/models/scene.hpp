@@ -70,6 +70,13 @@ struct GaugeScene {
   std::vector<std::pair<std::size_t, double>> picks_up{};  ///< crosstalk: gauge and its share
 };
 
+/// What becomes of a gap once it has closed.
+enum class GapAfter {
+  closed_for_good,
+  opens_where_it_was,  ///< the bars are as far apart as before
+  pulls_nothing,       ///< dry faces: open wherever the specimen would have to be pulled
+};
+
 /// The specimen between the bars.
 struct SpecimenScene {
   double length_m = 0.0;
@@ -83,7 +90,7 @@ struct SpecimenScene {
   double stiffening = 0.0;                ///< E1 (1 + b strain)
   double friction = 0.0;                  ///< mu of Coulomb friction at its faces
   double gap_m = 0.0;                     ///< closes before it is loaded
-  bool gap_reopens = false;               ///< else closed for good once it was
+  GapAfter gap_after = GapAfter::closed_for_good;
   /// A strain history beside all this, by step of the specimen's histories; empty for none.
   std::vector<double> further_strain{};
 

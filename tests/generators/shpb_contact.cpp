@@ -114,10 +114,13 @@ void MasslessSpecimen::close(Rod& input, Rod& output) {
   const auto shortening_at = [&](double force_N) {
     return shortening_ + 0.5 * step_s_ * (shortening_rate_ + rate_at(force_N));
   };
-  if (shortening_at(0.0) < specimen_.gap_m && !closed_) {
+  const auto stay_apart = [&](double strain) {
     input.close_right(0.0);
     output.close_left(0.0);
-    settle({0.0, 0.0, 0.0}, 0.0, shortening_at(0.0), rate_at(0.0));
+    settle({0.0, 0.0, 0.0}, strain, shortening_at(0.0), rate_at(0.0));
+  };
+  if (!specimen_.dry && !closed_ && shortening_at(0.0) < specimen_.gap_m) {
+    stay_apart(0.0);
     return;
   }
   closed_ = true;
@@ -143,6 +146,10 @@ void MasslessSpecimen::close(Rod& input, Rod& output) {
     }
   }
   const Trial trial = at(strain);
+  if (specimen_.dry && trial.force_N < 0.0) {
+    stay_apart(fading(viscous_, chain_, stress_));
+    return;
+  }
   input.close_right(trial.force_N / bar_area_m2_);
   output.close_left(trial.force_N / bar_area_m2_);
   settle(trial, strain, shortening_at(trial.force_N), rate_at(trial.force_N));

@@ -197,6 +197,7 @@ void plant(ShpbWorld& world, const HiddenEffect& effect) {
   if (const auto found = members.find(effect.id); found != members.end()) {
     world.specimen.*(found->second) = effect.strength;
     world.specimen.relaxation_time_s = effect.detail("tau", world.specimen.relaxation_time_s);
+    world.specimen.dry = effect.detail("dry", world.specimen.dry ? 1.0 : 0.0) > 0.0;
     if (world.specimen.solid && effect.id != "interface-friction" &&
         effect.id != "specimen-second-relaxation") {
       throw InputError("--effect " + effect.id, "is not made of a solid specimen",
@@ -288,6 +289,7 @@ std::vector<double> key_of(const ShpbWorld& world) {
                           s.radial_inertia,
                           s.friction,
                           s.gap_m,
+                          s.dry ? 1.0 : 0.0,
                           s.punching,
                           s.permanent_strain,
                           s.face_layer_m_per_N,

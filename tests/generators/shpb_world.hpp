@@ -23,6 +23,7 @@ struct TrueSpecimen {
   double radial_inertia = 0.0;  ///< s
   double friction = 0.0;        ///< mu, with current sizes at constant volume
   double gap_m = 0.0;
+  bool dry = false;       ///< faces push and never pull; else a gap that closed stays so
   double punching = 0.0;  ///< s
   double permanent_strain =
       0.0;  ///< withheld: share of the spring's strain that stays when unloading

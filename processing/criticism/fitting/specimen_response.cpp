@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/criticism/fitting/creeping_spring.hpp"
+
 namespace kolsky {
 
 namespace {
 
-constexpr int kMostIterations = 30;
+constexpr int kMostIterations = 200;
 constexpr double kConverged = 1e-7;
 
 /// The sample at which bars begin to approach: what comes before is noise, which closes no gap.
@@ -116,18 +118,27 @@ void SpecimenResponse::bend(const SpecimenScene& specimen) {
   }
 }
 
-void SpecimenResponse::close_gap(const SpecimenScene& specimen, DampedTransform& transform) {
+void SpecimenResponse::close_gap(const SpecimenScene& specimen) {
   const double gap = specimen.gap_m / specimen.length_m;
-  extra_.assign(strain_.size(), 0.0);
   bool open = true;
   for (std::size_t n = at_rest_; n < strain_.size(); ++n) {
     const double approach = strain_[n] - strain_[at_rest_];
-    open = approach < gap && (open || specimen.gap_reopens);
-    extra_[n] = open ? approach : gap;
+    open = approach < gap && (open || specimen.gap_after == GapAfter::opens_where_it_was);
+    apart_[n] = open ? approach : gap;
   }
-  to_spectrum(extra_, transform, spectrum_);
-  for (std::size_t k = 0; k < next_.size(); ++k) {
-    next_[k] += spectrum_[k];
+}
+
+/// The law, step by step: pushed it follows the bars; where that would pull it they part, and it
+/// recovers. (Of fractional and further terms of the compliance only what a spring and Kelvin
+/// elements do counts here.)
+void SpecimenResponse::push_only(const SpecimenScene& specimen, double period_s) {
+  const double gap = specimen.gap_m / specimen.length_m;
+  CreepingSpring law(specimen.solid, period_s);
+  for (std::size_t n = at_rest_; n < strain_.size(); ++n) {
+    const double approach = strain_[n] - strain_[at_rest_];
+    const double pushed_Pa = law.stress_at(approach - gap);
+    apart_[n] = pushed_Pa < 0.0 ? approach - law.strain_at_rest() : gap;
+    law.advance(std::max(0.0, pushed_Pa));
   }
 }
 
@@ -136,6 +147,8 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
                              DampedTransform& transform) {
   const SpecimenScene& specimen = *scene.specimen;
   const std::size_t places = scene.s.size();
+  const double period_s =
+      1.0 / (transform.bin_width_Hz() * static_cast<double>(transform.length()));
   prepare(scene, transfers, reference, source, filter);
   q_.assign(places, 0.0);
   next_.resize(places);
@@ -159,8 +172,19 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
       next_[k] = of_extra_[k] * next_[k] + of_material_[k] * spectrum_[k];
     }
     if (specimen.gap_m != 0.0) {
-      at_rest_ = iteration == 0 ? at_rest_until(strain_) : at_rest_;
-      close_gap(specimen, transform);
+      if (iteration == 0) {
+        at_rest_ = at_rest_until(strain_);
+        apart_.assign(strain_.size(), 0.0);
+      }
+      if (specimen.gap_after == GapAfter::pulls_nothing) {
+        push_only(specimen, period_s);
+      } else {
+        close_gap(specimen);
+      }
+      to_spectrum(apart_, transform, spectrum_);
+      for (std::size_t k = 0; k < places; ++k) {
+        next_[k] += spectrum_[k];
+      }
     }
     double change = 0.0;
     double size = 0.0;

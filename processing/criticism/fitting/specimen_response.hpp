@@ -15,7 +15,9 @@ namespace kolsky {
 /// filtered.
 ///   stiffening   spring strain sigma/E1 -> sigma / (E1 (1 + b e))
 ///   friction     material stress = measured / (1 + mu d / 3h), current d and h
-///   gap          bars approach by delta before the specimen is loaded, and again if it reopens
+///   gap          bars approach by delta before the specimen is loaded, and again if it reopens;
+///   dry
+///                faces part wherever the specimen would be pulled, and it recovers by itself
 ///   lateral      - m strain'^2 / 16 of the stress is inertia (its linear part is in the transfers)
 ///   further      a given history
 class SpecimenResponse {
@@ -43,7 +45,8 @@ class SpecimenResponse {
   void put_history(const Linear& linear, DampedTransform& transform, std::vector<double>& out);
   void accelerate(const Scene& scene, DampedTransform& transform);
   void bend(const SpecimenScene& specimen);
-  void close_gap(const SpecimenScene& specimen, DampedTransform& transform);
+  void close_gap(const SpecimenScene& specimen);
+  void push_only(const SpecimenScene& specimen, double period_s);
   void to_time(const std::vector<Complex>& spectrum, DampedTransform& transform,
                std::vector<double>& out);
   void to_spectrum(const std::vector<double>& record, DampedTransform& transform,
@@ -54,6 +57,7 @@ class SpecimenResponse {
   std::vector<Complex> of_material_;  ///< q of stress that the material has beside the measured
   std::vector<Complex> q_, next_, wide_, spectrum_;
   std::vector<double> stress_, strain_, rate_, accelerated_, extra_, material_;
+  std::vector<double> apart_;  ///< the gap's share of q
   std::size_t at_rest_ = 0;
 };
 

@@ -19,8 +19,10 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kFarOff = 3.0;                     ///< chi2 per degree of freedom
-constexpr std::array kSizes{3.0, 6.0, 12.0, 24.0};  ///< typical ones, where first order misleads
+constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
+/// Typical sizes from which fits begin where first order misleads, and of what is sudden.
+constexpr std::array kSizes{3.0, 6.0, 12.0, 24.0};
+constexpr std::array kSuddenSizes{0.5, 2.0, 8.0, 24.0};
 constexpr std::size_t kMostRefits = 14;
 constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
 constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
@@ -413,7 +415,7 @@ std::vector<double> Search::begin_again(const Candidate& candidate, const Compos
   }
   std::vector<double> best;
   double least = HUGE_VAL;
-  for (const double typicals : kSizes) {
+  for (const double typicals : kSuddenSizes) {
     EffectUse& use = *model.find(candidate.id());
     use.values.front().value = typicals * use.effect->about().parameters.front().typical;
     start_moduli(model, study_.campaign(), study_.residuals(), worker);
