@@ -14,9 +14,6 @@ namespace kolsky {
 
 namespace {
 
-/// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
-/// the true one stays in the set in 99.7 of 100 cases.
-constexpr double kTie = 7.5;
 /// A rival may be so much likelier to be chance than what may be named.
 constexpr double kRivalChance = 10.0;
 

@@ -9,6 +9,10 @@
 
 namespace kolsky {
 
+/// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
+/// the true one stays in the set in 99.7 of 100 cases.
+inline constexpr double kTie = 7.5;
+
 /// What one search certifies: the best, and what cannot be told from it.
 struct Choice {
   std::string id;

@@ -15,6 +15,7 @@
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
+#include "processing/criticism/verdict/drifts.hpp"
 #include "processing/criticism/verdict/filed_bars.hpp"
 #include "processing/criticism/verdict/filed_conflict.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
@@ -104,6 +105,7 @@ class Diagnostician {
       current = study_.refit(first);
     }
     make_alike(current);
+    weigh_drifts(current);
     conclude(first, current);
     return std::move(diagnosis_);
   }
@@ -293,6 +295,39 @@ class Diagnostician {
     }
   }
 
+  /// In a record shorter than a period a hum of one phase in all shots is a slope at every gauge,
+  /// and drifts at several of them are as much. A source that is free takes up one of them, so that
+  /// each by itself may hardly show, and one after the other they are not found.
+  void weigh_drifts(const Studied& current) {
+    for (const std::string& id : diagnosis_.effects) {
+      const EffectUse* hum = current.model.find(id);
+      if (hum == nullptr || !hum->effect->about().quadrature) {
+        continue;
+      }
+      const Studied neither = without(current, id);
+      const double scale = noise_of(current.misfit, study_.campaign().shots.size());
+      const auto evidence = [&](const Studied& studied) {
+        const double gain = (neither.fit.objective() - studied.fit.objective()) / scale;
+        const double freedom = neither.fit.degrees_of_freedom(neither.composition) -
+                               studied.fit.degrees_of_freedom(studied.composition);
+        return equivalent_square(log_gain_tail(gain, std::max(1.0, freedom), false));
+      };
+      const Model drifting = with_drifts(neither.model, study_.campaign().bench);
+      const Studied drifts = changed(neither, drifting);
+      const double ahead = evidence(drifts) - evidence(current);
+      if (ahead < -kTie) {
+        continue;
+      }
+      const std::vector<std::string> drifted = drifting_gauges(drifts.model);
+      std::vector<std::string>& ties = diagnosis_.tied_with[id];
+      for (const std::string& drift : drifted) {
+        if (std::ranges::count(ties, drift) == 0) {
+          ties.push_back(drift);
+        }
+      }
+    }
+  }
+
   /// Backward: what others have made superfluous goes, but for so many of the last.
   void drop_unneeded(Studied& current, std::size_t spared) {
     for (std::size_t i = 0; i + spared < diagnosis_.effects.size();) {
@@ -406,7 +441,30 @@ class Diagnostician {
     if (!reasons.empty() || !diagnosis_.effects.empty()) {
       judge_filed_bars(before, current, noise, reasons);
     }
+    if (reasons.empty()) {
+      judge_temperature(current, noise, reasons);
+    }
     return reasons;
+  }
+
+  /// Where nobody filed at which temperature the bars have their moduli, these are off by what it
+  /// was: that is no second effect.
+  void judge_temperature(const Studied& current, double noise, std::vector<std::string>& reasons) {
+    const std::string temperature = "temperature";
+    const Bench& bench = study_.campaign().bench;
+    if (bench.temperature_K || diagnosis_.effects.size() < 2 ||
+        std::ranges::count(diagnosis_.effects, temperature) == 0) {
+      return;
+    }
+    Model alone = current.model;
+    std::erase_if(alone.effects, [&](const EffectUse& use) {
+      return use.id() != temperature && std::ranges::count(diagnosis_.effects, use.id()) > 0;
+    });
+    if (const std::optional<Model> any = with_bars_of_any_moduli(alone, bench)) {
+      if (changed(current, *any).fit.objective() < current.fit.objective() + kTie * noise) {
+        reasons.push_back(no_temperature_text());
+      }
+    }
   }
 
   /// What is claimed must do at least as well as other bars would. Where it is doubted anyway, they

@@ -86,4 +86,9 @@ std::string other_bars_text(const Model& model, const Model& fitted, bool more) 
                        "is filed without a deviation counts as exact");
 }
 
+std::string no_temperature_text() {
+  return "a temperature dependence with bars of other moduli than filed explains as much as two "
+         "effects: file `temperature_K`, at which the bars' moduli hold";
+}
+
 }  // namespace kolsky

@@ -17,4 +17,7 @@ namespace kolsky {
 /// @param more  they explain more than what they are held against, not nearly as much
 [[nodiscard]] std::string other_bars_text(const Model& model, const Model& fitted, bool more);
 
+/// What to do where temperature is claimed beside what bars of other moduli do as well.
+[[nodiscard]] std::string no_temperature_text();
+
 }  // namespace kolsky

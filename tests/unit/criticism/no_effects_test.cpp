@@ -78,6 +78,25 @@ TEST(FiledBars, FarOffTheirDeviationAreNotAdequate) {
   }
 }
 
+// In a record far shorter than a period of the mains two drifts are a hum of one phase in all
+// shots, and nothing tells the two apart.
+TEST(Drifts, OfBothGaugesAreNoHumByItself) {
+  int hums = 0;
+  for (std::uint64_t seed = 846; seed < 850; ++seed) {
+    testing::Campaign truth = metal_split_bar(seed);
+    testing::hide(truth, testing::parse_effect("baseline-drift:g1=0.015"));
+    testing::hide(truth, testing::parse_effect("baseline-drift:g2=0.02"));
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::shpb, true));
+    if (std::ranges::count(diagnosis.effects, "mains-hum") > 0) {
+      ++hums;
+      const std::vector<std::string>& ties = diagnosis.tied_with.at("mains-hum");
+      EXPECT_EQ(std::ranges::count(ties, "baseline-drift:g2"), 1) << seed;
+    }
+  }
+  EXPECT_GT(hums, 0) << "nothing to try it on";
+}
+
 /// A first-order high pass, as of an amplifier that is coupled by a capacitor.
 void couple(std::vector<double>& strain, double corner_Hz, double period_s) {
   const double kept = std::exp(-2.0 * std::numbers::pi * corner_Hz * period_s);
