@@ -16,12 +16,15 @@
 #include "processing/base/error.hpp"
 #include "processing/criticism/verdict/distinction.hpp"
 #include "processing/models/admission.hpp"
+#include "processing/models/physics.hpp"
+#include "processing/models/transfers.hpp"
 
 namespace kolsky::cli {
 namespace {
 
 constexpr std::size_t kPlaces = 2048;
 constexpr std::size_t kRivalsShown = 4;
+constexpr double kSlow = 10.0;  ///< times the model without the expression
 
 struct Settings {
   std::string model;
@@ -34,40 +37,95 @@ struct Checked {
   const ExpressionEffect* effect = nullptr;
   bool used = false;
   double time_s = 0.0;
+  double times_model = 1.0;  ///< what an evaluation takes, of that of the model without it
+
+  [[nodiscard]] bool slow() const { return times_model > kSlow; }
   std::vector<Distinction> distinctions;  ///< by gauge, for effects of one gauge
 };
 
-/// Of one application along a path of ordinary length: the shortest of several.
-double time_of(const ExpressionEffect& effect, BenchKind kind) {
-  const Bench bench = admission_bench(kind);
-  ShotFacts facts;
-  std::vector<Complex> path;
-  for (std::size_t k = 0; k < kPlaces; ++k) {
-    path.emplace_back(4000.0, 2.0 * std::numbers::pi * 100.0 * static_cast<double>(k));
-  }
-  std::vector<double> values;
-  for (const EffectParameter& own : effect.about().parameters) {
-    values.push_back(own.auxiliary() ? own.starts.front() : own.null_value);
-  }
-  double best = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < 8; ++run) {
-    Scene scene(bench, facts, path);
-    for (BarScene& bar : scene.bars) {
-      bar.gamma_per_m.assign(kPlaces, Complex(1.0, 1.0));
+/// What a model without its expressions is, along a path of ordinary length on a bench of ordinary
+/// size: the paper's effects and those that it holds of the library.
+class Stopwatch {
+ public:
+  explicit Stopwatch(const Model& model) : bench_(admission_bench(model.kind)) {
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      path_.emplace_back(4000.0, 2.0 * std::numbers::pi * 100.0 * static_cast<double>(k));
     }
-    const auto start = std::chrono::steady_clock::now();
-    effect.apply(scene, values, 0);
-    for (const auto& maps : scene.record.maps) {
-      for (const RecordMap& map : maps) {
-        std::vector<double> record(kPlaces, 1e-3);
-        undo(map, record);
+    for (const EffectUse& use : paper_model(model.kind, false).effects) {
+      add(model.find(use.id()) != nullptr ? *model.find(use.id()) : use);
+    }
+    for (const EffectUse& use : model.effects) {
+      const auto known = [&](const AppliedEffect& other) { return other.effect == use.effect; };
+      if (std::none_of(effects_.begin(), effects_.end(), known)) {
+        add(use);
       }
     }
-    best = std::min(
-        best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  return best;
-}
+
+  /// Of the readings of all gauges from a unit source.
+  [[nodiscard]] double model_s() const {
+    return shortest([&](Scene& scene) {
+      shape(effects_, scene);
+      (void)transfers_of(scene, 0);
+    });
+  }
+
+  /// Of one application of an expression, and of what it makes of a record.
+  [[nodiscard]] double expression_s(const ExpressionEffect& effect) const {
+    const std::vector<double> values = at_null(effect);
+    return shortest([&](Scene& scene) {
+      effect.apply(scene, values, 0);
+      for (const auto& maps : scene.record.maps) {
+        for (const RecordMap& map : maps) {
+          std::vector<double> record(kPlaces, 1e-3);
+          undo(map, record);
+        }
+      }
+    });
+  }
+
+ private:
+  void add(const EffectUse& use) {
+    if (find_effect(use.effect->about().id) != use.effect) {
+      return;
+    }
+    AppliedEffect applied{use.effect, 0, {}};
+    for (const ModelValue& value : use.values) {
+      applied.values.push_back(value.value);
+    }
+    effects_.push_back(std::move(applied));
+  }
+
+  static std::vector<double> at_null(const Effect& effect) {
+    std::vector<double> values;
+    for (const EffectParameter& own : effect.about().parameters) {
+      values.push_back(own.auxiliary() ? own.starts.front() : own.null_value);
+    }
+    return values;
+  }
+
+  /// What else the computer does only ever adds to it: the shortest of several.
+  template <typename Work>
+  [[nodiscard]] double shortest(const Work& work) const {
+    double best_s = std::numeric_limits<double>::infinity();
+    for (int run = 0; run < 8; ++run) {
+      Scene scene(bench_, facts_, path_);
+      for (BarScene& bar : scene.bars) {
+        bar.gamma_per_m.assign(kPlaces, Complex(1.0, 1.0));
+      }
+      const auto start = std::chrono::steady_clock::now();
+      work(scene);
+      best_s = std::min(
+          best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    return best_s;
+  }
+
+  Bench bench_;
+  ShotFacts facts_;
+  std::vector<Complex> path_;
+  std::vector<AppliedEffect> effects_;
+};
 
 /// Cosines beside a fit of the model without its expressions.
 void tell_apart(const Settings& settings, const Model& model, std::vector<Checked>& list) {
@@ -125,6 +183,8 @@ JsonValue describe(const Checked& own) {
                     {"admitted", true},
                     {"used", own.used},
                     {"time_s", own.time_s},
+                    {"times_model", own.times_model},
+                    {"slow", own.slow()},
                     {"here", std::move(distinctions)}};
 }
 
@@ -132,9 +192,18 @@ std::string text_of(const Checked& own) {
   const EffectAbout& about = own.effect->about();
   std::string text = fmt::format(
       "{} ({}): {}\n  admitted: nothing at null, derivative finite, "
-      "passive, causal, units right; {:.0f} us along {} places{}\n",
-      about.id, kolsky::name_of(about.stage), about.definition, own.time_s * 1e6, kPlaces,
-      own.used ? "" : "; declared, not used: `kolsky diagnose` tries it");
+      "passive, causal, units right{}\n"
+      "  {:.0f} us along {} places: an evaluation takes {:.3g} times that of the model without "
+      "it\n",
+      about.id, kolsky::name_of(about.stage), about.definition,
+      own.used ? "" : "; declared, not used: `kolsky diagnose` tries it", own.time_s * 1e6, kPlaces,
+      own.times_model);
+  if (own.slow()) {
+    text += fmt::format(
+        "  slow: more than {:g} times; fits and diagnoses take as much longer, shorten the "
+        "formula\n",
+        kSlow);
+  }
   for (const Distinction& here : own.distinctions) {
     if (here.rivals.empty()) {
       text += fmt::format(
@@ -158,10 +227,13 @@ std::string text_of(const Checked& own) {
 int run(const Settings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
   std::vector<Checked> list;
+  const Stopwatch stopwatch(file.model);
+  const double model_s = file.model.expressions.empty() ? 1.0 : stopwatch.model_s();
   for (const auto& own : file.model.expressions) {
     const bool used = std::any_of(file.model.effects.begin(), file.model.effects.end(),
                                   [&](const EffectUse& use) { return use.effect == own.get(); });
-    list.push_back({own.get(), used, time_of(*own, file.model.kind), {}});
+    const double own_s = stopwatch.expression_s(*own);
+    list.push_back({own.get(), used, own_s, 1.0 + own_s / model_s, {}});
   }
   if (!settings.captures.empty() && !list.empty()) {
     require_admitted_here(settings, file.model);

@@ -317,6 +317,184 @@ TEST_F(SimulatedBar, TakesNoEffectOfAGaugeThatItsBenchDoesNotHave) {
                       {"gauge-position:g9", "its gauges are"}));
 }
 
+/// An expression as people write one: a strength, and a time that means nothing without it.
+std::string expression(const std::string& id, const std::string& stage, const std::string& formula,
+                       const std::string& strength, const std::string& time) {
+  return "\n[[expressions]]\nid = \"" + id + "\"\nstage = \"" + stage + "\"\nformula = \"" +
+         formula + "\"\n[expressions.parameters.D]\n" + strength +
+         "[expressions.parameters.tau]\nunit = \"s\"\n" + time;
+}
+
+const std::string kCompliance =
+    "unit = \"1/Pa\"\nnull = 0.0\nbounds = [0.0, 1e-9]\ntypical = 1e-12\n";
+const std::string kShare = "unit = \"-\"\nnull = 0.0\nbounds = [0.0, 0.5]\ntypical = 0.01\n";
+const std::string kSlowTimes =
+    "starts = [1e-5, 1e-4, 1e-3]\nbounds = [1e-6, 1e-1]\ntypical = 1e-5\n";
+const std::string kFastTimes = "starts = [2e-7]\nbounds = [1e-7, 5e-7]\ntypical = 1e-7\n";
+
+std::string branch() {
+  return expression("my-branch", "material", "D / (1 + s*tau)", kCompliance, kSlowTimes);
+}
+
+/// Powers of complex numbers are what a formula can spend most on.
+std::string laborious() {
+  std::string sum = "1";
+  for (int n = 0; n < 20; ++n) {
+    sum += "+(s*tau)^.1-(s*tau)^.1";
+  }
+  return expression("laborious", "sensor", "1 - D*(" + sum + ")", kShare, kFastTimes);
+}
+
+TEST_F(SimulatedBar, ChecksTheEffectsThatItsModelDeclares) {
+  std::ofstream(file("m.toml"), std::ios::app) << branch() << laborious();
+  const scene::Answer alone = kolsky({"model", "check", file("m.toml")});
+  ASSERT_EQ(alone.code, 0) << alone.err;
+  EXPECT_NE(alone.out.find("sound; 2 effects, 2 expressions of its own"), std::string::npos)
+      << alone.out;
+  EXPECT_NE(
+      alone.out.find("my-branch (material): J += D / (1 + s*tau)\n  admitted: nothing at null, "
+                     "derivative finite, passive, causal, units right; declared, not used"),
+      std::string::npos)
+      << alone.out;
+  EXPECT_EQ(alone.out.find("nearest:"), std::string::npos) << "there are no captures to tell by";
+
+  const std::vector<std::string> words{"model", "check", file("m.toml"), file("shots")};
+  const scene::Answer here = kolsky(words);
+  ASSERT_EQ(here.code, 0) << here.err;
+  for (const char* said :
+       {"my-branch: D from ", " 1/Pa on is seen here, from ", "told apart; ",
+        " % of it is taken up by the model\n      nearest: second-relaxation (cosine 0.99",
+        "us along 2048 places: an evaluation takes 1."}) {
+    EXPECT_NE(here.out.find(said), std::string::npos) << said << "\n" << here.out;
+  }
+  std::vector<std::string> asked = words;
+  asked.emplace_back("--json");
+  const json checked = json_of(kolsky(asked));
+  ASSERT_EQ(checked["expressions"].size(), 2U);
+  const json& own = checked["expressions"][0];
+  EXPECT_EQ(own["id"], "my-branch");
+  EXPECT_EQ(own["stage"], "material");
+  EXPECT_EQ(own["admitted"], true);
+  EXPECT_EQ(own["used"], false);
+  ASSERT_EQ(own["here"].size(), 1U);
+  const json& seen = own["here"][0];
+  EXPECT_EQ(seen["parameter"], "D");
+  EXPECT_EQ(seen["unit"], "1/Pa");
+  EXPECT_GT(seen["smallest_detectable"], 0.0);
+  EXPECT_GT(seen["smallest_identifiable"], seen["smallest_detectable"]);
+  // Moduli take up most of a branch.
+  EXPECT_GT(seen["absorbed_share"], 0.5);
+  EXPECT_LT(seen["absorbed_share"], 1.0);
+  // The same physics from other starts.
+  EXPECT_EQ(seen["rivals"][0]["effect"], "second-relaxation");
+  EXPECT_GT(seen["rivals"][0]["cosine"], 0.99);
+  for (std::size_t n = 1; n < seen["rivals"].size(); ++n) {
+    EXPECT_LE(seen["rivals"][n]["cosine"], seen["rivals"][n - 1]["cosine"]);
+  }
+}
+
+TEST_F(SimulatedBar, SaysWhatAnEvaluationOfADeclaredEffectCosts) {
+  std::ofstream(file("m.toml"), std::ios::app) << branch() << laborious();
+  const scene::Answer said = kolsky({"model", "check", file("m.toml")});
+  const std::size_t warning = said.out.find("  slow: more than 10 times;");
+  EXPECT_GT(warning, said.out.find("laborious (sensor)")) << said.out;
+  EXPECT_EQ(warning, said.out.rfind("  slow:")) << said.out;
+  EXPECT_NE(warning, std::string::npos) << said.out;
+  const json checked = json_of(kolsky({"model", "check", file("m.toml"), "--json"}));
+  const json& quick = checked["expressions"][0];
+  const json& slow = checked["expressions"][1];
+  EXPECT_GT(quick["time_s"], 0.0);
+  EXPECT_GT(quick["times_model"], 1.0);
+  EXPECT_EQ(quick["slow"], false);
+  EXPECT_GT(slow["time_s"], quick["time_s"]);
+  EXPECT_GT(slow["times_model"], 10.0);
+  EXPECT_EQ(slow["slow"], true);
+}
+
+TEST_F(SimulatedBar, RefusesADeclaredEffectThatIsNotSound) {
+  const std::string model = content(file("m.toml"));
+  const auto check = [&](const std::string& declared) {
+    std::ofstream(file("unsound.toml")) << model << declared;
+    return kolsky({"model", "check", file("unsound.toml")});
+  };
+  const auto material = [&](const std::string& formula) {
+    return check(expression("mine", "material", formula, kCompliance, kSlowTimes));
+  };
+  const auto sensor = [&](const std::string& formula, const std::string& times) {
+    return check(expression("mine", "sensor", formula, kShare, times));
+  };
+  EXPECT_TRUE(refused(material("D*s/(1 + s*tau)"), {"unsound.toml:", "formula", "1/Pa"}));
+  EXPECT_TRUE(refused(sensor("1 + s*tau + D", kFastTimes), {"unsound.toml:", "identity"}));
+  EXPECT_TRUE(refused(sensor("1 - D^2/(1 + s*tau)", kSlowTimes), {"unsound.toml:", "derivative"}));
+  EXPECT_TRUE(refused(material("D + D*s*tau"), {"unsound.toml:", "passivity", "bound"}));
+  EXPECT_TRUE(refused(
+      sensor("1 - D*exp(s*tau)", "starts = [1e-4]\nbounds = [5e-5, 2e-4]\ntypical = 1e-5\n"),
+      {"unsound.toml:", "causality"}));
+}
+
+TEST(EffectsCommand, ListsEveryEffectByIdWithWhatAPersonNeedsToAddIt) {
+  const std::string text = kolsky({"effects"}).out;
+  const json list = json_of(kolsky({"effects", "--json"}))["effects"];
+  const auto of = [&](const std::string& id) {
+    const auto found = std::find_if(list.begin(), list.end(),
+                                    [&](const json& effect) { return effect["id"] == id; });
+    return found == list.end() ? json() : *found;
+  };
+  for (const std::string id : {"second-relaxation",
+                               "series-dashpot",
+                               "fractional-damping",
+                               "amplitude-dependence",
+                               "temperature",
+                               "geometric-dispersion",
+                               "end-reflection",
+                               "bending",
+                               "bar-length",
+                               "specimen-dimensions",
+                               "gauge-position",
+                               "gauge-factor",
+                               "channel-delay",
+                               "amplifier-bandwidth",
+                               "baseline-drift",
+                               "gauge-length",
+                               "crosstalk",
+                               "mains-hum",
+                               "bridge-nonlinearity",
+                               "specimen-second-relaxation",
+                               "specimen-nonlinearity",
+                               "specimen-inertia",
+                               "radial-inertia",
+                               "interface-friction",
+                               "interface-gap",
+                               "punching",
+                               "core-nonlinearity",
+                               "cover-nonlinearity",
+                               "core-second-relaxation",
+                               "cover-second-relaxation",
+                               "contact-friction",
+                               "off-centre-contact",
+                               "sabot-contact"}) {
+    const json effect = of(id);
+    ASSERT_TRUE(effect.is_object()) << id;
+    EXPECT_FALSE(effect["stage"].get<std::string>().empty()) << id;
+    EXPECT_FALSE(effect["reference"].get<std::string>().empty()) << id;
+    EXPECT_FALSE(effect["kinds"].empty()) << id;
+    ASSERT_FALSE(effect["parameters"].empty()) << id;
+    for (const json& parameter : effect["parameters"]) {
+      EXPECT_FALSE(parameter["unit"].get<std::string>().empty()) << id;
+      EXPECT_TRUE(parameter["null"].is_number()) << id;
+      EXPECT_LT(parameter["bounds"][0], parameter["bounds"][1]) << id;
+    }
+    const bool of_a_gauge = effect["per_gauge"].get<bool>();
+    EXPECT_NE(text.find("\n  " + id + (of_a_gauge ? ":GAUGE " : " ")), std::string::npos) << id;
+  }
+  EXPECT_EQ(of("gauge-position")["per_gauge"], true);
+  EXPECT_EQ(of("bending")["parameters"][0]["unit"], "m");
+  EXPECT_EQ(of("fractional-damping")["parameters"][0]["null"], 1.0);
+  for (const json& effect : list) {
+    EXPECT_NE(text.find("\n  " + effect["id"].get<std::string>()), std::string::npos) << effect;
+  }
+}
+
 TEST_F(SimulatedBar, RefusesWhatCannotBeAsked) {
   EXPECT_TRUE(refused(kolsky({"model", "diff", file("m.toml") + "@3", file("m.toml")}),
                       {"names no step", "from 0 to 0"}));
