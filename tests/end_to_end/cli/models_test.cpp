@@ -317,6 +317,45 @@ TEST_F(SimulatedBar, TakesNoEffectOfAGaugeThatItsBenchDoesNotHave) {
                       {"gauge-position:g9", "its gauges are"}));
 }
 
+// Nothing repeats in a shot: what was foretold is not another one.
+TEST_F(SimulatedBar, SaysOfOneShotThatPartsOfItWereHeldOut) {
+  const std::string shot = file("shots/shot01.h5");
+  const std::string held_out = "one shot: held out were parts of its record, not shots";
+  const scene::Answer fitted =
+      kolsky({"fit", shot, "--model", file("m.toml"), "-o", file("f.toml")});
+  EXPECT_EQ(fitted.code, 0) << fitted.err;
+  EXPECT_NE(fitted.out.find("whether it would come again one shot cannot say"), std::string::npos)
+      << fitted.out;
+  const json compared = json_of(kolsky({"compare", shot, "--model", file("f.toml"), "--json"}));
+  EXPECT_EQ(compared["places"]["shots"].size(), 1U);
+  ASSERT_FALSE(compared["where"].empty());
+
+  const std::vector<std::string> words{"diagnose", shot, "--model", file("m.toml")};
+  const auto diagnose = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return kolsky(all);
+  };
+  const scene::Answer told = diagnose({"-o", file("d.toml"), "--report", file("d.html")});
+  EXPECT_EQ(told.code, 0) << told.err;
+  EXPECT_NE(told.out.find("note: " + held_out), std::string::npos) << told.out;
+  EXPECT_NE(content(file("d.html")).find(held_out), std::string::npos);
+  const json diagnosis = json_of(diagnose({"--json"}));
+  EXPECT_EQ(diagnosis["verdict"], "named");
+  EXPECT_EQ(diagnosis["effects"], json({"channel-delay:g3"}));
+  EXPECT_NE(diagnosis["notes"].dump().find(held_out), std::string::npos) << diagnosis["notes"];
+  const json& misfit = diagnosis["misfit"]["held_out"];
+  EXPECT_GT(misfit["before"], 2.0 * misfit["after"].get<double>());
+  EXPECT_NEAR(misfit["after"], misfit["floor"], 0.2);
+  const json fall = json_of(kolsky({"model", "waterfall", file("d.toml"), shot, "--json"}));
+  EXPECT_NE(fall["notes"].dump().find("one shot: held out are parts of its record, not shots"),
+            std::string::npos)
+      << fall["notes"];
+  // Of several the note would be wrong.
+  EXPECT_EQ(kolsky({"diagnose", file("shots"), "--model", file("m.toml")}).out.find("one shot:"),
+            std::string::npos);
+}
+
 /// An expression as people write one: a strength, and a time that means nothing without it.
 std::string expression(const std::string& id, const std::string& stage, const std::string& formula,
                        const std::string& strength, const std::string& time) {
