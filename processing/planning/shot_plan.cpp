@@ -116,7 +116,9 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
     throw InputError("kind", "is not \"shpb\", so there is no specimen to plan for",
                      "use a bench file of kind \"shpb\" with bars.output and specimen");
   }
-  require_bar_model_holds(bars, bench, "the bar model");
+  if (!options.bars_assumed) {
+    require_bar_model_holds(bars, bench, "the bar model");
+  }
   (void)shpb_stations(bench);  // both bars have a gauge
   ShotPlan plan;
   plan.pulse = pulse;

@@ -13,6 +13,8 @@ namespace kolsky {
 
 struct PlanOptions {
   double noise_strain = 5e-6;  ///< rms at the gauges
+  /// No bar model was given: bars near enough to PMMA to be taken for it (see assumed_bars).
+  bool bars_assumed = false;
 };
 
 /// What one gauge will show.

@@ -116,6 +116,26 @@ TEST(Program, RefusesBadSettings) {
   }
 }
 
+// Said before a shot is fired, not of each one afterwards.
+TEST(Program, RefusesBarsOfWhichNoModuliAreKnown) {
+  const Lab lab;
+  std::string bench = lab.bench();
+  const std::string key = "density_kg_m3 = ";
+  for (std::size_t at = bench.find(key); at < bench.find("[specimen]"); at = bench.find(key, at)) {
+    at += key.size();
+    bench.replace(at, bench.find('\n', at) - at, "1290.0");
+  }
+  ASSERT_EQ(bench.find("youngs_modulus_Pa"), std::string::npos) << bench;
+  const Installation dense(lab.uri(), bench);
+  for (const std::vector<std::string>& asked :
+       {std::vector<std::string>{}, std::vector<std::string>{"--check"}}) {
+    std::vector<std::string> words{"--config", dense.write(), "--quiet"};
+    words.insert(words.end(), asked.begin(), asked.end());
+    EXPECT_TRUE(refused(run(words), {"bench.toml", "bars.input.youngs_modulus_Pa", "1290 kg/m3",
+                                     "9 % denser", "bar model"}));
+  }
+}
+
 // libiio has lines of its own for these, in front of the refusal.
 TEST(Program, RefusesADigitiserThatIsNotThereInOneLine) {
   const Lab lab;

@@ -187,6 +187,7 @@ int run(const Settings& settings, Context& context) {
   constexpr Range kNoise{1e-6, 1e5, "microstrain", "give microstrain, as 4"};
   require_option(settings.noise_microstrain, "--noise", kNoise);
   PlanOptions options;
+  options.bars_assumed = bars.assumed;
   options.noise_strain = 1e-6 * settings.noise_microstrain.value_or(1e6 * options.noise_strain);
   try {
     const ShotPlan plan = plan_shot(bench, bars.material, specimen,

@@ -245,6 +245,61 @@ TEST_F(SpecimenFiles, RefuseABarModelOutsideWhereItWasIdentified) {
                       {"odd.toml", "covariance"}));
 }
 
+// Nylon, say: moduli of PMMA would only look like a result.
+TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
+  const auto bench_of = [](const char* density) {
+    std::string bench = kBench;
+    for (const char* bar : {"[bars.input]", "[bars.output]"}) {
+      const std::size_t filed = bench.find("density_kg_m3 = 1180.0", bench.find(bar));
+      bench.replace(filed, 22, "density_kg_m3 = " + std::string(density));
+    }
+    return bench;
+  };
+  const auto import = [&](const std::string& name, const std::string& bench) {
+    folder_.write(name + ".toml", bench);
+    EXPECT_EQ(kolsky({"import", "csv", folder_ / "shot0.csv", "--bench", folder_ / (name + ".toml"),
+                      "-o", folder_ / (name + ".h5")})
+                  .code,
+              0);
+    return folder_ / (name + ".h5");
+  };
+  const std::string dense = import("dense", bench_of("1290.0"));
+  folder_.write("core.toml",
+                "density_kg_m3 = 1140\npoisson_ratio = 0.376\nE1_Pa = 121e6\nE2_Pa = 143e6\n"
+                "eta2_Pa_s = 2860\n");
+  folder_.write("nylon.toml", replaced(kPmma, "1180.0", "1290.0"));
+  const auto plan = [&](const std::string& bench, std::vector<std::string> more) {
+    std::vector<std::string> words{"plan",
+                                   "--bench",
+                                   folder_ / (bench + ".toml"),
+                                   "--specimen",
+                                   folder_ / "core.toml",
+                                   "--pulse-strain",
+                                   "0.002",
+                                   "--pulse-duration",
+                                   "170e-6"};
+    words.insert(words.end(), more.begin(), more.end());
+    return kolsky(words);
+  };
+  const std::vector<std::string> said{"bars.input.youngs_modulus_Pa", "1290 kg/m3", "9 % denser",
+                                      "bar model"};
+  EXPECT_TRUE(refused(kolsky({"reduce", dense}), said));
+  EXPECT_TRUE(
+      refused(kolsky({"reduce", captures_.front(), "--bench", folder_ / "dense.toml"}), said));
+  EXPECT_TRUE(refused(kolsky({"identify", "specimen", dense}), said));
+  EXPECT_TRUE(refused(plan("dense", {}), said));
+  // With their moduli they are bars like others.
+  const std::vector<std::string> known{"--bar-model", folder_ / "nylon.toml"};
+  EXPECT_EQ(kolsky({"reduce", dense, known[0], known[1]}).code, 0);
+  EXPECT_EQ(kolsky({"identify", "specimen", dense, known[0], known[1]}).code, 0);
+  EXPECT_EQ(plan("dense", known).code, 0);
+  // PMMA is cast at densities some percent apart.
+  const std::string near = import("near", bench_of("1220.0"));
+  EXPECT_EQ(kolsky({"reduce", near}).code, 0);
+  EXPECT_EQ(kolsky({"identify", "specimen", near}).code, 0);
+  EXPECT_EQ(plan("near", {}).code, 0);
+}
+
 TEST_F(SpecimenFiles, RefuseWhatMakesNoSense) {
   const std::string& capture = captures_.front();
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--stress", "four-wave"}), {"three-wave"}));
