@@ -5,6 +5,7 @@
 #include "processing/base/range.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/recent.hpp"
 #include "processing/reduction/requested.hpp"
 #include "processing/reduction/shpb_pass.hpp"
 #include "processing/reduction/true_values.hpp"
@@ -48,8 +49,8 @@ void require_reducible_bench(const Shot& shot) {
 
 struct Reducer::State {
   ReductionOptions options;
-  std::unique_ptr<ShpbPlans> plans;
-  std::unique_ptr<ShpbTables> tables;
+  Recent<ShpbPlans> plans;
+  Recent<ShpbTables> tables;
   BallReducer ball{};
 
   /// Of a specimen.
@@ -73,6 +74,10 @@ void Reducer::set_bar_model(const Material& material) {
 
 void Reducer::set_push_goes_on(double share) {
   state_->options.push_goes_on = share;
+}
+
+std::size_t Reducer::tables_made() const {
+  return state_->tables.made();
 }
 
 Reduction Reducer::reduce(const Shot& shot) {
@@ -114,14 +119,15 @@ Reduction Reducer::State::reduce(const Shot& shot) {
   const ShpbBar input(shot.bench.input, in, material);
   const ShpbBar output(*shot.bench.output, out, material);
   const ShpbPlanKey plan = ShpbPlanKey::of(shot, input, output, told.theory);
-  if (!plans || !(plans->key == plan)) {
-    plans = std::make_unique<ShpbPlans>(plan);
-  }
-  if (!tables || tables->numbers != numbers || !(tables->plan == plan)) {
-    tables = std::make_unique<ShpbTables>(std::move(numbers), plan, told.theory, shot.bench,
-                                          material, in, out);
-  }
-  Reduction reduction = shpb_pass(shot, in, out, told, *plans, *tables);
+  ShpbPlans& own_plans = plans.get([&](const ShpbPlans& known) { return known.key == plan; },
+                                   [&] { return std::make_unique<ShpbPlans>(plan); });
+  ShpbTables& own_tables = tables.get(
+      [&](const ShpbTables& known) { return known.numbers == numbers && known.plan == plan; },
+      [&] {
+        return std::make_unique<ShpbTables>(std::move(numbers), plan, told.theory, shot.bench,
+                                            material, in, out);
+      });
+  Reduction reduction = shpb_pass(shot, in, out, told, own_plans, own_tables);
   reduction.bar_model = describe(shot.bench, material, assumed);
   return reduction;
 }

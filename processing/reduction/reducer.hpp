@@ -34,9 +34,9 @@ struct ReductionOptions {
   bool with_true = false;            ///< true strain and stress beside the engineering ones
 };
 
-/// Reduces shots of one bench, keeping transform plans and propagation tables between shots of the
-/// same length. Not to be used by two threads at once. The same shot gives the same bits each time,
-/// whatever was reduced before.
+/// Reduces shots, keeping the transform plans and propagation tables of the last four benches and
+/// lengths of record. Not to be used by two threads at once. The same shot gives the same bits each
+/// time, whatever was reduced before.
 class Reducer {
  public:
   explicit Reducer(ReductionOptions options = {});
@@ -59,6 +59,9 @@ class Reducer {
 
   /// Takes the striker's push to go on by this share from now on.
   void set_push_goes_on(double share);
+
+  /// How often propagation tables of two bars were made, not found.
+  [[nodiscard]] std::size_t tables_made() const;
 
  private:
   struct State;

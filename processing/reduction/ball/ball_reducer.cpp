@@ -7,6 +7,7 @@
 #include "processing/reduction/ball/ball_pass.hpp"
 #include "processing/reduction/ball/ball_stations.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/recent.hpp"
 #include "processing/waves/seen_modes.hpp"
 
 namespace kolsky {
@@ -37,8 +38,8 @@ std::size_t rounded_up(double samples) {
 }  // namespace
 
 struct BallReducer::State {
-  std::unique_ptr<BallPlans> plans;
-  std::unique_ptr<BallKernels> kernels;
+  Recent<BallPlans> plans;
+  Recent<BallKernels> kernels;
 };
 
 BallReducer::BallReducer() : state_(std::make_unique<State>()) {}
@@ -59,14 +60,15 @@ Reduction BallReducer::reduce(const Shot& shot, const ReductionOptions& options)
                  samples_per_m),
       std::min(shot.samples(),
                rounded_up(2.0 * stations.front().gauge_to_far_end_m * samples_per_m))};
-  if (!state_->plans || !(state_->plans->key == key)) {
-    state_->plans = std::make_unique<BallPlans>(key);
-  }
+  BallPlans& plans = state_->plans.get([&](const BallPlans& known) { return known.key == key; },
+                                       [&] { return std::make_unique<BallPlans>(key); });
   std::vector<double> numbers = ball_kernel_numbers(bar, options.theory, stations);
-  if (!state_->kernels || state_->kernels->numbers != numbers || !(state_->kernels->key == key)) {
-    state_->kernels = std::make_unique<BallKernels>(BallKernels{std::move(numbers), key, {}});
-  }
-  return BallPass(shot, stations, options, *state_->plans, *state_->kernels).run();
+  BallKernels& kernels = state_->kernels.get(
+      [&](const BallKernels& known) { return known.numbers == numbers && known.key == key; },
+      [&] {
+        return std::make_unique<BallKernels>(BallKernels{std::move(numbers), key, {}});
+      });
+  return BallPass(shot, stations, options, plans, kernels).run();
 }
 
 }  // namespace kolsky

@@ -8,7 +8,7 @@
 namespace kolsky {
 
 /// Reduces shots of a ball on an elastic bar: the part of Reducer for benches of kind "impact".
-/// Keeps plans and propagation tables between shots of the same length; one thread at a time.
+/// Keeps plans and propagation tables of the last few bars and lengths; one thread at a time.
 ///
 /// Each place of gauges gives the force on the face, F = A rho s^2/gamma^2 strain e^{gamma x} (A E
 /// strain earlier by x/c0 for elementary waves); places are averaged by their noise. The baseline
