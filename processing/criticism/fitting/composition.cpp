@@ -216,8 +216,9 @@ Eigen::MatrixXd Composition::prior_precision() const {
     if (correlation.empty()) {
       continue;
     }
-    // Of the numbers that are free, the others held where they are.
-    const std::vector<std::size_t> own = numbers_of(u);
+    // Of the numbers that are free and have a deviation: what is held narrows none of them.
+    std::vector<std::size_t> own = numbers_of(u);
+    std::erase_if(own, [&](std::size_t number) { return !(numbers_[number].prior_sd > 0.0); });
     const std::size_t all = uses_[u].values.size();
     Eigen::MatrixXd among(own.size(), own.size());
     for (std::size_t a = 0; a < own.size(); ++a) {

@@ -471,6 +471,24 @@ TEST_F(SimulatedBar, RefusesADeclaredEffectThatIsNotSound) {
       {"unsound.toml:", "causality"}));
 }
 
+// As `kolsky identify specimen` files it.
+TEST(NewModel, OfABallTakesTheCovarianceOfItsMaterials) {
+  const scene::Folder folder;
+  folder.write("core.toml",
+               "density_kg_m3 = 1140\npoisson_ratio = 0.376\nE1_Pa = 121e6\nE1_Pa_sd = 2e6\n"
+               "E2_Pa = 143e6\nE2_Pa_sd = 3e6\neta2_Pa_s = 2860\neta2_Pa_s_sd = 100\n"
+               "covariance = [4e12, -3e12, 0, -3e12, 9e12, 0, 0, 0, 1e4]\n");
+  ASSERT_EQ(kolsky({"model", "new", "--kind", "impact", "--core", folder / "core.toml", "-o",
+                    folder / "m.toml"})
+                .code,
+            0);
+  const std::string model = content(folder / "m.toml");
+  const std::size_t core = model.find("three-element-core");
+  const std::size_t prior = model.find("prior_correlation = [1.0, -0.5, 0.0, 0.0, 0.0, -0.5, 1.0,");
+  EXPECT_LT(core, prior) << model;
+  EXPECT_LT(prior, model.find("three-element-cover")) << model;
+}
+
 TEST(EffectsCommand, ListsEveryEffectByIdWithWhatAPersonNeedsToAddIt) {
   const std::string text = kolsky({"effects"}).out;
   const json list = json_of(kolsky({"effects", "--json"}))["effects"];
