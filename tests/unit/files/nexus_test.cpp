@@ -91,6 +91,23 @@ TEST_P(Nexus, AnotherReaderFindsEverythingWhereItIsSaidToBe) {
 
 INSTANTIATE_TEST_SUITE_P(Bits, Nexus, ::testing::Values(16, 24));
 
+// What the page says of an encoded shot holds for each of its versions.
+TEST(NexusTools, AnotherReaderKnowsEveryVersion) {
+  if (run(std::string(kPython) + " -c 'import h5py, tomllib'").status != 0) {
+    GTEST_SKIP() << "no h5py under " << kPython;
+  }
+  for (const testing::GoldenShot& golden : testing::make_golden_shots()) {
+    const auto outcome =
+        run(std::string(kPython) + " " KOLSKY_SOURCE_DIR "/tests/unit/files/read_capture.py " +
+            KOLSKY_SOURCE_DIR "/tests/unit/files/golden/" + golden.name + ".h5");
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    auto facts = facts_of(outcome.output);
+    EXPECT_EQ(facts["title"], golden.shot.id);
+    EXPECT_EQ(facts["metadata_digest_right"], "True") << golden.name;
+    EXPECT_EQ(facts["seal_right"], "True") << golden.name;
+  }
+}
+
 TEST(NexusTools, H5dumpReadsACapture) {
   if (run("command -v h5dump").status != 0) {
     GTEST_SKIP() << "no h5dump";

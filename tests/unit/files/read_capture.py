@@ -25,18 +25,47 @@ def packed(value):
     return struct.pack("<I", len(raw)) + raw
 
 
-def material(toml):
-    values = tomllib.loads(toml)
+def optional(value):
+    if value is None:
+        return b"\x00"
+    return b"\x01" + (packed(value) if isinstance(value, str) else struct.pack("<d", value))
+
+
+def material(values, version):
     out = b"\x01"
     for key in ("density_kg_m3", "poisson_ratio", "E1_Pa", "E2_Pa", "eta2_Pa_s"):
         out += struct.pack("<dd", values[key], values.get(key + "_sd", 0.0))
-    return out + packed(values.get("source", ""))
+    out += packed(values.get("source", ""))
+    if version > 1:
+        covariance, identified = values.get("covariance"), values.get("identified")
+        out += struct.pack("<B9d", 1, *covariance) if covariance else b"\x00"
+        out += b"\x00" if identified is None else (
+            b"\x01" + optional(identified.get("band_limit_Hz")) + optional(identified.get("temperature_K")))
+    return out
+
+
+def reduction(asked):
+    out = b""
+    for key in ("dispersion", "separate", "stress", "inertia"):
+        out += optional(text(asked[key]) if key in asked else None)
+    for key in ("friction", "band_limit_Hz", "duration_s"):
+        out += optional(float(asked[key][()]) if key in asked else None)
+    return out + (b"\x01" if "true" in asked and asked["true"][()] else b"\x00")
+
+
+def version_of(model, asked):
+    if asked is not None:
+        return 3
+    return 2 if model and ("covariance" in model or "identified" in model) else 1
 
 
 def canonical(entry):
     shot, raw = entry["shot"], entry["raw"]
-    out = struct.pack("<I", 1) + packed(text(shot["id"])) + packed(text(shot["bench_toml"]))
-    out += material(text(shot["bar_model_toml"])) if "bar_model_toml" in shot else b"\x00"
+    model = tomllib.loads(text(shot["bar_model_toml"])) if "bar_model_toml" in shot else None
+    version = version_of(model, shot.get("reduction"))
+    out = struct.pack("<I", version) + packed(text(shot["id"])) + packed(text(shot["bench_toml"]))
+    out += material(model, version) if model else b"\x00"
+    out += reduction(shot["reduction"]) if version == 3 else b""
     for key in ("rate_numerator", "rate_denominator", "first_tick"):
         out += struct.pack("<q", shot[key][()])
     if "trigger_tick" in shot:

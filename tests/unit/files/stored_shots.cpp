@@ -95,7 +95,9 @@ Shot asked_shot() {
   return shot;
 }
 
-Shot make_golden_shot() {
+namespace {
+
+Shot golden_shot() {
   Shot shot;
   shot.id = "golden-1";
   shot.bench_toml = bench_text(2);
@@ -114,6 +116,25 @@ Shot make_golden_shot() {
   shot.monotonic_ns = 42;
   shot.software_version = "0.1.0";
   return shot;
+}
+
+}  // namespace
+
+std::vector<GoldenShot> make_golden_shots() {
+  const Shot usual = golden_shot();
+  Shot identified = usual;
+  identified.id = "golden-2";
+  identified.bar_model->covariance = {1e14, -2e14, 3e9, -2e14, 9e16, 1e10, 3e9, 1e10, 4e8};
+  identified.bar_model->identified = Material::Identified{15e3, 296.5};
+  Shot asked = identified;
+  asked.id = "golden-3";
+  asked.bar_model->covariance.reset();
+  asked.bar_model->identified->temperature_K.reset();
+  asked.reduction.dispersion = "exact";
+  asked.reduction.stress = "one-wave";
+  asked.reduction.friction = 0.1;
+  asked.reduction.with_true = true;
+  return {{"shot", 1, usual}, {"identified", 2, identified}, {"asked", 3, asked}};
 }
 
 namespace {

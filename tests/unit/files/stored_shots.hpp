@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,17 @@ struct ShotShape {
 /// A shot that asks for every kind of reduction.
 [[nodiscard]] Shot asked_shot();
 
-/// The shot in golden/, with numbers written out and not drawn.
-[[nodiscard]] Shot make_golden_shot();
+/// A shot in golden/, with numbers written out and not drawn, and what its files are called there.
+struct GoldenShot {
+  std::string name;
+  std::uint32_t version;  ///< that it is encoded in
+  Shot shot;
+};
+inline void PrintTo(const GoldenShot& golden, std::ostream* out) {
+  *out << golden.name;
+}
+/// One of each version: as usual, with an identified bar model, with a reduction asked for.
+[[nodiscard]] std::vector<GoldenShot> make_golden_shots();
 
 /// Every field but the parsed bench, bit for bit.
 void expect_same(const Shot& actual, const Shot& expected);
