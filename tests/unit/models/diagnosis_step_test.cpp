@@ -2,10 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <regex>
+#include <algorithm>
+#include <cctype>
 
 namespace kolsky {
 namespace {
+
+std::string with_digits_as_0(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char own) { return std::isdigit(own) != 0; }, '0');
+  return text;
+}
 
 Diagnosis found(DiagnosisVerdict verdict) {
   Diagnosis diagnosis;
@@ -38,8 +45,7 @@ TEST(AddDiagnosis, KeepsAllThatALedgerTellsOfIt) {
   ASSERT_EQ(again.history.size(), 1U);
   const ModelStep& step = again.history.front();
   EXPECT_EQ(step.action, "diagnose: temperature");
-  EXPECT_TRUE(std::regex_match(step.when, std::regex(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)")))
-      << step.when;
+  EXPECT_EQ(with_digits_as_0(step.when), "0000-00-00T00:00:00Z") << step.when;
   EXPECT_EQ(step.note, "live, shots of store");
   EXPECT_EQ(step.verdict, "tied");
   EXPECT_EQ(step.added, std::vector<std::string>{"temperature"});
