@@ -7,8 +7,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
-/// The same of a specimen, whose spring becomes rigid for little: what is missing moves it decades.
+/// kFarOff of a specimen, whose spring becomes rigid for little: what is missing moves it decades.
 constexpr double kSpecimenFarOff = 1.2;
 
 bool nothing_holds(const ModelValue& value) {

@@ -7,6 +7,9 @@
 
 namespace kolsky {
 
+/// Misfit, as chi2 per degree of freedom, from which on first order says little.
+inline constexpr double kFarOff = 3.0;
+
 /// The model's own numbers may have gone far for want of an effect: much misfit shows it, or a
 /// modulus that nothing holds any longer.
 [[nodiscard]] bool astray(const Model& fitted, const Misfit& misfit);

@@ -19,7 +19,6 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kFarOff = 3.0;  ///< chi2 per degree of freedom
 /// Typical sizes from which fits begin where first order misleads, and of what is sudden.
 constexpr std::array kSizes{3.0, 6.0, 12.0, 24.0};
 constexpr std::array kSuddenSizes{0.5, 2.0, 8.0, 24.0};

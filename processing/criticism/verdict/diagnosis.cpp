@@ -59,6 +59,15 @@ std::string name_of(DiagnosisVerdict verdict) {
 
 namespace {
 
+/// What a fit gains over one that lacks some of its numbers, as a square of a normal deviate: a hum
+/// of every gauge's own takes a dozen numbers along, each of which fits some noise.
+double evidence(const Studied& without, const Studied& with, double noise) {
+  const double gain = (without.fit.objective() - with.fit.objective()) / noise;
+  const double freedom = without.fit.degrees_of_freedom(without.composition) -
+                         with.fit.degrees_of_freedom(with.composition);
+  return equivalent_square(log_gain_tail(gain, std::max(1.0, freedom), false));
+}
+
 /// Where earlier beginnings of a search have been.
 struct Trail {
   /// Effects that stood beside each other when two were found, and which of them was on trial.
@@ -305,22 +314,13 @@ class Diagnostician {
         continue;
       }
       const Studied neither = without(current, id);
-      const double scale = noise_of(current.misfit, study_.campaign().shots.size());
-      const auto evidence = [&](const Studied& studied) {
-        const double gain = (neither.fit.objective() - studied.fit.objective()) / scale;
-        const double freedom = neither.fit.degrees_of_freedom(neither.composition) -
-                               studied.fit.degrees_of_freedom(studied.composition);
-        return equivalent_square(log_gain_tail(gain, std::max(1.0, freedom), false));
-      };
-      const Model drifting = with_drifts(neither.model, study_.campaign().bench);
-      const Studied drifts = changed(neither, drifting);
-      const double ahead = evidence(drifts) - evidence(current);
-      if (ahead < -kTie) {
+      const Studied drifts = changed(neither, with_drifts(neither.model, study_.campaign().bench));
+      const double noise = noise_of(current.misfit, study_.campaign().shots.size());
+      if (evidence(neither, drifts, noise) < evidence(neither, current, noise) - kTie) {
         continue;
       }
-      const std::vector<std::string> drifted = drifting_gauges(drifts.model);
       std::vector<std::string>& ties = diagnosis_.tied_with[id];
-      for (const std::string& drift : drifted) {
+      for (const std::string& drift : drifting_gauges(drifts.model)) {
         if (std::ranges::count(ties, drift) == 0) {
           ties.push_back(drift);
         }
@@ -351,11 +351,7 @@ class Diagnostician {
   [[nodiscard]] bool missed_in(const Studied& left, const Studied& current) const {
     constexpr double kMissed = 16.0;  // as a square of a normal deviate
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-    const double loss = (left.fit.objective() - current.fit.objective()) / noise;
-    // A hum of every gauge's own takes a dozen numbers along, each of which fits some noise.
-    const double freedom = left.fit.degrees_of_freedom(left.composition) -
-                           current.fit.degrees_of_freedom(current.composition);
-    return equivalent_square(log_gain_tail(loss, std::max(1.0, freedom), false)) >= kMissed;
+    return evidence(left, current, noise) >= kMissed;
   }
 
   /// @param left  the fit without it

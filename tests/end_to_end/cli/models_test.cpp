@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/reference_effects.hpp"
 
 namespace kolsky {
 namespace {
@@ -497,39 +498,7 @@ TEST(EffectsCommand, ListsEveryEffectByIdWithWhatAPersonNeedsToAddIt) {
                                     [&](const json& effect) { return effect["id"] == id; });
     return found == list.end() ? json() : *found;
   };
-  for (const std::string id : {"second-relaxation",
-                               "series-dashpot",
-                               "fractional-damping",
-                               "amplitude-dependence",
-                               "temperature",
-                               "geometric-dispersion",
-                               "end-reflection",
-                               "bending",
-                               "bar-length",
-                               "specimen-dimensions",
-                               "gauge-position",
-                               "gauge-factor",
-                               "channel-delay",
-                               "amplifier-bandwidth",
-                               "baseline-drift",
-                               "gauge-length",
-                               "crosstalk",
-                               "mains-hum",
-                               "bridge-nonlinearity",
-                               "specimen-second-relaxation",
-                               "specimen-nonlinearity",
-                               "specimen-inertia",
-                               "radial-inertia",
-                               "interface-friction",
-                               "interface-gap",
-                               "punching",
-                               "core-nonlinearity",
-                               "cover-nonlinearity",
-                               "core-second-relaxation",
-                               "cover-second-relaxation",
-                               "contact-friction",
-                               "off-centre-contact",
-                               "sabot-contact"}) {
+  for (const std::string id : testing::kReferenceEffects) {
     const json effect = of(id);
     ASSERT_TRUE(effect.is_object()) << id;
     EXPECT_FALSE(effect["stage"].get<std::string>().empty()) << id;

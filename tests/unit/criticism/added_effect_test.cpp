@@ -86,22 +86,34 @@ TEST(Added, AGapOfDryFacesPullsNothing) {
   }
 }
 
-// Without the gap the specimen's moduli are nowhere, and with the moduli there no gap of any size
-// is better than none.
+/// A model that was fitted without what is hidden, and fitted again with it.
+struct AddedLater {
+  testing::Campaign truth;
+  Model without;
+  Studied studied;
+};
+
+AddedLater added_to_what_was_fitted(std::uint64_t seed, const std::string& hidden) {
+  testing::CampaignWishes wished = wishes(true);
+  wished.seed = seed;
+  testing::Campaign truth = testing::draw_campaign(wished);
+  const testing::HiddenEffect effect = testing::parse_effect(hidden);
+  testing::hide(truth, effect);
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  Model without = study.fit(paper_model(BenchKind::shpb, false)).model;
+  Model with = without;
+  with.effects.push_back(use_named(effect.name()));
+  return {std::move(truth), std::move(without), study.fit(with)};
+}
+
+// Without the gap the specimen's moduli are nowhere.
 TEST(Added, AGapToAModelWhoseSpecimenRanAwayWithoutIt) {
   for (std::uint64_t seed = 5; seed < 8; ++seed) {
-    testing::CampaignWishes wished = wishes(true);
-    wished.seed = seed;
-    testing::Campaign truth = testing::draw_campaign(wished);
-    testing::hide(truth, testing::parse_effect("interface-gap=40e-6"));
-    const Campaign campaign = read_campaign(testing::shots_of(truth));
-    Study study(campaign, 0.0, Workers{});
-    Model model = study.fit(paper_model(BenchKind::shpb, false)).model;
-    model.effects.push_back(use_named("interface-gap"));
-    const Studied added = study.fit(model);
-    const ModelValue& gap_m = added.model.find("interface-gap")->values[0];
+    const AddedLater added = added_to_what_was_fitted(seed, "interface-gap=40e-6");
+    const ModelValue& gap_m = added.studied.model.find("interface-gap")->values[0];
     EXPECT_LT(std::abs(gap_m.value - 40e-6), 3.5 * gap_m.sd) << seed;
-    EXPECT_LT(added.misfit.chi2_reduced, 1.1) << seed;
+    EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1) << seed;
   }
 }
 
@@ -145,20 +157,15 @@ TEST(Added, LateralInertiaOfASpecimenThatSoftens) {
 TEST(Added, ToAModelWhoseSpecimenRanAwayWithoutIt) {
   int ran_away = 0;
   for (std::uint64_t seed = 5; seed < 9; ++seed) {
-    testing::CampaignWishes wished = wishes(true);
-    wished.seed = seed;
-    testing::Campaign truth = testing::draw_campaign(wished);
-    testing::hide(truth, testing::parse_effect("radial-inertia=8"));
-    const Campaign campaign = read_campaign(testing::shots_of(truth));
-    Study study(campaign, 0.0, Workers{});
-    Model model = study.fit(paper_model(BenchKind::shpb, false)).model;
-    const double E1_Pa = truth.split->specimen.E1_Pa;
-    ran_away += model.find("three-element-specimen")->values[0].value > 10.0 * E1_Pa ? 1 : 0;
-    model.effects.push_back(use_named("radial-inertia"));
-    const Studied added = study.fit(model);
-    const ModelValue& found = added.model.find("three-element-specimen")->values[0];
+    const AddedLater added = added_to_what_was_fitted(seed, "radial-inertia=8");
+    const double E1_Pa = added.truth.split->specimen.E1_Pa;
+    const auto E1 = [](const Model& model) {
+      return model.find("three-element-specimen")->values[0];
+    };
+    ran_away += E1(added.without).value > 10.0 * E1_Pa ? 1 : 0;
+    const ModelValue found = E1(added.studied.model);
     EXPECT_LT(std::abs(found.value - E1_Pa), 4.0 * found.sd) << seed;
-    EXPECT_LT(added.misfit.chi2_reduced, 1.1) << seed;
+    EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1) << seed;
   }
   EXPECT_GT(ran_away, 0) << "nothing to find back from";
 }

@@ -2,25 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 
 #include "processing/models/effect.hpp"
+#include "tests/unit/page.hpp"
 
 namespace kolsky {
 namespace {
 
-const std::filesystem::path kRoot = KOLSKY_SOURCE_DIR;
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(EffectsPage, HoldsEveryEffectOfTheLibrary) {
-  const std::string page = content(kRoot / "docs/methods/effects.md");
+  const std::string page = testing::page("docs/methods/effects.md");
   for (const Effect* effect : effect_library()) {
     const std::string& id = effect->about().id;
     const bool of_a_bar = id.starts_with("output-bar-");
@@ -36,7 +28,8 @@ TEST(EffectsPage, AndOtherPagesThatAnEffectCitesAreThere) {
     EXPECT_FALSE(effect->about().reference.empty()) << effect->about().id;
     while (std::getline(cited >> std::ws, one, ';')) {
       if (one.find(".md") != std::string::npos) {
-        EXPECT_TRUE(std::filesystem::exists(kRoot / one)) << effect->about().id << ": " << one;
+        EXPECT_TRUE(std::filesystem::exists(testing::kProject / one))
+            << effect->about().id << ": " << one;
       }
     }
   }

@@ -13,6 +13,7 @@
 #include "processing/base/error.hpp"
 #include "processing/models/physics.hpp"
 #include "processing/models/transfers.hpp"
+#include "tests/reference_effects.hpp"
 
 namespace kolsky {
 namespace {
@@ -139,32 +140,7 @@ TEST(EffectLibrary, HoldsTheReferencesEffectsOnce) {
   for (const Effect* effect : effect_library()) {
     EXPECT_TRUE(ids.insert(effect->about().id).second) << effect->about().id;
   }
-  for (const char* id : {"second-relaxation",
-                         "series-dashpot",
-                         "fractional-damping",
-                         "amplitude-dependence",
-                         "temperature",
-                         "geometric-dispersion",
-                         "end-reflection",
-                         "bending",
-                         "bar-length",
-                         "specimen-dimensions",
-                         "gauge-position",
-                         "gauge-factor",
-                         "channel-delay",
-                         "amplifier-bandwidth",
-                         "baseline-drift",
-                         "gauge-length",
-                         "crosstalk",
-                         "mains-hum",
-                         "bridge-nonlinearity",
-                         "specimen-second-relaxation",
-                         "specimen-nonlinearity",
-                         "specimen-inertia",
-                         "radial-inertia",
-                         "interface-friction",
-                         "interface-gap",
-                         "punching"}) {
+  for (const char* id : testing::kReferenceEffects) {
     EXPECT_TRUE(ids.contains(id)) << id;
   }
 }

@@ -2,20 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 
+#include "tests/unit/page.hpp"
+
 namespace kolsky {
 namespace {
-
-const std::filesystem::path kRoot = KOLSKY_SOURCE_DIR;
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// What stands in quotes right after each place of a word.
 void add_quoted_after(const std::string& word, const std::string& text,
@@ -32,9 +25,9 @@ void add_quoted_after(const std::string& word, const std::string& text,
 std::set<std::string> checks_in_sources() {
   std::set<std::string> names;
   for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(kRoot / "processing/reduction")) {
+       std::filesystem::recursive_directory_iterator(testing::kProject / "processing/reduction")) {
     if (entry.path().extension() == ".cpp") {
-      const std::string text = content(entry.path());
+      const std::string text = testing::content(entry.path());
       add_quoted_after("check(", text, names);
       add_quoted_after("check{.name =", text, names);
     }
@@ -43,7 +36,7 @@ std::set<std::string> checks_in_sources() {
 }
 
 TEST(QualityPage, HoldsEveryCheck) {
-  const std::string page = content(kRoot / "docs/quality.md");
+  const std::string page = testing::page("docs/quality.md");
   const std::set<std::string> names = checks_in_sources();
   for (const char* known : {"equilibrium", "quiet_start", "restitution_possible", "momentum"}) {
     EXPECT_TRUE(names.contains(known)) << known;
