@@ -1,7 +1,6 @@
 #include "processing/criticism/search/search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -19,9 +18,6 @@ namespace kolsky {
 
 namespace {
 
-/// Typical sizes from which fits begin where first order misleads, and of what is sudden.
-constexpr std::array kSizes{3.0, 6.0, 12.0, 24.0};
-constexpr std::array kSuddenSizes{0.5, 2.0, 8.0, 24.0};
 constexpr std::size_t kMostRefits = 14;
 constexpr std::size_t kAlwaysRefits = 8;  ///< however far behind the first at first order
 constexpr double kWorthRefitting = 12.0;  ///< as a square of a normal deviate
@@ -61,10 +57,6 @@ bool is_switch(const Candidate& candidate) {
   const auto& parameters = candidate.use.effect->about().parameters;
   return std::any_of(parameters.begin(), parameters.end(),
                      [](const EffectParameter& parameter) { return parameter.is_switch; });
-}
-
-bool is_sudden(const Candidate& candidate) {
-  return std::ranges::any_of(candidate.use.effect->about().parameters, &EffectParameter::sudden);
 }
 
 bool of_material(const Candidate& candidate) {
@@ -341,11 +333,9 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       }
     }
   }
-  // What is there or not, first order takes a share of: far from the records that says nothing. Of
-  // what acts otherwise at a finite size it says nothing anyway.
+  // What is there or not, first order takes a share of: far from the records that says nothing.
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (base_.misfit.chi2_reduced > kFarOff &&
-        (is_switch(candidates_[i]) || is_sudden(candidates_[i])) && !is_chosen(i)) {
+    if (base_.misfit.chi2_reduced > kFarOff && is_switch(candidates_[i]) && !is_chosen(i)) {
       chosen.push_back(i);
     }
   }
@@ -403,37 +393,11 @@ std::vector<double> Search::begin_near(const Candidate& candidate, const Directi
   return best;
 }
 
-/// Where the model's numbers started; beside what is sudden the moduli are sought anew for every
-/// size of it, since without it they may be nowhere.
-std::vector<double> Search::begin_again(const Candidate& candidate, const Composition& composition,
-                                        std::size_t worker) const {
-  Model model = with(*begun_, candidate, true);
-  if (!is_sudden(candidate)) {
-    const Composition again(model, study_.campaign());
-    return carry(again, again.start(), composition);
-  }
-  std::vector<double> best;
-  double least = HUGE_VAL;
-  for (const double typicals : kSuddenSizes) {
-    EffectUse& use = *model.find(candidate.id());
-    use.values.front().value = typicals * use.effect->about().parameters.front().typical;
-    start_moduli(model, study_.campaign(), study_.residuals(), worker);
-    const Composition again(model, study_.campaign());
-    std::vector<double> start = carry(again, again.start(), composition);
-    const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
-    if (chi2 < least) {
-      least = chi2;
-      best = std::move(start);
-    }
-  }
-  return best;
-}
-
 std::vector<double> Search::begin_large(const Candidate& candidate, const Composition& composition,
                                         std::size_t worker) const {
   std::vector<double> best;
   double least = HUGE_VAL;
-  for (const double typicals : kSizes) {
+  for (const double typicals : {3.0, 6.0, 12.0, 24.0}) {
     std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
     for (std::size_t i = 0; i < start.size(); ++i) {
       const FreeNumber& number = composition.numbers()[i];
@@ -498,8 +462,9 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
                 begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
   if (begun_) {
     // Begin again from where the model's numbers started.
+    const Composition again(with(*begun_, candidate, true), study_.campaign());
     ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
-                               begin_again(candidate, composition, worker));
+                               carry(again, again.start(), composition));
     if (other.objective() < fit.objective()) {
       fit = std::move(other);
     }

@@ -84,9 +84,6 @@ class Search {
                                                const Direction& direction,
                                                const Composition& composition,
                                                std::size_t worker) const;
-  [[nodiscard]] std::vector<double> begin_again(const Candidate& candidate,
-                                                const Composition& composition,
-                                                std::size_t worker) const;
   [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
                                                 const Composition& composition,
                                                 std::size_t worker) const;
