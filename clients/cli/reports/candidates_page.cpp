@@ -20,11 +20,6 @@ std::string size_text(double size, const std::string& unit) {
   return number.empty() || unit == "-" ? number : number + " " + unit;
 }
 
-std::string to_a_tenth(double value) {
-  // Rounded first, so that no "-0.0" comes out.
-  return std::isfinite(value) ? fmt::format("{:.1f}", std::round(10.0 * value) / 10.0 + 0.0) : "";
-}
-
 }  // namespace
 
 PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_out) {
@@ -36,8 +31,8 @@ PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_o
   for (const CandidateResult& c : ranked) {
     const std::string strength =
         c.verdict == "untestable" ? "" : strength_text(c.strength, c.sd, c.unit);
-    table.rows.push_back({c.effect, c.verdict, strength, to_a_tenth(c.log_p), to_a_tenth(c.gain),
-                          to_a_tenth(c.held_out_gain), size_text(c.detectable, c.unit),
+    table.rows.push_back({c.effect, c.verdict, strength, gain_text(c.log_p), gain_text(c.gain),
+                          gain_text(c.held_out_gain), size_text(c.detectable, c.unit),
                           number_text(c.identifiable), c.nearest_rival});
   }
   return table;

@@ -67,10 +67,10 @@ std::string size_text(double size) {
 }
 
 std::string row_text(const CandidateResult& c) {
-  return fmt::format("  {:<27} {:>28} {:>9} {:>10.1f} {:>10.1f} {:>11} {:>10}  {}\n", c.effect,
-                     strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p), c.gain,
-                     c.held_out_gain, size_text(c.detectable), size_text(c.identifiable),
-                     c.verdict);
+  return fmt::format("  {:<27} {:>28} {:>9} {:>10} {:>10} {:>11} {:>10}  {}\n", c.effect,
+                     strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p),
+                     gain_text(c.gain), gain_text(c.held_out_gain), size_text(c.detectable),
+                     size_text(c.identifiable), c.verdict);
 }
 
 /// Only of the verdicts that are there.
@@ -160,6 +160,16 @@ std::string strength_text(double value, double sd, const std::string& unit) {
       fmt::format("{:.{}f} ± {:.{}f}", shown, decimals, sd * scale, decimals);
   const std::string scaled = power == 0 ? numbers : fmt::format("({})e{}", numbers, power);
   return unit == "-" ? scaled : scaled + " " + unit;
+}
+
+std::string gain_text(double gain) {
+  constexpr double kFitsAColumn = 1e7;
+  if (!std::isfinite(gain)) {
+    return "";
+  }
+  // Rounded first, so that no "-0.0" comes out.
+  return std::abs(gain) < kFitsAColumn ? fmt::format("{:.1f}", std::round(10.0 * gain) / 10.0 + 0.0)
+                                       : fmt::format("{:.1g}", gain);
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {

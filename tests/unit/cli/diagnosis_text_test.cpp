@@ -2,10 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <cmath>
 
 namespace kolsky::cli {
 namespace {
+
+TEST(GainText, KeepsToItsColumn) {
+  EXPECT_EQ(gain_text(53327.54), "53327.5");
+  EXPECT_EQ(gain_text(-0.01), "0.0");
+  EXPECT_EQ(gain_text(-1.58e25), "-2e+25");
+  EXPECT_EQ(gain_text(std::numeric_limits<double>::infinity()), "");
+}
 
 TEST(StrengthText, GivesTwoDigitsOfTheDeviationInPowersOfAThousand) {
   EXPECT_EQ(strength_text(3.5161e-6, 9.38e-8, "s"), "(3.516 ± 0.094)e-6 s");
