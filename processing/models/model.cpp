@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "processing/base/error.hpp"
 #include "processing/base/material.hpp"
@@ -124,40 +125,52 @@ Model paper_ball() {
   return model;
 }
 
-}  // namespace
-
-void take_layer(const Material& material, EffectUse& layer, std::span<const double> covariance) {
-  const std::array<Measured, 5> numbers{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s,
-                                        material.density_kg_m3, material.poisson_ratio};
+/// Numbers of a material, its moduli first, where they are filed with a deviation free within it.
+void take_filed(const Material& material, std::span<const Measured> numbers, EffectUse& use) {
   for (std::size_t p = 0; p < numbers.size(); ++p) {
-    ModelValue& value = layer.values[p];
+    ModelValue& value = use.values[p];
     value.value = value.prior_mean = numbers[p].value;
     value.prior_sd = numbers[p].sd;
     value.free = numbers[p].sd > 0.0;
   }
-  layer.prior_correlation.clear();
+  use.prior_correlation.clear();
   constexpr std::size_t kModuli = 3;
-  if (covariance.size() != kModuli * kModuli) {
+  if (!material.covariance) {
     return;
   }
+  const std::array<double, kModuli* kModuli>& covariance = *material.covariance;
   for (std::size_t a = 0; a < kModuli; ++a) {
     const double variance = covariance[a * kModuli + a];
     if (!(variance > 0.0)) {
       return;
     }
-    layer.values[a].prior_sd = std::sqrt(variance);
-    layer.values[a].free = true;
+    use.values[a].prior_sd = std::sqrt(variance);
+    use.values[a].free = true;
   }
   const std::size_t count = numbers.size();
-  layer.prior_correlation.assign(count * count, 0.0);
+  use.prior_correlation.assign(count * count, 0.0);
   for (std::size_t a = 0; a < count; ++a) {
     for (std::size_t b = 0; b < count; ++b) {
-      layer.prior_correlation[a * count + b] =
+      use.prior_correlation[a * count + b] =
           a < kModuli && b < kModuli
-              ? covariance[a * kModuli + b] / layer.values[a].prior_sd / layer.values[b].prior_sd
+              ? covariance[a * kModuli + b] / use.values[a].prior_sd / use.values[b].prior_sd
               : (a == b ? 1.0 : 0.0);
     }
   }
+}
+
+}  // namespace
+
+void take_layer(const Material& material, EffectUse& layer) {
+  take_filed(material,
+             std::array<Measured, 5>{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s,
+                                     material.density_kg_m3, material.poisson_ratio},
+             layer);
+}
+
+void take_bars(const Material& material, EffectUse& bars) {
+  take_filed(material, std::array<Measured, 3>{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s},
+             bars);
 }
 
 Model paper_model(BenchKind kind, bool elastic) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -61,10 +60,11 @@ struct Model {
 [[nodiscard]] std::vector<const Effect*> effects_known_to(const Model& model);
 
 /// A layer of the ball as a material file has it: what is filed with a deviation is free within it,
-/// the rest is held.
-/// @param covariance  of E1, E2 and eta2, row by row, in place of their deviations; may be empty
-void take_layer(const Material& material, EffectUse& layer,
-                std::span<const double> covariance = {});
+/// the moduli with their covariance where there is one; the rest is held.
+void take_layer(const Material& material, EffectUse& layer);
+
+/// The moduli of a split bar's bars, likewise.
+void take_bars(const Material& material, EffectUse& bars);
 
 /// "bar", "shpb" or "impact".
 [[nodiscard]] std::string name_of(BenchKind kind);

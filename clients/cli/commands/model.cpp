@@ -5,7 +5,6 @@
 #include <memory>
 #include <ostream>
 
-#include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/json_value.hpp"
@@ -57,20 +56,20 @@ struct NewSettings {
   std::string output;
 };
 
-/// Moduli of a split bar's bars as a material file gives them, within its deviations.
-void take_bar(const Material& material, Model& model) {
-  EffectUse* bar = model.find("three-element-bar");
-  if (bar == nullptr) {
+/// Bars as a material file gives them: where a model of the bar itself starts, what one of a split
+/// bar goes by.
+void take_bar_model(const Material& material, Model& model) {
+  EffectUse* bars = model.find("three-element-bar");
+  if (bars == nullptr) {
     return;
   }
-  const std::vector<Measured> numbers{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
-  for (std::size_t p = 0; p < numbers.size(); ++p) {
-    ModelValue& value = bar->values[p];
-    value.value = value.prior_mean = numbers[p].value;
-    if (model.kind == BenchKind::shpb) {
-      value.prior_sd = numbers[p].sd;
-      value.free = numbers[p].sd > 0.0;
-    }
+  if (model.kind == BenchKind::shpb) {
+    take_bars(material, *bars);
+    return;
+  }
+  const std::array<Measured, 3> starts{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+  for (std::size_t p = 0; p < starts.size(); ++p) {
+    bars->values[p].value = bars->values[p].prior_mean = starts[p].value;
   }
 }
 
@@ -84,14 +83,8 @@ std::string take_ball(const NewSettings& settings, const std::optional<Bench>& b
   for (std::size_t i = 0; i < names.size(); ++i) {
     source += (i == 0 ? "" : "; ") + std::string(names.at(i)) + ": ";
     if (*files.at(i)) {
-      const BarModelFile file = read_bar_model(**files.at(i));
-      std::vector<double> covariance;
-      for (const auto& row : file.prior.covariance) {
-        covariance.insert(covariance.end(), row.begin(), row.end());
-      }
-      materials.at(i) = file.prior.material;
-      take_layer(materials.at(i), *model.find(std::string("three-element-") + names.at(i)),
-                 covariance);
+      materials.at(i) = read_material(**files.at(i));
+      take_layer(materials.at(i), *model.find(std::string("three-element-") + names.at(i)));
       source += **files.at(i);
     } else {
       source += materials.at(i).source + ", held";
@@ -162,7 +155,7 @@ int make_new(const NewSettings& settings, Context& context) {
     }
     file.bar_source = take_ball(settings, filed, file.model);
   } else if (settings.bar_model) {
-    take_bar(read_material(*settings.bar_model), file.model);
+    take_bar_model(read_material(*settings.bar_model), file.model);
     file.bar_source = *settings.bar_model;
   } else if (!elastic) {
     file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"

@@ -490,6 +490,27 @@ TEST(NewModel, OfABallTakesTheCovarianceOfItsMaterials) {
   EXPECT_LT(prior, model.find("three-element-cover")) << model;
 }
 
+// As `kolsky identify bar` files it.
+TEST(NewModel, OfASplitBarTakesTheCovarianceOfItsBars) {
+  const scene::Folder folder;
+  folder.write("bars.toml",
+               "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\nE1_Pa_sd = 2e6\n"
+               "E2_Pa = 37e9\nE2_Pa_sd = 3e7\neta2_Pa_s = 1.81e6\neta2_Pa_s_sd = 1e3\n"
+               "covariance = [4e12, -3e13, 0, -3e13, 9e14, 0, 0, 0, 1e6]\n");
+  const auto prior_of = [&](const std::string& kind) {
+    const std::string name = folder / (kind + ".toml");
+    EXPECT_EQ(
+        kolsky({"model", "new", "--kind", kind, "--bar-model", folder / "bars.toml", "-o", name})
+            .code,
+        0);
+    const std::string model = content(name);
+    EXPECT_TRUE(model.find("5.66e+09") != std::string::npos) << model;
+    return model.find("prior_correlation = [1.0, -0.5, 0.0, -0.5, 1.0, 0.0, 0.0, 0.0, 1.0]");
+  };
+  EXPECT_NE(prior_of("shpb"), std::string::npos);
+  EXPECT_EQ(prior_of("bar"), std::string::npos) << "there it only says where to start";
+}
+
 TEST(EffectsCommand, ListsEveryEffectByIdWithWhatAPersonNeedsToAddIt) {
   const std::string text = kolsky({"effects"}).out;
   const json list = json_of(kolsky({"effects", "--json"}))["effects"];

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "drivers/files/models/model_file.hpp"
 #include "processing/criticism/fitting/composition.hpp"
@@ -10,7 +12,7 @@
 namespace kolsky {
 namespace {
 
-const std::vector<double> kCovariance{4e12, -5e12, 1e7, -5e12, 9e12, -2e7, 1e7, -2e7, 1e4};
+const std::array<double, 9> kCovariance{4e12, -5e12, 1e7, -5e12, 9e12, -2e7, 1e7, -2e7, 1e4};
 
 Material core() {
   Material core;
@@ -22,9 +24,11 @@ Material core() {
   return core;
 }
 
-Model ball_of(const std::vector<double>& covariance) {
+Model ball_of(const std::optional<std::array<double, 9>>& covariance) {
   Model model = paper_model(BenchKind::impact, true);
-  take_layer(core(), *model.find("three-element-core"), covariance);
+  Material filed = core();
+  filed.covariance = covariance;
+  take_layer(filed, *model.find("three-element-core"));
   return model;
 }
 
