@@ -332,6 +332,21 @@ TEST(Diagnosis, CallsUnknownWhatTheLibraryDoesNotHold) {
   EXPECT_TRUE(diagnosis.effects.empty());
 }
 
+/// A gauge that creeps comes late and fades: as its delay and its wrong position it was named, 13
+/// us and as much way the other way.
+TEST(Diagnosis, BelievesNoTwoEffectsThatUndoEachOther) {
+  testing::CampaignWishes wishes{.seed = 22, .shots = 6, .gauges = 6, .noise_strain = 1e-5};
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("x-gauge-creep:g6=0.008"));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [](const std::string& note) {
+    return note.find("gauge-position:g6") != std::string::npos &&
+           note.find("channel-delay:g6") != std::string::npos &&
+           note.find("undo each other") != std::string::npos;
+  }));
+}
+
 /// A clock that wanders within a record is no filter: as an amplifier's bandwidth it was named.
 TEST(Diagnosis, CallsUnknownAClockThatWanders) {
   const Made made = make(85, {"x-time-base=3e-8"});
