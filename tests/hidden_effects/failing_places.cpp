@@ -26,6 +26,8 @@ constexpr double kTrace = 1e-3;
 constexpr int kMostSteps = 12;
 constexpr double kAtRest = 0.1;  // of chi-square
 constexpr double kLeastShare = 0.02;
+constexpr int kMostTurns = 3;
+constexpr double kSettled = 10.0;  // of chi-square, in a turn
 constexpr int kNoiseDraws = 200;
 // What the whole change has less of than this share at a gauge is rounding.
 constexpr double kUntouched = 1e-9;
@@ -180,45 +182,40 @@ bool PlaceTruth::fails() const {
   return freedom > 0.0 && !trace && excess > findable_excess(freedom);
 }
 
-FailingPlaces::FailingPlaces(const Campaign& bare)
-    : bare_(bare),
-      prober_(bare),
-      freedom_(prober_.freedom()),
-      nuisances_(prober_.nuisances()),
-      noise_(draw_noise(freedom_, bare.world.gauges.size(), bare.world.timing.samples)) {
-  const auto count = static_cast<Eigen::Index>(nuisances_.size());
-  information_ = Eigen::MatrixXd::Zero(count, count);
-  for (std::size_t shot = 0; shot < bare.world.shots.size(); ++shot) {
+FailingPlaces::FirstOrder::FirstOrder(const Campaign& about)
+    : prober(about), freedom(prober.freedom()), nuisances(prober.nuisances()) {
+  const auto count = static_cast<Eigen::Index>(nuisances.size());
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
+  for (std::size_t shot = 0; shot < about.world.shots.size(); ++shot) {
     std::vector<const Records*> of_shot;
-    for (const Direction& direction : nuisances_) {
+    for (const Direction& direction : nuisances) {
       of_shot.push_back(&direction.readings[shot]);
     }
-    information_ += freedom_.remaining_products(of_shot);
+    products += freedom.remaining_products(of_shot);
   }
   for (Eigen::Index i = 0; i < count; ++i) {
-    Direction& direction = nuisances_[static_cast<std::size_t>(i)];
-    information_(i, i) += direction.known();
-    for (Records& shot : direction.readings) {
-      shot = freedom_.remainder(std::move(shot));
-    }
+    Direction& direction = nuisances[static_cast<std::size_t>(i)];
+    products(i, i) += direction.known();
+    direction.readings = left_of(std::move(direction.readings));
   }
+  information.compute(products);
 }
 
-Campaign FailingPlaces::bare_at(const Eigen::VectorXd& places) const {
-  Campaign moved = bare_;
-  for (std::size_t i = 0; i < nuisances_.size(); ++i) {
-    nuisances_[i].move(moved, places[static_cast<Eigen::Index>(i)]);
+Readings FailingPlaces::FirstOrder::left_of(Readings change) const {
+  for (Records& shot : change) {
+    shot = freedom.remainder(std::move(shot));
   }
-  return moved;
+  return change;
 }
 
-Eigen::VectorXd FailingPlaces::pull_of(const Readings& left, const Eigen::VectorXd& places) const {
+Eigen::VectorXd FailingPlaces::FirstOrder::pull_of(const Readings& left,
+                                                   const Eigen::VectorXd& places) const {
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(places.size());
-  for (std::size_t i = 0; i < nuisances_.size(); ++i) {
+  for (std::size_t i = 0; i < nuisances.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    pull[at] = -nuisances_[i].known() * places[at];
+    pull[at] = -nuisances[i].known() * places[at];
     for (std::size_t shot = 0; shot < left.size(); ++shot) {
-      const Records& own = nuisances_[i].readings[shot];
+      const Records& own = nuisances[i].readings[shot];
       for (std::size_t g = 0; g < own.size(); ++g) {
         pull[at] += std::inner_product(own[g].begin(), own[g].end(), left[shot][g].begin(), 0.0);
       }
@@ -227,10 +224,11 @@ Eigen::VectorXd FailingPlaces::pull_of(const Readings& left, const Eigen::Vector
   return pull;
 }
 
-double FailingPlaces::objective(const Readings& left, const Eigen::VectorXd& places) const {
+double FailingPlaces::FirstOrder::objective(const Readings& left,
+                                            const Eigen::VectorXd& places) const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < nuisances_.size(); ++i) {
-    sum += nuisances_[i].known() * std::pow(places[static_cast<Eigen::Index>(i)], 2);
+  for (std::size_t i = 0; i < nuisances.size(); ++i) {
+    sum += nuisances[i].known() * std::pow(places[static_cast<Eigen::Index>(i)], 2);
   }
   for (const Records& shot : left) {
     for (const std::vector<double>& record : shot) {
@@ -240,46 +238,66 @@ double FailingPlaces::objective(const Readings& left, const Eigen::VectorXd& pla
   return sum;
 }
 
-// By Gauss and Newton's method with the derivatives of the bare campaign: a large misfit carries
-// moduli too far for one step.
-Readings FailingPlaces::left_by_fit(const Campaign& hidden) {
+FailingPlaces::FailingPlaces(const Campaign& bare)
+    : bare_(bare),
+      about_bare_(bare),
+      noise_(draw_noise(about_bare_.freedom, bare.world.gauges.size(), bare.world.timing.samples)) {
+}
+
+Campaign FailingPlaces::bare_at(const Eigen::VectorXd& places) const {
+  Campaign moved = bare_;
+  for (Eigen::Index i = 0; i < places.size(); ++i) {
+    about_bare_.nuisances[static_cast<std::size_t>(i)].move(moved, places[i]);
+  }
+  return moved;
+}
+
+double FailingPlaces::approach(FirstOrder& about, const Campaign& hidden, Fit& fit) const {
   const auto left_at = [&](const Eigen::VectorXd& places) {
-    Readings left = prober_.whole_change(hidden, bare_at(places));
-    for (Records& shot : left) {
-      shot = freedom_.remainder(std::move(shot));
-    }
-    return left;
+    return about.left_of(about.prober.whole_change(hidden, bare_at(places)));
   };
-  const Eigen::LDLT<Eigen::MatrixXd> solver(information_);
-  Eigen::VectorXd places = Eigen::VectorXd::Zero(information_.rows());
-  Readings left = left_at(places);
-  double least = objective(left, places);
+  fit.left = left_at(fit.places);
+  const double begun = about.objective(fit.left, fit.places);
+  double least = begun;
   double share = 1.0;
   for (int step = 0; step < kMostSteps && share > kLeastShare;) {
-    const Eigen::VectorXd pull = pull_of(left, places);
-    const Eigen::VectorXd move = solver.solve(pull);
+    const Eigen::VectorXd pull = about.pull_of(fit.left, fit.places);
+    const Eigen::VectorXd move = about.information.solve(pull);
     if (pull.dot(move) < kAtRest) {
       break;
     }
-    const Eigen::VectorXd next = places + share * move;
+    const Eigen::VectorXd next = fit.places + share * move;
     Readings there = left_at(next);
-    const double found = objective(there, next);
+    const double found = about.objective(there, next);
     if (!(found < least)) {
       share *= 0.5;
       continue;
     }
     ++step;
-    places = next;
-    left = std::move(there);
+    fit.places = next;
+    fit.left = std::move(there);
     least = found;
     share = std::min(1.0, 2.0 * share);
   }
-  return left;
+  return begun - least;
+}
+
+// By Gauss and Newton's method, with derivatives of the bare campaign and then of where these lead:
+// a large misfit carries moduli to where they do something else.
+Readings FailingPlaces::left_by_fit(const Campaign& hidden) {
+  Fit fit{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(about_bare_.nuisances.size())), {}};
+  double fallen = approach(about_bare_, hidden, fit);
+  for (int turn = 1; turn < kMostTurns && fallen > kSettled; ++turn) {
+    const Campaign moved = bare_at(fit.places);
+    FirstOrder about_moved(moved);
+    fallen = approach(about_moved, hidden, fit);
+  }
+  return std::move(fit.left);
 }
 
 std::vector<PlaceTruth> FailingPlaces::of(const Campaign& hidden, const Places& places) {
   const Readings left = left_by_fit(hidden);
-  const std::vector<bool> touched = touched_gauges(prober_.whole_change(hidden, bare_));
+  const std::vector<bool> touched = touched_gauges(about_bare_.prober.whole_change(hidden, bare_));
   const testing::Timing& timing = bare_.world.timing;
   Bands bands(places.bands_Hz, timing.period_s());
   std::vector<PlaceTruth> out;
@@ -297,7 +315,8 @@ std::vector<PlaceTruth> FailingPlaces::of(const Campaign& hidden, const Places& 
       }
       const std::vector<double> weights = weights_of(stretch, timing.period_s(), timing.samples);
       const auto energies = [&](const std::vector<double>& record) {
-        return bands.energies(level(record, quiet[stretch.shot], freedom_.offset()), weights);
+        return bands.energies(level(record, quiet[stretch.shot], about_bare_.freedom.offset()),
+                              weights);
       };
       const std::vector<double> found = energies(left[stretch.shot][g]);
       std::vector<std::vector<double>> draws;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -59,20 +60,39 @@ class FailingPlaces {
  private:
   using Records = std::vector<std::vector<double>>;
 
+  /// What can be fitted, to first order about one campaign.
+  struct FirstOrder {
+    /// @param about  outlives this
+    explicit FirstOrder(const testing::Campaign& about);
+
+    [[nodiscard]] testing::Readings left_of(testing::Readings change) const;
+    /// Gradient of minus half the objective. @param places  of the nuisances, from the bare
+    /// campaign
+    [[nodiscard]] Eigen::VectorXd pull_of(const testing::Readings& left,
+                                          const Eigen::VectorXd& places) const;
+    [[nodiscard]] double objective(const testing::Readings& left,
+                                   const Eigen::VectorXd& places) const;
+
+    Prober prober;
+    SourceFreedom freedom;
+    std::vector<Direction> nuisances;          ///< what sources and offsets leave of them
+    Eigen::LDLT<Eigen::MatrixXd> information;  ///< of the nuisances, priors in it
+  };
+  /// Where a fit has come to.
+  struct Fit {
+    Eigen::VectorXd places;
+    testing::Readings left;
+  };
+
   /// Of hidden records, with the nuisances at their best.
   [[nodiscard]] testing::Readings left_by_fit(const testing::Campaign& hidden);
+  /// As near as derivatives from one campaign lead. @return by how much the objective fell
+  double approach(FirstOrder& about, const testing::Campaign& hidden, Fit& fit) const;
   [[nodiscard]] testing::Campaign bare_at(const Eigen::VectorXd& places) const;
-  [[nodiscard]] Eigen::VectorXd pull_of(const testing::Readings& left,
-                                        const Eigen::VectorXd& places) const;
-  [[nodiscard]] double objective(const testing::Readings& left,
-                                 const Eigen::VectorXd& places) const;
 
   const testing::Campaign& bare_;
-  Prober prober_;
-  SourceFreedom freedom_;
-  std::vector<Direction> nuisances_;  ///< what sources and offsets leave of them
-  Eigen::MatrixXd information_;       ///< of the nuisances, priors in it
-  std::vector<Records> noise_;        ///< draws, less what sources and offsets take up
+  FirstOrder about_bare_;
+  std::vector<Records> noise_;  ///< draws, less what sources and offsets take up
 };
 
 }  // namespace kolsky::scoring
