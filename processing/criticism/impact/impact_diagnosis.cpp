@@ -46,6 +46,7 @@ class Diagnostician {
       first = study_.allowing(share, first);
       search.emplace(study_, first);
     }
+    searched_ = search->base().fit.objective();
     Studied current = first;
     while ((add_one(*search, current) || add_two(current)) &&
            diagnosis_.effects.size() < options_.most_effects) {
@@ -54,6 +55,7 @@ class Diagnostician {
     }
     weigh_beside_others(first, current);
     weigh_beside_rest(first);
+    weigh_what_else_the_ball_does(first, current);
     weigh_readings(first, current);
     conclude(first, current);
     ImpactComparison after = study_.compare(current);
@@ -71,9 +73,9 @@ class Diagnostician {
     const std::vector<ImpactRefit> refits = search.refits();
     scale_ = search.scale();
     if (diagnosis_.candidates.empty()) {
-      begin_table(search, refits, current);
+      begin_table(search, refits);
     }
-    const auto* const claimed = first_certified(search, refits, current);
+    const auto* const claimed = first_certified(search, refits);
     if (claimed == nullptr) {
       rest_.reset();
       // A filed number that is set free has its place in every model already.
@@ -112,11 +114,10 @@ class Diagnostician {
   }
 
   [[nodiscard]] const ImpactRefit* first_certified(const ImpactSearch& search,
-                                                   const std::vector<ImpactRefit>& refits,
-                                                   const Studied& current) {
+                                                   const std::vector<ImpactRefit>& refits) {
     note_not_in_quiet(search);
     std::vector<std::string> judged;
-    const ImpactRefit* claimed = certifier_.first_certified(search, refits, current, judged);
+    const ImpactRefit* claimed = certifier_.first_certified(search, refits, search.base(), judged);
     for (const std::string& id : judged) {
       set_verdict(diagnosis_, id, "rejected");
     }
@@ -124,7 +125,7 @@ class Diagnostician {
       judged.push_back(search.candidate(*claimed).id());
       std::ranges::copy(beside(search, refits, *claimed), std::back_inserter(judged));
     }
-    note_refits(search, refits, current, judged);
+    note_refits(search, refits, judged);
     return claimed;
   }
 
@@ -141,9 +142,9 @@ class Diagnostician {
 
   void take(const Studied& refit, Studied& current) {
     searched_ = refit.fit.objective();
-    anchor_.emplace(AnchoredAt{refit.composition, refit.fit.theta});
     // Refits borrow their derivatives, and their fine forces from a ball without the effect.
     current = study_.settled(refit);
+    anchor_.emplace(AnchoredAt{current.composition, current.fit.theta});
   }
 
   [[nodiscard]] Studied without(const Model& model, const std::string& id) {
@@ -171,7 +172,7 @@ class Diagnostician {
     const Studied others = without(current.model, id);
     ImpactSearch search(study_, others);
     const std::vector<ImpactRefit> refits = search.refits();
-    const ImpactRefit* claimed = first_certified(search, refits, others);
+    const ImpactRefit* claimed = first_certified(search, refits);
     if (claimed == nullptr) {
       drop_claim(diagnosis_, id, "rejected");
       take(others, current);
@@ -219,6 +220,38 @@ class Diagnostician {
         "what is claimed leaves something that is not certified; nearest is " + rest_->id);
   }
 
+  /// A search goes by derivatives from where the model was led for want of what is missing, and
+  /// what the ball does has none worth anything there. So where one effect is claimed and leaves
+  /// what stands out, the ball's others are fitted to their ends as well: one that explains more
+  /// overrules it.
+  void weigh_what_else_the_ball_does(const Studied& first, const Studied& current) {
+    if (diagnosis_.effects.size() != 1 || study_.allowance(current) == Allowance::kept) {
+      return;
+    }
+    const std::string claimed = diagnosis_.effects.front();
+    for (const char* const id : {"core-nonlinearity", "cover-nonlinearity",
+                                 "core-second-relaxation", "cover-second-relaxation"}) {
+      if (id == claimed) {
+        continue;
+      }
+      options_.progress(fmt::format("fitting {} in the place of {}", id, claimed));
+      Model model = first.model;
+      model.effects.push_back(use_named(id));
+      const Studied other = study_.settled(study_.refit(model, study_.executor()));
+      if (other.fit.objective() < current.fit.objective() - kStandsBefore * kSolverDoubt) {
+        diagnosis_.notes.push_back(fmt::format(
+            "{} explains more than {} does, fitted to its end: nothing is claimed; `kolsky model "
+            "add` it, fit, and diagnose again",
+            id, claimed));
+        drop_claims(diagnosis_);
+        overruled_ = true;
+        break;
+      }
+    }
+    study_.residuals().anchor(current.composition, current.fit.theta,
+                              ImpactResiduals::AnchorBy::middle);
+  }
+
   /// Other readings of the law in three dimensions, without what was found: where one does as well,
   /// what was found is not more than a choice of reading.
   void weigh_readings(const Studied& first, const Studied& current) {
@@ -230,8 +263,8 @@ class Diagnostician {
     options_.progress("weighing the other readings of the law in three dimensions");
     const AnchoredAt at_first{first.composition, first_anchor_};
     const auto rival =
-        best_rival_reading(study_, first.model, anchor_ ? searched_ : current.fit.objective(),
-                           scale_, anchor_ ? &at_first : nullptr, anchor_ ? &*anchor_ : nullptr);
+        best_rival_reading(study_, first.model, searched_, scale_, anchor_ ? &at_first : nullptr,
+                           anchor_ ? &*anchor_ : nullptr);
     if (!rival || rival->behind > kStandsBefore) {
       return;
     }
@@ -272,7 +305,11 @@ class Diagnostician {
     if (claims && leaves_too_much(first, current)) {
       doubts.push_back(left_of_claim_note(diagnosis_.held_out));
     }
-    if (remains(first, current) || overruled_ || (claims && !doubts.empty())) {
+    const std::optional<std::string> scatter = scatter_doubt(study_.residuals());
+    if (scatter) {
+      doubts.push_back(*scatter);
+    }
+    if (remains(first, current) || overruled_ || scatter || (claims && !doubts.empty())) {
       give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {
       settle_claims(diagnosis_,
@@ -343,10 +380,9 @@ class Diagnostician {
   }
 
   /// Every effect as the first search has it.
-  void begin_table(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
-                   const Studied& current) {
-    diagnosis_.candidates = first_order_table(
-        {search.candidates(), search.directions(), current, search.log_trials(), search.scale()});
+  void begin_table(const ImpactSearch& search, const std::vector<ImpactRefit>& refits) {
+    diagnosis_.candidates = first_order_table({search.candidates(), search.directions(),
+                                               search.base(), search.log_trials(), search.scale()});
     for (const FlatEffect& flat : search.flat()) {
       flat_.push_back(flat.id);
     }
@@ -355,13 +391,12 @@ class Diagnostician {
     for (const ImpactRefit& refit : refits) {
       all.push_back(search.candidate(refit).id());
     }
-    note_refits(search, refits, current, all);
+    note_refits(search, refits, all);
   }
 
   /// What a search found of these effects, in the place of what its row said before.
-  /// @param before  the model that was searched
   void note_refits(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
-                   const Studied& before, const std::vector<std::string>& ids) {
+                   const std::vector<std::string>& ids) {
     for (CandidateResult& result : diagnosis_.candidates) {
       const auto best = std::ranges::find_if(refits, [&](const ImpactRefit& refit) {
         return search.candidate(refit).id() == result.effect;
@@ -372,7 +407,7 @@ class Diagnostician {
       result.gain = best->gain;
       result.log_p = search.with_search(best->log_p);
       result.own_log_p = best->log_p;
-      result.held_out_gain = certifier_.held_out_gain(before, best->studied);
+      result.held_out_gain = certifier_.held_out_gain(search.base(), best->studied);
       result.refitted = true;
       set_strength(best->studied, result.effect, result);
     }

@@ -18,9 +18,9 @@ BallRun ImpactResiduals::force(const BallScene& ball, std::size_t group, bool hi
   const SpeedGroup& own = records_.groups[group];
   const double speed = high ? own.high_m_per_s : own.low_m_per_s;
   const Anchor& anchor = anchors_[group][high ? 1 : 0];
-  const BallRun coarse = *runs_->run(ball, own.speed_m_per_s, meshes_.coarse);
+  const BallRun there = *runs_->run(ball, own.speed_m_per_s, moving_elements_);
   const double growth = std::pow(speed / own.speed_m_per_s, kChangeBySpeed);
-  const BallRun moved = sum_of(anchor.fine, growth, sum_of(coarse, -1.0, anchor.coarse));
+  const BallRun moved = sum_of(anchor.fine, growth, sum_of(there, -1.0, anchor.moving));
   return sum_of(moved, ball.cauchy_share, anchor.law);
 }
 
@@ -54,6 +54,7 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   executor_.run(tasks.size(),
                 [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
   anchored_at_ = theta;
+  moving_elements_ = meshes_.coarse;
   anchors_.resize(records_.groups.size());
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
@@ -66,10 +67,22 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
         own.mesh = sum_of(*run({speed, meshes_.fine, false}), -1.0, middle);
       }
       own.fine = sum_of(middle, 1.0, own.mesh);
-      own.coarse = coarse;
+      own.moving = coarse;
       own.law = sum_of(*run({speed, meshes_.middle, true}), -1.0, middle);
     }
   }
+}
+
+void ImpactResiduals::move_by(Moves mesh, const Composition& composition) {
+  moving_elements_ = mesh == Moves::middle ? meshes_.middle : meshes_.coarse;
+  BallScene ball;
+  static_cast<void>(transfers(composition, anchored_at_, 0, ball));
+  executor_.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
+    const BallRun there = *runs_->run(ball, records_.groups[g].speed_m_per_s, moving_elements_);
+    for (Anchor& own : anchors_[g]) {
+      own.moving = there;
+    }
+  });
 }
 
 void ImpactResiduals::prepare(const Composition& composition, const std::vector<double>& theta) {

@@ -145,6 +145,20 @@ void note_speeds(const ImpactResiduals& residuals, Lines& lines) {
 
 }  // namespace
 
+std::optional<std::string> scatter_doubt(const ImpactResiduals& residuals) {
+  constexpr double kMuch = 5.0;
+  constexpr double kCommon = 2e-3;  // of a speed of which nothing is filed
+  const double filed = std::max(residuals.records().own_speed_sd, kCommon);
+  if (residuals.speed_sd() < kMuch * filed) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "shots of one speed differ by {:.2g} % where speeds are off by {:.2g} %: something is not "
+      "alike in all shots, a bond, an amplifier or how speeds are measured; look at `kolsky "
+      "compare` shot by shot, or file the deviation that speeds have",
+      100.0 * residuals.speed_sd(), 100.0 * filed);
+}
+
 double law_beyond_bounds(const Studied& studied) {
   const ModelFit& fit = studied.fit;
   const std::vector<FreeNumber>& numbers = studied.composition.numbers();

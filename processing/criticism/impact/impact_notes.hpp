@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ inline constexpr double kPressed = 2.0;
                                                     const std::vector<CandidateResult>& candidates,
                                                     double scale,
                                                     const std::vector<std::string>& flat);
+
+/// Why shots are not alike, where those of one speed differ by five times what their speeds may be
+/// off by: a reading that changes from shot to shot, which their scatter would pass for.
+[[nodiscard]] std::optional<std::string> scatter_doubt(const ImpactResiduals& residuals);
 
 /// Why nothing is claimed though something is certified. @param beyond  of law_beyond_bounds()
 [[nodiscard]] std::string law_pressed_note(double beyond);

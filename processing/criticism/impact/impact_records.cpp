@@ -7,6 +7,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/criticism/impact/fine_grid.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/impact/filter.hpp"
 
 namespace kolsky {
@@ -57,13 +58,19 @@ class NoiseMeter {
  public:
   NoiseMeter(std::size_t step, double sigma_samples) : step_(step), sigma_(sigma_samples) {}
 
-  void add(const std::vector<double>& raw, const std::vector<double>& filtered, std::size_t quiet) {
+  /// @param slope  per sample, of all shots alike: what repeats is no noise
+  void add(const std::vector<double>& raw, const std::vector<double>& filtered, std::size_t quiet,
+           double slope) {
+    const double middle = 0.5 * (static_cast<double>(quiet) - 1.0);
     double mean = 0.0;
     for (std::size_t n = 0; n < quiet; ++n) {
       mean += raw[n] / static_cast<double>(quiet);
     }
+    const auto off = [&](const std::vector<double>& record, std::size_t n) {
+      return record[n] - mean - slope * (static_cast<double>(n) - middle);
+    };
     for (std::size_t n = 0; n < quiet; ++n) {
-      raw_ += (raw[n] - mean) * (raw[n] - mean);
+      raw_ += off(raw, n) * off(raw, n);
     }
     raw_count_ += static_cast<double>(quiet) - 1.0;
     const auto edge = static_cast<std::size_t>(std::ceil(4.0 * sigma_));
@@ -72,7 +79,7 @@ class NoiseMeter {
     }
     for (std::size_t lag = 0; lag <= kMostLags; ++lag) {
       for (std::size_t n = edge; n + lag * step_ < quiet - edge; ++n) {
-        sums_[lag] += (filtered[n] - mean) * (filtered[n + lag * step_] - mean);
+        sums_[lag] += off(filtered, n) * off(filtered, n + lag * step_);
         counts_[lag] += 1.0;
       }
     }
@@ -105,6 +112,19 @@ class NoiseMeter {
   std::vector<double> sums_ = std::vector<double>(kMostLags + 1, 0.0);
   std::vector<double> counts_ = std::vector<double>(kMostLags + 1, 0.0);
 };
+
+/// Mean slope per sample of a gauge's quiet parts over the shots: a baseline that drifts in all of
+/// them alike would pass for slow noise. Of fewer than three it may be noise.
+double common_slope(const Campaign& campaign, std::size_t gauge) {
+  if (campaign.shots.size() < 3) {
+    return 0.0;
+  }
+  double sum = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    sum += slope_before(shot, shot.strain[gauge]) * campaign.period_s;
+  }
+  return sum / static_cast<double>(campaign.shots.size());
+}
 
 /// How long after the arrival at the reference gauge every gauge is free of what is not modelled.
 double clear_s(const Campaign& campaign, bool whole) {
@@ -228,6 +248,10 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
   window.lead_s = std::floor(lead_s / period_s) * period_s;
   window.samples = static_cast<std::size_t>((window.lead_s + after_s) / window.period_s);
   std::vector<NoiseMeter> meters(campaign.gauges(), NoiseMeter(step, sigma_samples));
+  std::vector<double> slopes;
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    slopes.push_back(common_slope(campaign, j));
+  }
   for (const CampaignShot& shot : campaign.shots) {
     const auto first =
         static_cast<std::size_t>(std::lround((shot.foot_s - window.lead_s) / period_s));
@@ -240,7 +264,8 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
         judged.push_back(filtered[std::min(first + k * step, filtered.size() - 1)]);
         peak = std::max(peak, std::abs(judged.back()));
       }
-      meters[j].add(shot.strain[j], filtered, std::min(shot.quiet_samples, filtered.size()));
+      meters[j].add(shot.strain[j], filtered, std::min(shot.quiet_samples, filtered.size()),
+                    slopes[j]);
       own.push_back(std::move(filtered));
     }
     records.low_passed.push_back(std::move(own));

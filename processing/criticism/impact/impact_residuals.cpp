@@ -21,6 +21,7 @@ ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cu
     : campaign_(campaign),
       executor_(executor),
       meshes_(meshes),
+      moving_elements_(meshes.coarse),
       records_(read_impact_records(campaign, whole, cutoff_Hz)),
       runs_(runs ? std::move(runs) : std::make_shared<BallRuns>(campaign.bench)) {
   const ImpactWindow& window = records_.window;
@@ -202,7 +203,7 @@ Eigen::VectorXd ImpactResiduals::evaluate_on(const Workers& executor,
   static_cast<void>(transfers(composition, theta, 0, ball));
   executor.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
     try {
-      static_cast<void>(runs_->run(ball, records_.groups[g].speed_m_per_s, meshes_.coarse));
+      static_cast<void>(runs_->run(ball, records_.groups[g].speed_m_per_s, moving_elements_));
     } catch (const InputError&) {
       // Refused again below, and said there.
     }

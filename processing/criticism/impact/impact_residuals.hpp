@@ -36,7 +36,10 @@ inline constexpr double kStandsBefore = 7.5;
 /// Three meshes: m = fine(theta_0) + coarse(theta) - coarse(theta_0), theta_0 as prepared. The fine
 /// ones are at the ends of a group's speeds, for the slope between them; the coarse ones in the
 /// middle, and what theta changes there grows with the speed as a ball's force does: within the per
-/// cent or two of a group that is good to a hundredth of the change.
+/// cent or two of a group that is good to a hundredth of the change. A search may go by the coarse
+/// mesh; what is said in the end may not: numbers that do nearly the same to a ball (friction, the
+/// law's form, a stiffening) are told apart by what the mesh does to each of them, which leads fits
+/// astray and makes deviations a third of what they are (Moves).
 class ImpactResiduals : public ShotResiduals {
  public:
   /// @param whole  judge beyond the far end's reflection
@@ -54,6 +57,9 @@ class ImpactResiduals : public ShotResiduals {
   enum class AnchorBy { fine, middle };
   void anchor(const Composition& composition, const std::vector<double>& theta,
               AnchorBy by = AnchorBy::fine);
+  /// By which mesh forces change with theta from now on, until the fine ones are taken anew.
+  enum class Moves { coarse, middle };
+  void move_by(Moves mesh, const Composition& composition);
   /// Where the fine forces were taken last.
   [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
   /// Of the core or the cover where the fine forces were taken last, at the highest speed: the
@@ -154,7 +160,7 @@ class ImpactResiduals : public ShotResiduals {
   };
   struct Anchor {
     BallRun fine;    ///< at the prepared numbers
-    BallRun coarse;  ///< the same, at the group's mean speed
+    BallRun moving;  ///< there, by the mesh that changes with theta, at the group's mean speed
     BallRun law;     ///< Cauchy's less Kirchhoff's
     BallRun mesh;    ///< fine less middle
   };
@@ -195,6 +201,7 @@ class ImpactResiduals : public ShotResiduals {
   const Campaign& campaign_;
   Workers executor_;
   BallMeshes meshes_;
+  std::size_t moving_elements_;  ///< of the mesh by which forces change with theta
   ImpactRecords records_;
   std::shared_ptr<BallRuns> runs_;
   std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high

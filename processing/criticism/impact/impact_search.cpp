@@ -114,17 +114,17 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
 
 ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
     : study_(study),
-      base_(base),
-      candidates_(candidates_for(base, study.campaign())),
+      base_(study.by_coarse_mesh(base)),
+      candidates_(candidates_for(base_, study.campaign())),
       directions_(candidates_.size()),
       flat_(candidates_.size()),
       evidence_(candidates_.size(), 0.0) {
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     const Candidate& own = candidates_[i];
     Direction& direction = directions_[i];
-    direction = direction_of(own, base, study.campaign(), study.residuals(), worker);
+    direction = direction_of(own, base_, study.campaign(), study.residuals(), worker);
     if (beyond_reach(own, direction)) {
-      flat_[i] = flat_effect(study, base, own, kStandsBefore * kSolverDoubt, worker);
+      flat_[i] = flat_effect(study, base_, own, kStandsBefore * kSolverDoubt, worker);
       direction = flat_[i] ? flat_[i]->secant : untestable(std::move(direction));
     }
     if (direction.freedom > 0.0) {
@@ -132,7 +132,7 @@ ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
           equivalent_square(log_gain_tail(direction.gain, direction.freedom, own.one_sided));
     }
   });
-  trials_ = independent_trials(base, candidates_, directions_);
+  trials_ = independent_trials(base_, candidates_, directions_);
 }
 
 std::vector<FlatEffect> ImpactSearch::flat() const {

@@ -33,8 +33,11 @@ struct ImpactRefit {
 /// less as the records' own part in its uncertainty is in doubt (doubt_of_gain).
 class ImpactSearch {
  public:
-  /// @param base  the model as fitted; outlives this
+  /// @param base  the model as fitted
   ImpactSearch(ImpactStudy& study, const Studied& base);
+
+  /// What refits are compared with: the model as the coarse mesh, by which these go, would have it.
+  [[nodiscard]] const Studied& base() const { return base_; }
 
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
   /// Of the candidates, one each; a secant where one has no slope at none; without freedom where
@@ -72,7 +75,7 @@ class ImpactSearch {
   void rate(std::vector<ImpactRefit>& list);
 
   ImpactStudy& study_;
-  const Studied& base_;
+  Studied base_;
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   std::vector<std::optional<FlatEffect>> flat_;  ///< by candidate

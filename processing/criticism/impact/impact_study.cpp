@@ -5,6 +5,7 @@
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
+#include "processing/criticism/fitting/fit_steps.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 
@@ -34,6 +35,15 @@ bool strained(const Composition& composition, const std::vector<double>& theta) 
     }
   }
   return false;
+}
+
+/// The same with all that is filed as it is filed.
+std::vector<double> as_filed(const Composition& composition, std::vector<double> theta) {
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    theta[i] = number.prior_sd > 0.0 ? number.theta_of(number.prior_mean) : theta[i];
+  }
+  return theta;
 }
 
 }  // namespace
@@ -75,13 +85,14 @@ bool judges_whole(const Model& model) {
 
 /// A ball with little friction has a second minimum where friction is filed, with moduli and law in
 /// its place, and coarse forces do not lead from there to the other. So where what is filed is
-/// strained the two are compared, each with forces that were taken where it is (docs/impact.md).
+/// strained, or more is left than noise, the two are compared, each with forces that were taken
+/// where it is (docs/impact.md).
 ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composition& composition,
                                               ModelFit fit) {
   const EffectUse* friction = model.find("contact-friction");
   const bool filed =
       friction != nullptr && friction->values[0].free && friction->values[0].prior_sd > 0.0;
-  if (!filed || !strained(composition, fit.theta)) {
+  if (!filed || !astray(composition, fit)) {
     return fit;
   }
   const auto again_at = [&](const std::vector<double>& theta, Settle settle) {
@@ -130,8 +141,37 @@ Studied ImpactStudy::fit(const Model& begun) {
   ModelFit fit = or_with_little_friction(model, composition,
                                          fit_by_secants(composition, residuals_, executor_));
   residuals_.calibrate(composition, fit.theta);
-  fit = fit_by_secants(composition, residuals_, executor_, fit.theta);
+  fit = to_the_end(composition, fit.theta);
   return finish(model, std::move(composition), std::move(fit));
+}
+
+bool ImpactStudy::astray(const Composition& composition, const ModelFit& fit) const {
+  const auto [chi2, freedom] = repeated(fit.residual);
+  return strained(composition, fit.theta) || log_chi2_tail(chi2, freedom) < kUnexplained;
+}
+
+/// By what the middle mesh makes of each number, with the fine forces taken where that leads. A
+/// search from there goes by the coarse mesh again.
+ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<double> theta) {
+  constexpr int kMostPasses = 3;
+  constexpr double kArrived = 2.0;  ///< of chi2: more than forces are rough by
+  constexpr double kShare = 1e-3;   ///< of it: of a large misfit more is rough
+  ModelFit fit;
+  bool arrived = false;
+  for (int pass = 0; pass < kMostPasses && !arrived; ++pass) {
+    residuals_.anchor(composition, theta);
+    residuals_.move_by(ImpactResiduals::Moves::middle, composition);
+    const double begun = FitSteps(composition, residuals_, executor_, theta).objective();
+    const Eigen::MatrixXd chord = fit.jacobian;
+    fit = fit_by_secants(composition, residuals_, executor_, theta, pass > 0 ? &chord : nullptr);
+    const double left = fit.chi2 + fit.penalty;
+    arrived = !(begun - left > std::max(kArrived, kShare * left));
+    theta = fit.theta;
+  }
+  residuals_.anchor(composition, theta, ImpactResiduals::AnchorBy::middle);
+  fit.residual = residuals_.evaluate_on(executor_, composition, theta);
+  fit.chi2 = fit.residual.squaredNorm();
+  return fit;
 }
 
 Studied ImpactStudy::refit(const Model& model, const Workers& executor, Settle settle) {
@@ -150,15 +190,32 @@ Studied ImpactStudy::refit_near(const Model& model, const Studied& other) {
 }
 
 Studied ImpactStudy::settled(const Studied& studied) {
-  residuals_.anchor(studied.composition, studied.fit.theta);
+  const Composition& composition = studied.composition;
+  ModelFit fit = to_the_end(composition, studied.fit.theta);
+  if (astray(composition, fit)) {
+    const std::vector<double> filed = as_filed(composition, fit.theta);
+    residuals_.anchor(composition, filed, ImpactResiduals::AnchorBy::middle);
+    const ModelFit near = fit_by_secants(composition, residuals_, executor_, filed);
+    ModelFit other = to_the_end(composition, near.theta);
+    if (other.objective() < fit.objective()) {
+      fit = std::move(other);
+    } else {
+      residuals_.anchor(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
+      fit.residual = residuals_.evaluate_on(executor_, composition, fit.theta);
+      fit.chi2 = fit.residual.squaredNorm();
+    }
+  }
+  return finish(studied.model, composition, std::move(fit));
+}
+
+Studied ImpactStudy::by_coarse_mesh(const Studied& studied) {
   ModelFit fit = fit_by_secants(studied.composition, residuals_, executor_, studied.fit.theta);
   return finish(studied.model, studied.composition, std::move(fit));
 }
 
 Studied ImpactStudy::allowing(double share, const Studied& studied) {
   residuals_.allow(share, studied.composition, studied.fit.theta);
-  ModelFit fit = fit_by_secants(studied.composition, residuals_, executor_, studied.fit.theta);
-  return finish(studied.model, studied.composition, std::move(fit));
+  return settled(studied);
 }
 
 Studied ImpactStudy::as_it_is(const Model& model) {

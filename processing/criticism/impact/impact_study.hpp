@@ -97,9 +97,13 @@ class ImpactStudy {
                               Settle settle = Settle::fully);
   /// The same, from where the model is and from where another fit left what both hold.
   [[nodiscard]] Studied refit_near(const Model& model, const Studied& other);
-  /// With the fine forces taken where a fit has led, and fitted again from there. The whitener
-  /// stays.
+  /// Fitted to its end from where a search has led, and where that strains what is filed or leaves
+  /// more than noise from where it is filed, too: for want of what was added since, the search may
+  /// have begun in a minimum that is none any more. The whitener stays.
   [[nodiscard]] Studied settled(const Studied& studied);
+  /// As a search by the coarse mesh sees it: that mesh's own minimum nearby, where what it is off
+  /// by is not a rival's gain.
+  [[nodiscard]] Studied by_coarse_mesh(const Studied& studied);
   /// With the solver's error allowed for by this share of the usual, and fitted again.
   [[nodiscard]] Studied allowing(double share, const Studied& studied);
   [[nodiscard]] Studied as_it_is(const Model& model);
@@ -131,6 +135,10 @@ class ImpactStudy {
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
+  /// Whether a fit strains what is filed or leaves more than noise: then something may be missing
+  /// for want of which it is where it is.
+  [[nodiscard]] bool astray(const Composition& composition, const ModelFit& fit) const;
+  [[nodiscard]] ModelFit to_the_end(const Composition& composition, std::vector<double> theta);
   [[nodiscard]] ModelFit or_with_little_friction(const Model& model, const Composition& composition,
                                                  ModelFit fit);
 

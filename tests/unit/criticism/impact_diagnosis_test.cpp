@@ -87,6 +87,21 @@ TEST(ImpactDiagnosis, ALinearBallIsAdequate) {
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
 }
 
+/// An amplifier whose gain changes from shot to shot scatters readings as speeds would that nobody
+/// measured: with these known it is neither noise nor a ball that the model describes.
+TEST(ImpactDiagnosis, ShotsThatDifferMoreThanTheirSpeedsAreNotAdequate) {
+  Campaign campaign = read_campaign(testing::impact_shots(two_speeds(11, 3)));
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    for (double& value : campaign.shots[n].strain[0]) {
+      value *= 1.0 + 0.05 * (static_cast<double>(n % 3) - 1.0);
+    }
+  }
+  ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+  const Diagnosis diagnosis = diagnose_impacts(study, paper_with({}), {});
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "shots of one speed differ by")) << told(diagnosis);
+}
+
 /// A core that stiffens.
 class StiffeningCore : public ::testing::Test {
  protected:
@@ -284,19 +299,15 @@ TEST(LongImpactDiagnosis, WhatAClaimLeavesUncertifiedIsSaid) {
 }
 
 /// A core that is softened by what it was strained to most is of no effect in the library. Effects
-/// that are explain much of it, and what they leave presses the law beyond its bound: it is none of
-/// them.
-TEST(LongImpactDiagnosis, WhatPressesTheLawBesideAClaimIsNotClaimed) {
+/// that are explain much of it, and leave what stands out of noise: it is none of them.
+TEST(LongImpactDiagnosis, WhatClosesAPartOfTheMisfitIsNotClaimed) {
   testing::ImpactWishes own = two_speeds(36, 3);
   own.core_damage = 0.75;
   own.across = 14;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own));
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
   EXPECT_TRUE(diagnosis.effects.empty()) << told(diagnosis);
-  EXPECT_TRUE(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const auto& note) {
-    return note.find("beyond its bound by") != std::string::npos &&
-           note.starts_with("with what came nearest");
-  })) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "what came nearest explains")) << told(diagnosis);
 }
 
 /// A bridge that is not straight, and a core all of whose moduli are a tenth off what is filed
@@ -319,18 +330,18 @@ TEST(LongImpactDiagnosis, AClaimThatContradictsTheFiledMaterialsIsNone) {
   EXPECT_FALSE(noted(softened, "contradict what is filed")) << told(softened);
 }
 
-/// Less damage presses neither the law nor the materials that far. A relaxation stands before
-/// nothing, and leaves four fifths of what shots at the other speed show.
-TEST(LongImpactDiagnosis, WhatClosesAPartOfTheMisfitIsNotClaimed) {
+/// Of less damage the law and the materials take up what is left beside noise, further than is
+/// filed: that is no ball that the model describes, and no effect of the library either.
+TEST(LongImpactDiagnosis, WhatPressesLawAndMaterialsIsNotAdequate) {
   testing::ImpactWishes own = two_speeds(39, 4);
   own.core_damage = 0.5;
   own.across = 9;
   own.speed_error = 1e-3;
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(own), filed_ball());
-  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::untestable) << told(diagnosis);
   EXPECT_TRUE(diagnosis.effects.empty()) << told(diagnosis);
-  EXPECT_TRUE(noted(diagnosis, "what came nearest explains")) << told(diagnosis);
-  EXPECT_TRUE(noted(diagnosis, "nearest came core-second-relaxation")) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "beyond which the records want it by")) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "contradict what is filed of the materials")) << told(diagnosis);
 }
 
 /// Adequate is said with what it stands on where more repeats than is allowed for the calculation.
