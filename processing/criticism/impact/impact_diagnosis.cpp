@@ -55,7 +55,6 @@ class Diagnostician {
     }
     weigh_beside_others(first, current);
     weigh_beside_rest(first);
-    weigh_what_else_the_ball_does(first, current);
     weigh_readings(first, current);
     conclude(first, current);
     ImpactComparison after = study_.compare(current);
@@ -224,9 +223,9 @@ class Diagnostician {
   /// what the ball does has none worth anything there. So where one effect is claimed and leaves
   /// what stands out, the ball's others are fitted to their ends as well: one that explains more
   /// overrules it.
-  void weigh_what_else_the_ball_does(const Studied& first, const Studied& current) {
+  bool overruled_by_what_else_the_ball_does(const Studied& first, const Studied& current) {
     if (diagnosis_.effects.size() != 1 || study_.allowance(current) == Allowance::kept) {
-      return;
+      return false;
     }
     const std::string claimed = diagnosis_.effects.front();
     for (const char* const id : {"core-nonlinearity", "cover-nonlinearity",
@@ -250,6 +249,7 @@ class Diagnostician {
     }
     study_.residuals().anchor(current.composition, current.fit.theta,
                               ImpactResiduals::AnchorBy::middle);
+    return overruled_;
   }
 
   /// Other readings of the law in three dimensions, without what was found: where one does as well,
@@ -309,7 +309,9 @@ class Diagnostician {
     if (scatter) {
       doubts.push_back(*scatter);
     }
-    if (remains(first, current) || overruled_ || scatter || (claims && !doubts.empty())) {
+    const bool doubted =
+        remains(first, current) || overruled_ || scatter || (claims && !doubts.empty());
+    if (doubted || overruled_by_what_else_the_ball_does(first, current)) {
       give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {
       settle_claims(diagnosis_,

@@ -155,12 +155,16 @@ bool ImpactStudy::astray(const Composition& composition, const ModelFit& fit) co
 ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<double> theta) {
   constexpr int kMostPasses = 3;
   constexpr double kArrived = 2.0;  ///< of chi2: more than forces are rough by
-  constexpr double kShare = 1e-3;   ///< of it: of a large misfit more is rough
+  constexpr double kShare = 1e-2;   ///< of it: of a large misfit more is rough
+  constexpr double kFarOff = 5.0;   ///< of noise: what leaves more is not what is said in the end
   ModelFit fit;
   bool arrived = false;
   for (int pass = 0; pass < kMostPasses && !arrived; ++pass) {
     residuals_.anchor(composition, theta);
-    residuals_.move_by(ImpactResiduals::Moves::middle, composition);
+    const auto [chi2, freedom] = repeated(residuals_.evaluate_on(executor_, composition, theta));
+    if (chi2 < kFarOff * freedom) {
+      residuals_.move_by(ImpactResiduals::Moves::middle, composition);
+    }
     const double begun = FitSteps(composition, residuals_, executor_, theta).objective();
     const Eigen::MatrixXd chord = fit.jacobian;
     fit = fit_by_secants(composition, residuals_, executor_, theta, pass > 0 ? &chord : nullptr);

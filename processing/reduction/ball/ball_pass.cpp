@@ -40,7 +40,8 @@ Reduction BallPass::run() {
   find_forces();
   weigh(std::vector<bool>(stations_.size(), true), best_);
   if (!locate_touch(best_)) {
-    return not_reducible("the first wave is tensile: a ball only pushes", "check `positive`");
+    return not_reducible("the first wave is tensile: a ball only pushes",
+                         "check `positive`, and that the baseline before the wave is level");
   }
   choose_stations();
   if (!locate_touch(force_) || !holds_push()) {
