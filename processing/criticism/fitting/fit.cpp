@@ -19,10 +19,8 @@ constexpr double kIdleGain = 3.0;
 constexpr int kMostIdle = 6;
 constexpr double kSettled = 1e-3;  ///< change of chi2 that no claim depends on
 /// The same where residuals are calculated and rough by as much (a contact grows by nodes), and a
-/// square of a deviate counts over several.
-constexpr double kNear = 0.05;
-/// The same for a first look at what may be far behind.
-constexpr double kRoughly = 1.0;
+/// square of a deviate counts over several (kSolverDoubt).
+constexpr double kNear = 1.0;
 
 }  // namespace
 
@@ -48,9 +46,10 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
   executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
     std::vector<double> moved = theta;
     const FreeNumber& number = composition.numbers()[numbers[i]];
+    const double length = std::max(number.difference, residuals.least_difference());
     // Away from the bound that is next to the value.
     const double room = number.theta_of(number.upper) - moved[numbers[i]];
-    const double step = room > number.difference ? number.difference : -number.difference;
+    const double step = room > length ? length : -length;
     moved[numbers[i]] += step;
     const auto column = static_cast<Eigen::Index>(i);
     if (number.shot >= 0 && !residuals.shots_hang_together()) {
@@ -148,7 +147,7 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
   constexpr int kMostRefused = 4;
   for (int n = 0; n < kMostSteps && !converged; ++n) {
     const double promised = steps.promised();
-    if (roughly ? promised < kRoughly : fresh && promised < kNear) {
+    if ((roughly || fresh) && promised < kNear) {
       converged = true;
       break;
     }
@@ -176,7 +175,6 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
     } else {
       steps.derive();
       fresh = true;
-      damping = 0.0;
     }
   }
   return steps.done(converged);

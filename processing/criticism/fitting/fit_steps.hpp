@@ -37,8 +37,6 @@ class FitSteps {
   void go_on() { linearise(); }
   /// What a full step would gain if the residuals were straight.
   [[nodiscard]] double promised() const { return promised_; }
-  /// Where the fit is, what noise takes not counted.
-  [[nodiscard]] double objective() const { return fit_.chi2 + fit_.penalty; }
   [[nodiscard]] bool nothing_free() const { return fit_.theta.empty(); }
   /// The fit as it stands, with its covariance.
   [[nodiscard]] ModelFit done(bool converged);

@@ -40,6 +40,9 @@ class ShotResiduals {
                                               std::size_t /*worker*/) {
     return 0.0;
   }
+  /// The shortest step of a difference, in scales, that shows what a number does and not how its
+  /// residuals are calculated.
+  [[nodiscard]] virtual double least_difference() const { return 0.0; }
   [[nodiscard]] virtual std::size_t per_shot() const = 0;
   /// Whether a shot's whitened residuals depend on other shots' records.
   [[nodiscard]] virtual bool shots_hang_together() const { return false; }

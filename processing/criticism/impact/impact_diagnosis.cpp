@@ -44,6 +44,7 @@ class Diagnostician {
     std::optional<ImpactSearch> search(std::in_place, study_, first);
     if (const double share = search->solver_share(); share < kWorthAllowing) {
       first = study_.allowing(share, first);
+      settled_roughly_ = true;
       search.emplace(study_, first);
     }
     searched_ = search->base().fit.objective();
@@ -56,6 +57,10 @@ class Diagnostician {
     weigh_beside_others(first, current);
     weigh_beside_rest(first);
     weigh_readings(first, current);
+    if (settled_roughly_) {
+      options_.progress("fitting what is said to its end");
+      current = study_.polished(current);
+    }
     conclude(first, current);
     ImpactComparison after = study_.compare(current);
     add_notes(restitution_notes(after));
@@ -142,7 +147,8 @@ class Diagnostician {
   void take(const Studied& refit, Studied& current) {
     searched_ = refit.fit.objective();
     // Refits borrow their derivatives, and their fine forces from a ball without the effect.
-    current = study_.settled(refit);
+    current = study_.settled(refit, Settle::roughly);
+    settled_roughly_ = true;
     anchor_.emplace(AnchoredAt{current.composition, current.fit.theta});
   }
 
@@ -236,7 +242,7 @@ class Diagnostician {
       options_.progress(fmt::format("fitting {} in the place of {}", id, claimed));
       Model model = first.model;
       model.effects.push_back(use_named(id));
-      const Studied other = study_.settled(study_.refit(model, study_.executor()));
+      const Studied other = study_.settled(study_.refit(model, study_.executor()), Settle::roughly);
       if (other.fit.objective() < current.fit.objective() - kStandsBefore * kSolverDoubt) {
         diagnosis_.notes.push_back(fmt::format(
             "{} explains more than {} does, fitted to its end: nothing is claimed; `kolsky model "
@@ -419,8 +425,9 @@ class Diagnostician {
   const DiagnosisOptions& options_;
   ImpactCertifier certifier_;
   Diagnosis diagnosis_;
-  double scale_ = kSolverDoubt;  ///< of the last search
-  double searched_ = 0.0;        ///< objective with what was added last, as the search had it
+  double scale_ = kSolverDoubt;   ///< of the last search
+  bool settled_roughly_ = false;  ///< the last model, as a search needs it
+  double searched_ = 0.0;         ///< objective with what was added last, as the search had it
   std::vector<double> first_anchor_;
   std::optional<AnchoredAt> anchor_;  ///< where the fine forces were taken for what was added last
   bool overruled_ = false;            ///< by another reading of the law

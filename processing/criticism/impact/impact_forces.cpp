@@ -18,10 +18,21 @@ BallRun ImpactResiduals::force(const BallScene& ball, std::size_t group, bool hi
   const SpeedGroup& own = records_.groups[group];
   const double speed = high ? own.high_m_per_s : own.low_m_per_s;
   const Anchor& anchor = anchors_[group][high ? 1 : 0];
-  const BallRun there = *runs_->run(ball, own.speed_m_per_s, moving_elements_);
+  const BallRun there = *runs_->run(ball, own.speed_m_per_s, moving_elements());
   const double growth = std::pow(speed / own.speed_m_per_s, kChangeBySpeed);
   const BallRun moved = sum_of(anchor.fine, growth, sum_of(there, -1.0, anchor.moving));
-  return sum_of(moved, ball.cauchy_share, anchor.law);
+  if (!law_moves()) {
+    return sum_of(moved, ball.cauchy_share, anchor.law);
+  }
+  const BallRun law = law_by(ball, own.speed_m_per_s, moving_elements());
+  return sum_of(moved, ball.cauchy_share,
+                sum_of(anchor.law, growth, sum_of(law, -1.0, anchor.moving_law)));
+}
+
+/// Cauchy's less Kirchhoff's.
+BallRun ImpactResiduals::law_by(const BallScene& ball, double speed_m_per_s, std::size_t elements) {
+  return sum_of(*runs_->run(ball, speed_m_per_s, elements, true), -1.0,
+                *runs_->run(ball, speed_m_per_s, elements));
 }
 
 void ImpactResiduals::anchor(const Composition& composition, const std::vector<double>& theta,
@@ -54,7 +65,7 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   executor_.run(tasks.size(),
                 [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
   anchored_at_ = theta;
-  moving_elements_ = meshes_.coarse;
+  moves_ = Moves::coarse;
   anchors_.resize(records_.groups.size());
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
@@ -68,19 +79,22 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
       }
       own.fine = sum_of(middle, 1.0, own.mesh);
       own.moving = coarse;
-      own.law = sum_of(*run({speed, meshes_.middle, true}), -1.0, middle);
+      own.law = law_by(ball, speed, meshes_.middle);
     }
   }
 }
 
 void ImpactResiduals::move_by(Moves mesh, const Composition& composition) {
-  moving_elements_ = mesh == Moves::middle ? meshes_.middle : meshes_.coarse;
+  moves_ = mesh;
   BallScene ball;
   static_cast<void>(transfers(composition, anchored_at_, 0, ball));
   executor_.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
-    const BallRun there = *runs_->run(ball, records_.groups[g].speed_m_per_s, moving_elements_);
+    const double speed = records_.groups[g].speed_m_per_s;
+    const BallRun there = *runs_->run(ball, speed, moving_elements());
+    const BallRun law = law_by(ball, speed, moving_elements());
     for (Anchor& own : anchors_[g]) {
       own.moving = there;
+      own.moving_law = law;
     }
   });
 }

@@ -21,7 +21,6 @@ ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cu
     : campaign_(campaign),
       executor_(executor),
       meshes_(meshes),
-      moving_elements_(meshes.coarse),
       records_(read_impact_records(campaign, whole, cutoff_Hz)),
       runs_(runs ? std::move(runs) : std::make_shared<BallRuns>(campaign.bench)) {
   const ImpactWindow& window = records_.window;
@@ -202,8 +201,12 @@ Eigen::VectorXd ImpactResiduals::evaluate_on(const Workers& executor,
   BallScene ball;
   static_cast<void>(transfers(composition, theta, 0, ball));
   executor.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
+    const double speed = records_.groups[g].speed_m_per_s;
     try {
-      static_cast<void>(runs_->run(ball, records_.groups[g].speed_m_per_s, moving_elements_));
+      static_cast<void>(runs_->run(ball, speed, moving_elements()));
+      if (law_moves()) {
+        static_cast<void>(law_by(ball, speed, moving_elements()));
+      }
     } catch (const InputError&) {
       // Refused again below, and said there.
     }

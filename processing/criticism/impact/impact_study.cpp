@@ -5,7 +5,6 @@
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
-#include "processing/criticism/fitting/fit_steps.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 
@@ -141,7 +140,7 @@ Studied ImpactStudy::fit(const Model& begun) {
   ModelFit fit = or_with_little_friction(model, composition,
                                          fit_by_secants(composition, residuals_, executor_));
   residuals_.calibrate(composition, fit.theta);
-  fit = to_the_end(composition, fit.theta);
+  fit = to_the_end(composition, fit.theta, nullptr, Settle::fully);
   return finish(model, std::move(composition), std::move(fit));
 }
 
@@ -150,9 +149,10 @@ bool ImpactStudy::astray(const Composition& composition, const ModelFit& fit) co
   return strained(composition, fit.theta) || log_chi2_tail(chi2, freedom) < kUnexplained;
 }
 
-/// By what the middle mesh makes of each number, with the fine forces taken where that leads. A
-/// search from there goes by the coarse mesh again.
-ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<double> theta) {
+/// By what the middle mesh makes of each number, again until forces taken where that leads are what
+/// it foretold of them. A search from there goes by the coarse mesh again.
+ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<double> theta,
+                                 const Eigen::MatrixXd* chord, Settle settle) {
   constexpr int kMostPasses = 3;
   constexpr double kArrived = 2.0;  ///< of chi2: more than forces are rough by
   constexpr double kShare = 1e-2;   ///< of it: of a large misfit more is rough
@@ -165,17 +165,22 @@ ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<dou
     if (chi2 < kFarOff * freedom) {
       residuals_.move_by(ImpactResiduals::Moves::middle, composition);
     }
-    const double begun = FitSteps(composition, residuals_, executor_, theta).objective();
-    const Eigen::MatrixXd chord = fit.jacobian;
-    fit = fit_by_secants(composition, residuals_, executor_, theta, pass > 0 ? &chord : nullptr);
-    const double left = fit.chi2 + fit.penalty;
-    arrived = !(begun - left > std::max(kArrived, kShare * left));
+    const Eigen::MatrixXd before = fit.jacobian;
+    fit = fit_by_secants(composition, residuals_, executor_, theta, pass > 0 ? &before : chord,
+                         settle);
     theta = fit.theta;
+    const double foretold = fit.chi2;
+    stand_at(composition, fit);
+    arrived = !(std::abs(fit.chi2 - foretold) > std::max(kArrived, kShare * fit.chi2));
   }
-  residuals_.anchor(composition, theta, ImpactResiduals::AnchorBy::middle);
-  fit.residual = residuals_.evaluate_on(executor_, composition, theta);
-  fit.chi2 = fit.residual.squaredNorm();
   return fit;
+}
+
+/// With forces taken where a fit is.
+void ImpactStudy::stand_at(const Composition& composition, ModelFit& fit) {
+  residuals_.anchor(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
+  fit.residual = residuals_.evaluate_on(executor_, composition, fit.theta);
+  fit.chi2 = fit.residual.squaredNorm();
 }
 
 Studied ImpactStudy::refit(const Model& model, const Workers& executor, Settle settle) {
@@ -193,23 +198,27 @@ Studied ImpactStudy::refit_near(const Model& model, const Studied& other) {
   return finish(model, std::move(composition), better ? std::move(own) : std::move(near));
 }
 
-Studied ImpactStudy::settled(const Studied& studied) {
+Studied ImpactStudy::settled(const Studied& studied, Settle settle) {
   const Composition& composition = studied.composition;
-  ModelFit fit = to_the_end(composition, studied.fit.theta);
+  ModelFit fit = to_the_end(composition, studied.fit.theta, nullptr, settle);
   if (astray(composition, fit)) {
     const std::vector<double> filed = as_filed(composition, fit.theta);
     residuals_.anchor(composition, filed, ImpactResiduals::AnchorBy::middle);
     const ModelFit near = fit_by_secants(composition, residuals_, executor_, filed);
-    ModelFit other = to_the_end(composition, near.theta);
+    ModelFit other = to_the_end(composition, near.theta, &fit.jacobian, settle);
     if (other.objective() < fit.objective()) {
       fit = std::move(other);
     } else {
-      residuals_.anchor(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
-      fit.residual = residuals_.evaluate_on(executor_, composition, fit.theta);
-      fit.chi2 = fit.residual.squaredNorm();
+      stand_at(composition, fit);
     }
   }
   return finish(studied.model, composition, std::move(fit));
+}
+
+Studied ImpactStudy::polished(const Studied& settled) {
+  ModelFit fit =
+      to_the_end(settled.composition, settled.fit.theta, &settled.fit.jacobian, Settle::fully);
+  return finish(settled.model, settled.composition, std::move(fit));
 }
 
 Studied ImpactStudy::by_coarse_mesh(const Studied& studied) {
@@ -219,7 +228,7 @@ Studied ImpactStudy::by_coarse_mesh(const Studied& studied) {
 
 Studied ImpactStudy::allowing(double share, const Studied& studied) {
   residuals_.allow(share, studied.composition, studied.fit.theta);
-  return settled(studied);
+  return settled(studied, Settle::roughly);
 }
 
 Studied ImpactStudy::as_it_is(const Model& model) {

@@ -100,11 +100,14 @@ class ImpactStudy {
   /// Fitted to its end from where a search has led, and where that strains what is filed or leaves
   /// more than noise from where it is filed, too: for want of what was added since, the search may
   /// have begun in a minimum that is none any more. The whitener stays.
-  [[nodiscard]] Studied settled(const Studied& studied);
+  /// @param settle  roughly: as far as a search goes on from it
+  [[nodiscard]] Studied settled(const Studied& studied, Settle settle = Settle::fully);
+  /// What was settled roughly, to its end.
+  [[nodiscard]] Studied polished(const Studied& settled);
   /// As a search by the coarse mesh sees it: that mesh's own minimum nearby, where what it is off
   /// by is not a rival's gain.
   [[nodiscard]] Studied by_coarse_mesh(const Studied& studied);
-  /// With the solver's error allowed for by this share of the usual, and fitted again.
+  /// With the solver's error allowed for by this share of the usual, and settled roughly again.
   [[nodiscard]] Studied allowing(double share, const Studied& studied);
   [[nodiscard]] Studied as_it_is(const Model& model);
   [[nodiscard]] ImpactComparison compare(const Studied& studied);
@@ -138,7 +141,10 @@ class ImpactStudy {
   /// Whether a fit strains what is filed or leaves more than noise: then something may be missing
   /// for want of which it is where it is.
   [[nodiscard]] bool astray(const Composition& composition, const ModelFit& fit) const;
-  [[nodiscard]] ModelFit to_the_end(const Composition& composition, std::vector<double> theta);
+  /// @param chord  derivatives from nearby, by the mesh that is gone by here; none: made here
+  [[nodiscard]] ModelFit to_the_end(const Composition& composition, std::vector<double> theta,
+                                    const Eigen::MatrixXd* chord, Settle settle);
+  void stand_at(const Composition& composition, ModelFit& fit);
   [[nodiscard]] ModelFit or_with_little_friction(const Model& model, const Composition& composition,
                                                  ModelFit fit);
 
