@@ -28,6 +28,19 @@ bool is_filed(const Studied& first, const std::string& id) {
   return first.model.find(id) != nullptr;
 }
 
+/// What the library has of a ball's materials beyond the model.
+std::vector<std::string> of_materials(const Model& model) {
+  std::vector<std::string> list;
+  for (const Effect* effect : effect_library()) {
+    const EffectAbout& about = effect->about();
+    if (!about.base && about.stage == Stage::specimen && model.find(about.id) == nullptr &&
+        std::ranges::count(about.kinds, BenchKind::impact) > 0) {
+      list.push_back(about.id);
+    }
+  }
+  return list;
+}
+
 class Diagnostician {
  public:
   Diagnostician(ImpactStudy& study, const DiagnosisOptions& options)
@@ -226,16 +239,15 @@ class Diagnostician {
   }
 
   /// A search goes by derivatives from where the model was led for want of what is missing, and
-  /// what the ball does has none worth anything there. So where one effect is claimed and leaves
-  /// what stands out, the ball's others are fitted to their ends as well: one that explains more
-  /// overrules it.
-  bool overruled_by_what_else_the_ball_does(const Studied& first, const Studied& current) {
+  /// what a ball's materials do has none worth anything there. So where one effect is claimed and
+  /// leaves what stands out, the others of the materials are fitted to their ends as well: one that
+  /// explains more overrules it.
+  bool overruled_by_what_else_materials_do(const Studied& first, const Studied& current) {
     if (diagnosis_.effects.size() != 1 || study_.allowance(current) == Allowance::kept) {
       return false;
     }
     const std::string claimed = diagnosis_.effects.front();
-    for (const char* const id : {"core-nonlinearity", "cover-nonlinearity",
-                                 "core-second-relaxation", "cover-second-relaxation"}) {
+    for (const std::string& id : of_materials(first.model)) {
       if (id == claimed) {
         continue;
       }
@@ -317,7 +329,7 @@ class Diagnostician {
     }
     const bool doubted =
         remains(first, current) || overruled_ || scatter || (claims && !doubts.empty());
-    if (doubted || overruled_by_what_else_the_ball_does(first, current)) {
+    if (doubted || overruled_by_what_else_materials_do(first, current)) {
       give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {
       settle_claims(diagnosis_,

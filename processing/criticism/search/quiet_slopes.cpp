@@ -14,12 +14,14 @@ namespace {
 constexpr std::size_t kFewestSamples = 16;
 constexpr std::size_t kMostLags = 256;
 
-/// What turns a shot's quiet samples into their slope.
+/// What turns a shot's quiet samples into their slope: nothing, where there are not two of them.
 Eigen::VectorXd weights_of(const CampaignShot& shot) {
   const auto count = static_cast<Eigen::Index>(shot.quiet_samples);
   const Eigen::Map<const Eigen::VectorXd> time_s(shot.facts.time_s.data(), count);
-  Eigen::VectorXd weights = time_s.array() - time_s.mean();
-  weights /= weights.squaredNorm();
+  Eigen::VectorXd weights = time_s.array() - (count > 0 ? time_s.mean() : 0.0);
+  if (count > 1) {
+    weights /= weights.squaredNorm();
+  }
   return weights;
 }
 

@@ -6,7 +6,8 @@
 
 namespace kolsky {
 
-/// Least-squares slope over time of what came before a shot's pulse, 1/s.
+/// Least-squares slope over time of what came before a shot's pulse, 1/s. 0 of less than two
+/// samples.
 [[nodiscard]] double slope_before(const CampaignShot& shot, const std::vector<double>& record);
 
 using SlopesByShot = std::vector<std::vector<double>>;  ///< by shot and gauge, 1/s
