@@ -1,14 +1,17 @@
 #include "daemon/acquisition/acquirer.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
-#include "tests/unit/daemon/allocation_count.hpp"
 #include "tests/unit/daemon/scripted_digitiser.hpp"
+#include "tests/unit/daemon/thread_conduct.hpp"
 
 namespace kolsky {
 namespace {
@@ -397,11 +400,11 @@ TEST_F(AcquirerTest, GivesUpItsPriorityToAStreamThatLeavesNoRest) {
   finish();
 }
 
-TEST_F(AcquirerTest, AllocatesNothingOnItsThread) {
-  if (!kCountsAllocations) {
-    GTEST_SKIP() << "a sanitizer has operator new";
+TEST_F(AcquirerTest, NeitherAllocatesNorLocksNorWritesOnItsThread) {
+  if (!kWatchesConduct) {
+    GTEST_SKIP() << "a sanitizer has these functions";
   }
-  const std::uint64_t before = counted_allocations();
+  const ThreadConduct before = watched_conduct();
   digitiser_.add_pulse(5000);
   digitiser_.deliver(8192);
   digitiser_.add({.status = ReadStatus::overflow});
@@ -410,7 +413,32 @@ TEST_F(AcquirerTest, AllocatesNothingOnItsThread) {
   digitiser_.add({.status = ReadStatus::disconnected});
   digitiser_.deliver(1024);
   EXPECT_FALSE(run().empty());
-  EXPECT_EQ(counted_allocations(), before);
+  const ThreadConduct after = watched_conduct();
+  EXPECT_EQ(after.allocations, before.allocations);
+  EXPECT_EQ(after.locks, before.locks);
+  EXPECT_EQ(after.writes, before.writes);
+}
+
+/// What the test above counts it would see.
+TEST(ThreadConduct, CountsWhatAThreadThatAcquiresMustNotDo) {
+  if (!kWatchesConduct) {
+    GTEST_SKIP() << "a sanitizer has these functions";
+  }
+  std::mutex lock;
+  const ThreadConduct before = watched_conduct();
+  watch_conduct(true);
+  {
+    const std::scoped_lock held(lock);
+    spdlog::warn("a line that is formatted and written");
+  }
+  watch_conduct(false);
+  const ThreadConduct after = watched_conduct();
+  EXPECT_GT(after.locks, before.locks + 1) << "the logger has one of its own";
+  EXPECT_GT(after.writes, before.writes);
+  watch_conduct(true);
+  const auto memory = std::make_unique<std::string>(100, 'x');
+  watch_conduct(false);
+  EXPECT_GT(watched_conduct().allocations, after.allocations);
 }
 
 }  // namespace

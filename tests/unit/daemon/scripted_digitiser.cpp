@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "tests/unit/daemon/allocation_count.hpp"
+#include "tests/unit/daemon/thread_conduct.hpp"
 
 namespace kolsky {
 
@@ -44,7 +44,7 @@ std::int16_t ScriptedDigitiser::code(std::size_t channel, Tick tick) const {
 }
 
 ReadStatus ScriptedDigitiser::read(Block& block) {
-  count_allocations(next_ > 0);
+  watch_conduct(next_ > 0);
   if (cancelled_.load()) {
     return ReadStatus::disconnected;
   }
