@@ -177,6 +177,30 @@ TEST_F(LiveModel, DiagnosesTheLastShotsOnRequestAndFilesTheOutcome) {
   EXPECT_EQ(json_of(ask({"diagnose-live", "--last", "--json"}))["id"], live["id"]);
 }
 
+/// A diagnosis has threads of its own, at the lowest priority: what is fired meanwhile is stored
+/// whole, reduced and compared as ever, and the diagnosis goes on.
+TEST_F(LiveModel, ShotsGoOnWhileADiagnosisRuns) {
+  ASSERT_NO_FATAL_FAILURE(activate());
+  const json begun = json_of(ask({"diagnose-live", "--shots", "3", "--no-wait", "--json"}));
+  ASSERT_EQ(begun["state"], "running") << begun;
+  for (int n = 0; n < 2; ++n) {
+    const std::string capture = shoot();
+    EXPECT_EQ(comparison_of(id_of(capture))["comparable"], true);
+  }
+  EXPECT_EQ(json_of(ask({"status", "--json"}))["samples_missing"], 0);
+  json live;
+  EXPECT_TRUE(eventually(
+      [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        live = json_of(ask({"diagnose-live", "--last", "--json"}));
+        return live["state"] != "running";
+      },
+      std::chrono::minutes(4)));
+  EXPECT_EQ(live["id"], begun["id"]);
+  EXPECT_EQ(live["state"], "done") << live;
+  EXPECT_EQ(live["shots"].size(), 3U) << "those that were there when it began";
+}
+
 TEST_F(LiveModel, DiagnosisIsOneAtATimeAndEndsWhenCancelled) {
   ASSERT_NO_FATAL_FAILURE(activate());
   const json begun = json_of(ask({"diagnose-live", "--no-wait", "--json"}));
