@@ -323,7 +323,7 @@ class Diagnostician {
     if (claims && leaves_too_much(first, current)) {
       doubts.push_back(left_of_claim_note(diagnosis_.held_out));
     }
-    const std::optional<std::string> scatter = scatter_doubt(study_.residuals());
+    const std::optional<std::string> scatter = scatter_doubt(study_, current);
     if (scatter) {
       doubts.push_back(*scatter);
     }

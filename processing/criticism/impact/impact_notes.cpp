@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/impact/flat_effects.hpp"
 
 namespace kolsky {
@@ -145,18 +146,29 @@ void note_speeds(const ImpactResiduals& residuals, Lines& lines) {
 
 }  // namespace
 
-std::optional<std::string> scatter_doubt(const ImpactResiduals& residuals) {
+std::optional<std::string> scatter_doubt(ImpactStudy& study, const Studied& current) {
   constexpr double kMuch = 5.0;
   constexpr double kCommon = 2e-3;  // of a speed of which nothing is filed
+  const ImpactResiduals& residuals = study.residuals();
   const double filed = std::max(residuals.records().own_speed_sd, kCommon);
-  if (residuals.speed_sd() < kMuch * filed) {
-    return std::nullopt;
+  if (residuals.speed_sd() > kMuch * filed) {
+    return fmt::format(
+        "shots of one speed differ by {:.2g} % where speeds are off by {:.2g} %: something is not "
+        "alike in all shots, a bond, an amplifier or how speeds are measured; look at `kolsky "
+        "compare` shot by shot, or file the deviation that speeds have",
+        100.0 * residuals.speed_sd(), 100.0 * filed);
   }
-  return fmt::format(
-      "shots of one speed differ by {:.2g} % where speeds are off by {:.2g} %: something is not "
-      "alike in all shots, a bond, an amplifier or how speeds are measured; look at `kolsky "
-      "compare` shot by shot, or file the deviation that speeds have",
-      100.0 * residuals.speed_sd(), 100.0 * filed);
+  constexpr double kMuchNoise = 3.0;  // balls of another code on coarse meshes scatter by 1.9
+  const double scale = residuals.noise_scale() * current.misfit.noise_scale;
+  const double freedom = study.scatter_freedom();
+  if (scale > kMuchNoise && log_chi2_tail(scale * freedom, freedom) < kUnexplained) {
+    return fmt::format(
+        "shots of one speed differ by {:.2g} times the squares of what is quiet before the pulse, "
+        "speeds and offsets of their own apart: something is not alike in all shots, a bond, an "
+        "amplifier or what the ball meets; look at `kolsky compare` shot by shot",
+        scale);
+  }
+  return std::nullopt;
 }
 
 double law_beyond_bounds(const Studied& studied) {

@@ -27,8 +27,9 @@ inline constexpr double kPressed = 2.0;
                                                     const std::vector<std::string>& flat);
 
 /// Why shots are not alike, where those of one speed differ by five times what their speeds may be
-/// off by: a reading that changes from shot to shot, which their scatter would pass for.
-[[nodiscard]] std::optional<std::string> scatter_doubt(const ImpactResiduals& residuals);
+/// off by, or by three times the squares that noise has before the pulse: a reading that changes
+/// from shot to shot, which their scatter would pass for.
+[[nodiscard]] std::optional<std::string> scatter_doubt(ImpactStudy& study, const Studied& current);
 
 /// Why nothing is claimed though something is certified. @param beyond  of law_beyond_bounds()
 [[nodiscard]] std::string law_pressed_note(double beyond);

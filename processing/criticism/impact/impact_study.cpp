@@ -247,20 +247,14 @@ Studied ImpactStudy::as_it_is(const Model& model) {
 std::pair<double, double> ImpactStudy::repeated(const Eigen::VectorXd& white) const {
   const auto size = static_cast<Eigen::Index>(residuals_.per_shot());
   double chi2 = 0.0;
-  double freedom = 0.0;
   for (const SpeedGroup& group : residuals_.records().groups) {
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
     for (const std::size_t n : group.shots) {
       mean += white.segment(static_cast<Eigen::Index>(n) * size, size);
     }
     chi2 += mean.squaredNorm() / static_cast<double>(group.shots.size());
-    freedom += static_cast<double>(size) - residuals_.eliminated();
   }
-  const ImpactRecords& records = residuals_.records();
-  for (std::size_t g = 0; g < records.groups.size(); ++g) {
-    freedom -= records.unsaid_rebounds(g) == records.groups[g].shots.size() ? 1.0 : 0.0;
-  }
-  return {chi2, freedom};
+  return {chi2, repeated_freedom()};
 }
 
 double ImpactStudy::unexplained_log_p(const Eigen::VectorXd& white) const {
@@ -299,10 +293,7 @@ Allowance ImpactStudy::allowance(const Studied& studied) const {
 
 Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
   Misfit misfit;
-  const auto shots = static_cast<double>(campaign_.shots.size());
-  const double all =
-      shots * (static_cast<double>(residuals_.per_shot()) - residuals_.eliminated()) -
-      static_cast<double>(residuals_.records().unsaid_rebounds());
+  const double all = known();
   misfit.degrees_of_freedom = std::max(1.0, all - used);
   misfit.chi2_reduced = white.squaredNorm() / misfit.degrees_of_freedom;
   const auto [chi2, freedom] = repeated(white);
@@ -313,6 +304,22 @@ Misfit ImpactStudy::misfit_of(const Eigen::VectorXd& white, double used) const {
   misfit.noise_floor_share = energy.noise() / energy.signal();
   misfit.repeatable_log_p = log_chi2_tail(chi2 / std::max(1.0, misfit.noise_scale), freedom);
   return misfit;
+}
+
+double ImpactStudy::known() const {
+  const auto shots = static_cast<double>(campaign_.shots.size());
+  return shots * (static_cast<double>(residuals_.per_shot()) - residuals_.eliminated()) -
+         static_cast<double>(residuals_.records().unsaid_rebounds());
+}
+
+double ImpactStudy::repeated_freedom() const {
+  const ImpactRecords& records = residuals_.records();
+  double freedom = 0.0;
+  for (std::size_t g = 0; g < records.groups.size(); ++g) {
+    freedom += static_cast<double>(residuals_.per_shot()) - residuals_.eliminated() -
+               (records.unsaid_rebounds(g) == records.groups[g].shots.size() ? 1.0 : 0.0);
+  }
+  return freedom;
 }
 
 std::vector<double> held_out_speeds(const Studied& studied, const ImpactRecords& records,

@@ -119,6 +119,9 @@ class ImpactStudy {
   /// chi2 of the groups' means and its degrees of freedom: what repeats.
   [[nodiscard]] std::pair<double, double> repeated(const Eigen::VectorXd& white) const;
 
+  /// Degrees of freedom of what differs between shots of one speed.
+  [[nodiscard]] double scatter_freedom() const { return known() - repeated_freedom(); }
+
   /// Of the groups' mean rebound speeds by themselves: among many samples of the force a few
   /// restitutions that are off would go under.
   [[nodiscard]] std::pair<double, double> repeated_of_rebounds(const Eigen::VectorXd& white) const;
@@ -138,6 +141,9 @@ class ImpactStudy {
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
+  /// Residuals of all shots less what their arrivals and offsets take up, and of the groups' means.
+  [[nodiscard]] double known() const;
+  [[nodiscard]] double repeated_freedom() const;
   /// Whether a fit strains what is filed or leaves more than noise: then something may be missing
   /// for want of which it is where it is.
   [[nodiscard]] bool astray(const Composition& composition, const ModelFit& fit) const;

@@ -102,6 +102,23 @@ TEST(ImpactDiagnosis, ShotsThatDifferMoreThanTheirSpeedsAreNotAdequate) {
   EXPECT_TRUE(noted(diagnosis, "shots of one speed differ by")) << told(diagnosis);
 }
 
+/// A gauge that came loose reads less from the peak on in some shots: speeds do not scatter so, and
+/// noise that is corrected by how shots scatter must not swallow it.
+TEST(ImpactDiagnosis, ShotsThatDifferOtherwiseThanBySpeedsAndNoiseAreNotAdequate) {
+  Campaign campaign = read_campaign(testing::impact_shots(two_speeds(11, 3)));
+  for (std::size_t n = 0; n < campaign.shots.size(); n += 3) {
+    std::vector<double>& strain = campaign.shots[n].strain[0];
+    const auto peak = std::max_element(strain.begin(), strain.end());
+    for (auto own = peak; own != strain.end(); ++own) {
+      *own *= 1.0 - 0.03 * std::min(1.0, static_cast<double>(own - peak) / 50.0);
+    }
+  }
+  ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+  const Diagnosis diagnosis = diagnose_impacts(study, paper_with({}), {});
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "shots of one speed differ by")) << told(diagnosis);
+}
+
 /// A core that stiffens.
 class StiffeningCore : public ::testing::Test {
  protected:
