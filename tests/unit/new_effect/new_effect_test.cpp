@@ -34,8 +34,7 @@ void couple(std::vector<double>& record, double per_s, double period_s) {
 TEST(NewEffect, IsAdmitted) {
   const Effect& effect = *use_named("ac-coupling:g2").effect;
   for (const BenchKind kind : {BenchKind::bar, BenchKind::shpb}) {
-    const auto problem =
-        admission_problem(effect, paper_model(kind, false), admission_bench(kind));
+    const auto problem = admission_problem(effect, paper_model(kind, false), admission_bench(kind));
     EXPECT_FALSE(problem) << problem->check << ": " << problem->what;
   }
 }
