@@ -62,7 +62,7 @@ class Diagnostician {
     }
     searched_ = search->base().fit.objective();
     Studied current = first;
-    while ((add_one(*search, current) || add_two(current)) &&
+    while ((add_one(*search, current, true) || add_two(current)) &&
            diagnosis_.effects.size() < options_.most_effects) {
       options_.progress("testing what remains after " + diagnosis_.effects.back());
       search.emplace(study_, current);
@@ -85,14 +85,21 @@ class Diagnostician {
   }
 
  private:
-  bool add_one(ImpactSearch& search, Studied& current) {
+  /// @param settled  the model that was searched for what it lacks
+  bool add_one(ImpactSearch& search, Studied& current, bool settled) {
     options_.progress("refitting rivals");
-    const std::vector<ImpactRefit> refits = search.refits();
+    std::vector<ImpactRefit> refits = search.refits();
     scale_ = search.scale();
     if (diagnosis_.candidates.empty()) {
       begin_table(search, refits);
     }
-    const auto* const claimed = first_certified(search, refits);
+    const ImpactRefit* claimed = first_certified(search, refits, search.base());
+    if (claimed == nullptr && settled && diagnosis_.effects.empty() &&
+        study_.allowance(current) != Allowance::kept) {
+      options_.progress("fitting the nearest to a claim to their ends");
+      refits = search.settled(std::move(refits), current);
+      claimed = first_certified(search, refits, current);
+    }
     if (claimed == nullptr) {
       rest_.reset();
       // A filed number that is set free has its place in every model already.
@@ -120,7 +127,7 @@ class Diagnostician {
     Studied beside = nearest.studied;
     ImpactSearch search(study_, beside);
     const std::size_t place = diagnosis_.effects.size();
-    if (!add_one(search, beside)) {
+    if (!add_one(search, beside, false)) {
       rest_ = nearest;
       return false;
     }
@@ -131,10 +138,11 @@ class Diagnostician {
   }
 
   [[nodiscard]] const ImpactRefit* first_certified(const ImpactSearch& search,
-                                                   const std::vector<ImpactRefit>& refits) {
+                                                   const std::vector<ImpactRefit>& refits,
+                                                   const Studied& base) {
     note_not_in_quiet(search);
     std::vector<std::string> judged;
-    const ImpactRefit* claimed = certifier_.first_certified(search, refits, search.base(), judged);
+    const ImpactRefit* claimed = certifier_.first_certified(search, refits, base, judged);
     for (const std::string& id : judged) {
       set_verdict(diagnosis_, id, "rejected");
     }
@@ -190,7 +198,7 @@ class Diagnostician {
     const Studied others = without(current.model, id);
     ImpactSearch search(study_, others);
     const std::vector<ImpactRefit> refits = search.refits();
-    const ImpactRefit* claimed = first_certified(search, refits);
+    const ImpactRefit* claimed = first_certified(search, refits, search.base());
     if (claimed == nullptr) {
       drop_claim(diagnosis_, id, "rejected");
       take(others, current);

@@ -110,6 +110,11 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
   return fit;
 }
 
+void sort_by_evidence(std::vector<ImpactRefit>& list) {
+  std::sort(list.begin(), list.end(),
+            [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+}
+
 }  // namespace
 
 ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
@@ -311,6 +316,31 @@ void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
   rate(list);
 }
 
+std::vector<ImpactRefit> ImpactSearch::settled(std::vector<ImpactRefit> refits,
+                                               const Studied& base) {
+  constexpr std::size_t kNearest = 3;
+  std::size_t count = 0;
+  for (ImpactRefit& own : refits) {
+    if (candidate(own).frees_prior) {
+      continue;
+    }
+    const Studied studied = study_.settled(own.studied, Settle::roughly);
+    const double noise = std::max(1.0, studied.misfit.noise_scale);
+    own.gain = (base.fit.objective() - studied.fit.objective()) / noise;
+    own.of_filed = (base.fit.penalty - studied.fit.penalty) / noise;
+    own.studied = studied;
+    if (++count == kNearest) {
+      break;
+    }
+  }
+  study_.residuals().anchor(base.composition, base.fit.theta, ImpactResiduals::AnchorBy::middle);
+  if (count > 0) {
+    rate(refits);
+    sort_by_evidence(refits);
+  }
+  return refits;
+}
+
 void ImpactSearch::leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list) {
   not_in_quiet_.clear();
   std::erase_if(list, [&](const ImpactRefit& own) {
@@ -349,8 +379,7 @@ std::vector<ImpactRefit> ImpactSearch::refits() {
     rate(list);
     refine(list);
   }
-  std::sort(list.begin(), list.end(),
-            [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+  sort_by_evidence(list);
   return list;
 }
 

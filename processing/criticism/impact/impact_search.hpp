@@ -55,6 +55,11 @@ class ImpactSearch {
   /// What would be added to the records (hum, drift) is left out where it is not in the quiet
   /// before the pulse.
   [[nodiscard]] std::vector<ImpactRefit> refits();
+  /// The same with the nearest to a claim settled: numbers that do nearly the same to a ball are
+  /// told apart by the middle mesh, and a coarse one may lead a rival's fit to where it gains less.
+  /// @param base  the search's, as it was settled
+  [[nodiscard]] std::vector<ImpactRefit> settled(std::vector<ImpactRefit> refits,
+                                                 const Studied& base);
   /// Ids of what the last refits left out so, though it stands before nothing.
   [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
   /// Of what is allowed for the calculation's error, what the records leave open
