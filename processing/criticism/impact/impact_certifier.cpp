@@ -69,9 +69,12 @@ bool ImpactCertifier::certified(const ImpactSearch& search, const ImpactRefit& r
   const auto count = static_cast<double>(speeds());
   const bool agrees = count < 2.0 || q < kPart * refit.gain ||
                       log_chi2_tail(q / search.scale(), count - 1.0) > kSpeedsDiffer;
-  return search.with_search(refit.log_p) <= log_alpha_ && agrees &&
-         gain_on_shots(current, refit.studied) > 0.0 &&
-         (count < 2.0 || gain_on_speeds(current, refit.studied) > 0.0);
+  // A filed number that is set free may leave records as they were: others stood in for it, off
+  // what is filed of them.
+  const bool of_filed = search.candidate(refit).frees_prior && refit.of_filed > 0.5 * refit.gain;
+  const bool foretells = gain_on_shots(current, refit.studied) > 0.0 &&
+                         (count < 2.0 || gain_on_speeds(current, refit.studied) > 0.0);
+  return search.with_search(refit.log_p) <= log_alpha_ && agrees && (of_filed || foretells);
 }
 
 const ImpactRefit* ImpactCertifier::first_certified(const ImpactSearch& search,
