@@ -62,9 +62,7 @@ Eigen::VectorXd ImpactResiduals::at_judged(std::size_t g, const Foretold& foreto
   Eigen::VectorXd judged = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(per_shot()));
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     for (std::size_t k = 0; k < records_.window.samples; ++k) {
-      const double time_s = records_.first_s[n] +
-                            static_cast<double>(k) * records_.window.period_s -
-                            foretold.arrival_s[n];
+      const double time_s = records_.judged_s(n, j, k) - foretold.arrival_s[n];
       judged[static_cast<Eigen::Index>(j * records_.window.samples + k)] =
           on_fine_grid(fine[j], time_s).value;
     }
@@ -85,9 +83,7 @@ ImpactShape ImpactResiduals::shape_of(std::size_t g, const Foretold& foretold,
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     for (std::size_t k = 0; k < records_.window.samples; ++k) {
       const auto i = static_cast<Eigen::Index>(j * records_.window.samples + k);
-      const double time_s = records_.first_s[n] +
-                            static_cast<double>(k) * records_.window.period_s -
-                            foretold.arrival_s[n];
+      const double time_s = records_.judged_s(n, j, k) - foretold.arrival_s[n];
       const Interpolated a = on_fine_grid(low[j], time_s);
       shape.by_speed[i] = (on_fine_grid(high[j], time_s).value - a.value) * per_speed;
       shape.by_time[i] = a.slope_per_s;

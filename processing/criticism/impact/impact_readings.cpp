@@ -85,9 +85,7 @@ Eigen::VectorXd ImpactResiduals::measured(std::size_t shot, const RecordScene& r
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     const std::vector<double>& added = record.additions[j];
     for (std::size_t k = 0; k < samples && !added.empty(); ++k) {
-      const double place =
-          (records_.first_s[shot] + static_cast<double>(k) * records_.window.period_s) /
-          campaign_.period_s;
+      const double place = records_.judged_s(shot, j, k) / campaign_.period_s;
       const auto i = std::min(static_cast<std::size_t>(std::lround(place)), added.size() - 1);
       out[static_cast<Eigen::Index>(j * samples + k)] -= added[i];
     }

@@ -173,6 +173,17 @@ void read_speeds(const Campaign& campaign, ImpactRecords& records) {
   }
 }
 
+/// Where the gauges' samples are, so that they show the same force.
+void read_travel(const Campaign& campaign, ImpactRecords& records) {
+  const double x0_m = campaign.bench.gauges[campaign.reference].position_m;
+  for (const Gauge& gauge : campaign.bench.gauges) {
+    const double travel_s = (gauge.position_m - x0_m) / records.wave_speed_m_per_s;
+    const double periods = std::floor(travel_s / records.window.period_s);
+    records.behind.push_back(static_cast<int>(periods));
+    records.later_s.push_back(travel_s - periods * records.window.period_s);
+  }
+}
+
 }  // namespace
 
 std::size_t ImpactRecords::unsaid_rebounds(std::size_t group) const {
@@ -193,11 +204,21 @@ void ImpactRecords::judge_from(const std::vector<double>& touch_s) {
   }
   for (std::size_t n = 0; n < touch_s.size(); ++n) {
     first_s[n] = touch_s[n] + after_touch_s;
+  }
+  take_samples();
+}
+
+void ImpactRecords::take_samples() {
+  for (std::size_t n = 0; n < low_passed.size(); ++n) {
+    judged[n].resize(low_passed[n].size() * window.samples);
+    peak[n] = 0.0;
     for (std::size_t j = 0; j < low_passed[n].size(); ++j) {
       for (std::size_t k = 0; k < window.samples; ++k) {
-        const double time_s = first_s[n] + static_cast<double>(k) * window.period_s;
-        judged[n][j * window.samples + k] =
-            between_samples(low_passed[n][j], time_s / sample_period_s, sample_period_s).value;
+        double& own = judged[n][j * window.samples + k];
+        own =
+            between_samples(low_passed[n][j], judged_s(n, j, k) / sample_period_s, sample_period_s)
+                .value;
+        peak[n] = std::max(peak[n], std::abs(own));
       }
     }
   }
@@ -231,6 +252,7 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
     }
   }
   read_speeds(campaign, records);
+  read_travel(campaign, records);
   // The same stretch of every shot.
   double lead_s = kLead_s;
   double after_s = clear_s(campaign, whole);
@@ -239,6 +261,7 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
     const double end_s = static_cast<double>(shot.strain[0].size()) * period_s;
     after_s = std::min(after_s, end_s - kClear_s - shot.foot_s);
   }
+  after_s -= *std::ranges::max_element(records.later_s);
   if (after_s < kShortest_s) {
     throw InputError("captures",
                      "leave less than 200 us after the arrival before the record ends or the far "
@@ -255,24 +278,19 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
   for (const CampaignShot& shot : campaign.shots) {
     const auto first =
         static_cast<std::size_t>(std::lround((shot.foot_s - window.lead_s) / period_s));
-    std::vector<double> judged;
     std::vector<std::vector<double>> own;
-    double peak = 0.0;
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
       std::vector<double> filtered = impact::low_passed(shot.strain[j], period_s, window.cutoff_Hz);
-      for (std::size_t k = 0; k < window.samples; ++k) {
-        judged.push_back(filtered[std::min(first + k * step, filtered.size() - 1)]);
-        peak = std::max(peak, std::abs(judged.back()));
-      }
       meters[j].add(shot.strain[j], filtered, std::min(shot.quiet_samples, filtered.size()),
                     slopes[j]);
       own.push_back(std::move(filtered));
     }
     records.low_passed.push_back(std::move(own));
-    records.judged.push_back(std::move(judged));
     records.first_s.push_back(static_cast<double>(first) * period_s);
-    records.peak.push_back(peak);
   }
+  records.judged.resize(campaign.shots.size());
+  records.peak.resize(campaign.shots.size());
+  records.take_samples();
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
     records.noise.push_back(meters[j].covariance(campaign.step[j]));
   }

@@ -36,9 +36,15 @@ struct ImpactRecords {
   std::vector<std::vector<std::vector<double>>> low_passed;
   double sample_period_s = 0.0;
   std::vector<std::vector<double>> judged;  ///< by shot: gauge after gauge [strain]
-  std::vector<double> first_s;              ///< by shot: time of the first judged sample
-  std::vector<std::vector<double>> noise;   ///< by gauge: autocovariance, judged samples apart
-  std::vector<double> peak;                 ///< by shot: largest judged strain
+  std::vector<double> first_s;  ///< by shot: time of the reference gauge's first judged sample
+  /// By gauge: how much later its samples are, less than a period, and how many of them the force
+  /// that they show passed the reference gauge before. What a calculated force is off by is alike
+  /// in all gauges only where they show the same force; apart it hides that they contradict each
+  /// other.
+  std::vector<double> later_s;
+  std::vector<int> behind;
+  std::vector<std::vector<double>> noise;  ///< by gauge: autocovariance, judged samples apart
+  std::vector<double> peak;                ///< by shot: largest judged strain
   /// By shot: rebound speed over the speed of waves in the bar, a number of the size of strains;
   /// its deviation of zero: none was filed.
   std::vector<std::optional<Measured>> rebound;
@@ -48,11 +54,22 @@ struct ImpactRecords {
   double own_speed_sd = 0.0;
   double common_speed_sd = 0.0;
 
+  /// Of a gauge's k-th judged sample.
+  [[nodiscard]] double judged_s(std::size_t shot, std::size_t gauge, std::size_t k) const {
+    return first_s[shot] + later_s[gauge] + static_cast<double>(k) * window.period_s;
+  }
+  /// When the force of it passed the reference gauge, from the first judged sample there.
+  [[nodiscard]] double force_s(std::size_t gauge, std::size_t k) const {
+    return static_cast<double>(static_cast<int>(k) - behind[gauge]) * window.period_s;
+  }
+
   /// Judges all shots at the same times after their first touch. What a model misses is the same in
   /// the shots of one speed only there: seen some microseconds earlier or later, a ripple of the
   /// contact scatters as noise does.
   /// @param touch_s  by shot, from the record's start
   void judge_from(const std::vector<double>& touch_s);
+  /// Takes the judged samples of the low-passed records.
+  void take_samples();
 
   /// A group's incident speed as `rebound` counts speeds.
   [[nodiscard]] double incident(std::size_t group) const {

@@ -143,9 +143,8 @@ double ImpactResiduals::aligned(std::size_t n, const Reading& strain, const Eige
   for (int iteration = 0; iteration < kMostSteps; ++iteration) {
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
       for (std::size_t k = 0; k < samples; ++k) {
-        const double time_s =
-            records_.first_s[n] + static_cast<double>(k) * records_.window.period_s - touch_s;
-        const Interpolated own = on_fine_grid(strain.strain[j], time_s);
+        const Interpolated own =
+            on_fine_grid(strain.strain[j], records_.judged_s(n, j, k) - touch_s);
         reading[static_cast<Eigen::Index>(j * samples + k)] = own.value;
         slope[static_cast<Eigen::Index>(j * samples + k)] = own.slope_per_s;
       }

@@ -90,7 +90,8 @@ void ImpactWhitening::set_shared(const std::vector<ImpactShape>& shapes,
     large.push_back(std::move(own));
   }
   const auto time_s = [&](Eigen::Index i) {
-    return static_cast<double>(static_cast<std::size_t>(i) % samples) * records_.window.period_s;
+    const auto place = static_cast<std::size_t>(i);
+    return records_.force_s(place / samples, place % samples);
   };
   for (Eigen::Index g = 0; g < groups; ++g) {
     Eigen::MatrixXd& slope = slopes_.emplace_back(Eigen::MatrixXd::Zero(size_, size_));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
+#include <utility>
 
 #include "tests/unit/criticism/thrown_balls.hpp"
 
@@ -117,6 +119,49 @@ TEST(ImpactDiagnosis, ShotsThatDifferOtherwiseThanBySpeedsAndNoiseAreNotAdequate
   const Diagnosis diagnosis = diagnose_impacts(study, paper_with({}), {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
   EXPECT_TRUE(noted(diagnosis, "shots of one speed differ by")) << told(diagnosis);
+}
+
+/// The same with a second gauge 80 us further on, which the same waves pass, its noise its own.
+Campaign with_second_gauge(Campaign campaign) {
+  constexpr std::size_t kLater_samples = 80;
+  Gauge gauge = campaign.bench.gauges[0];
+  gauge.name = "g2";
+  gauge.position_m.value +=
+      static_cast<double>(kLater_samples) * campaign.period_s *
+      std::sqrt(*campaign.bench.input.youngs_modulus_Pa / campaign.bench.input.density_kg_m3);
+  campaign.bench.gauges.push_back(gauge);
+  campaign.step.push_back(campaign.step[0]);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0.0, 1e-6);
+  for (CampaignShot& shot : campaign.shots) {
+    std::vector<double> later(shot.strain[0].size());
+    for (std::size_t n = 0; n < later.size(); ++n) {
+      later[n] = (n < kLater_samples ? 0.0 : shot.strain[0][n - kLater_samples]) + noise(random);
+    }
+    shot.strain.push_back(std::move(later));
+  }
+  return campaign;
+}
+
+Diagnosis diagnosed(const Campaign& campaign) {
+  ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+  return diagnose_impacts(study, paper_with({}), {});
+}
+
+/// That one of two gauges reads 2 % less from the peak on is no matter of the calculation.
+TEST(ImpactDiagnosis, GaugesThatContradictEachOtherAreNotAdequate) {
+  Campaign campaign = with_second_gauge(read_campaign(testing::impact_shots(two_speeds(11, 3))));
+  const Diagnosis sound = diagnosed(campaign);
+  EXPECT_EQ(sound.verdict, DiagnosisVerdict::adequate) << told(sound);
+  for (CampaignShot& shot : campaign.shots) {
+    std::vector<double>& strain = shot.strain[1];
+    const auto peak = std::max_element(strain.begin(), strain.end());
+    for (auto own = peak; own != strain.end(); ++own) {
+      *own *= 1.0 - 0.02 * std::min(1.0, static_cast<double>(own - peak) / 50.0);
+    }
+  }
+  const Diagnosis loose = diagnosed(campaign);
+  EXPECT_EQ(loose.verdict, DiagnosisVerdict::unknown) << told(loose);
 }
 
 /// A core that stiffens.

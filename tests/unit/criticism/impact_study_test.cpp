@@ -136,6 +136,7 @@ TEST(ImpactWhitening, SquaresAreTheWholeQuadraticForm) {
   ImpactRecords records;
   records.window.samples = 4;
   records.window.period_s = 30e-6;
+  records.behind = {0};
   records.groups = {{31.0, 30.9, 31.1, {0, 1, 2}, {-0.01, 0.002, 0.008}},
                     {50.0, 49.8, 50.2, {3, 4}, {0.0, 0.0}}};
   records.group_of = {0, 0, 0, 1, 1};
@@ -208,6 +209,36 @@ std::vector<Shot> a_few() {
   own.across = 5;
   own.speeds_m_per_s = {31.1};
   return testing::impact_shots(own);
+}
+
+/// What the calculation is off by comes past one gauge after the other: off at both by as much when
+/// it does, it is allowed for; off at one of them it is not.
+TEST(ImpactWhitening, ACalculationsErrorIsAlikeWhereGaugesShowTheSameForce) {
+  constexpr Eigen::Index kSamples = 8;
+  constexpr Eigen::Index kBehind = 2;
+  ImpactRecords records;
+  records.window.samples = kSamples;
+  records.window.period_s = 30e-6;
+  records.later_s = {0.0, 20e-6};
+  records.behind = {0, kBehind};
+  records.groups = {{31.0, 30.9, 31.1, {0}, {0.0}}};
+  records.group_of = {0};
+  records.rebound.assign(1, Measured{5e-3, 1e-5});
+  records.wave_speed_m_per_s = 5000.0;
+  ImpactShape shape{Eigen::VectorXd::Constant(2 * kSamples + 1, 1e-4),
+                    Eigen::VectorXd::Zero(2 * kSamples + 1),
+                    Eigen::VectorXd::Zero(2 * kSamples + 1)};
+  shape.reading[2 * kSamples] = 50e-4;
+  const Eigen::MatrixXd noise = 1e-16 * Eigen::MatrixXd::Identity(2 * kSamples, 2 * kSamples);
+  const ImpactWhitening whitening(records, {shape}, {noise, 1e-3, 1e-3, 5e-3});
+  const auto squares = [&](bool at_both) {
+    Eigen::VectorXd off = Eigen::VectorXd::Zero(2 * kSamples + 1);
+    off[3] = 0.5e-6;
+    off[kSamples + 3 + kBehind] = at_both ? 0.5e-6 : 0.0;
+    return whitening.white({off}).squaredNorm();
+  };
+  EXPECT_LT(squares(true), 5.0);
+  EXPECT_GT(squares(false), 500.0);
 }
 
 /// Shares of the signal's energy are by what the gauges said, whatever the calculation is allowed

@@ -21,6 +21,7 @@ struct Impacts {
   Impacts() {
     records.window.samples = kSamples;
     records.window.period_s = 30e-6;
+    records.behind = {0};
     records.wave_speed_m_per_s = 5000.0;
     for (const double speed : {31.0, 40.0, 51.0}) {
       SpeedGroup group{speed, 0.99 * speed, 1.01 * speed, {}, {-0.005, 0.0, 0.005}};
