@@ -98,6 +98,7 @@ class Diagnostician {
         study_.allowance(current) != Allowance::kept) {
       options_.progress("fitting the nearest to a claim to their ends");
       refits = search.settled(std::move(refits), current);
+      scale_ = search.scale();
       claimed = first_certified(search, refits, current);
     }
     if (claimed == nullptr) {

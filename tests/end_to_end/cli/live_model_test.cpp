@@ -78,6 +78,19 @@ class LiveModel : public ::testing::Test {
     const Answer reloaded = ask({"reload"});
     ASSERT_EQ(reloaded.code, 0) << reloaded.err;
   }
+  /// The last diagnosis once it is done. At the lowest priority it may have to wait long for a busy
+  /// machine; asking without pause would keep it busy.
+  [[nodiscard]] json ended_diagnosis() const {
+    json live;
+    EXPECT_TRUE(eventually(
+        [&] {
+          std::this_thread::sleep_for(std::chrono::milliseconds(500));
+          live = json_of(ask({"diagnose-live", "--last", "--json"}));
+          return live["state"] != "running";
+        },
+        std::chrono::minutes(4)));
+    return live;
+  }
   [[nodiscard]] json comparison_of(const std::string& id) const {
     json comparison;
     EXPECT_TRUE(eventually([&] {
@@ -139,16 +152,7 @@ TEST_F(LiveModel, WatchHearsComparisonsOfTheirOwn) {
 TEST_F(LiveModel, DiagnosesTheLastShotsOnRequestAndFilesTheOutcome) {
   ASSERT_NO_FATAL_FAILURE(activate());
   (void)json_of(ask({"diagnose-live", "--shots", "3", "--no-wait", "--json"}));
-  // At the lowest priority it may have to wait long for a busy machine; asking without pause would
-  // keep it busy.
-  json live;
-  EXPECT_TRUE(eventually(
-      [&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
-        live = json_of(ask({"diagnose-live", "--last", "--json"}));
-        return live["state"] != "running";
-      },
-      std::chrono::minutes(4)));
+  const json live = ended_diagnosis();
   ASSERT_EQ(live["state"], "done") << live;
   EXPECT_EQ(live["shots"].size(), 3U);
   // The same shots in the same order.
@@ -188,14 +192,7 @@ TEST_F(LiveModel, ShotsGoOnWhileADiagnosisRuns) {
     EXPECT_EQ(comparison_of(id_of(capture))["comparable"], true);
   }
   EXPECT_EQ(json_of(ask({"status", "--json"}))["samples_missing"], 0);
-  json live;
-  EXPECT_TRUE(eventually(
-      [&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
-        live = json_of(ask({"diagnose-live", "--last", "--json"}));
-        return live["state"] != "running";
-      },
-      std::chrono::minutes(4)));
+  const json live = ended_diagnosis();
   EXPECT_EQ(live["id"], begun["id"]);
   EXPECT_EQ(live["state"], "done") << live;
   EXPECT_EQ(live["shots"].size(), 3U) << "those that were there when it began";
