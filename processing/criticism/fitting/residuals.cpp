@@ -638,26 +638,59 @@ void WhiteResiduals::whiten_shots(const Composition& composition, const std::vec
                                   std::size_t first, std::size_t end, std::size_t worker,
                                   double* next) {
   Workspace& work = *work_[worker];
+  for (std::size_t n = first; n < end; ++n) {
+    find_residuals(work, composition, theta, n);
+    whiten_shot(work, next);
+  }
+}
+
+/// What is in `work.residuals`, with the noise as known there.
+void WhiteResiduals::whiten_shot(Workspace& work, double*& next) const {
   const auto rows = static_cast<Eigen::Index>(others_.size());
   Eigen::VectorXcd r(rows);
   Eigen::VectorXcd white(rows);
-  for (std::size_t n = first; n < end; ++n) {
-    find_residuals(work, composition, theta, n);
-    work.rows.resize(others_.size());
-    for (std::size_t i = 0; i < others_.size(); ++i) {
-      plain_spectrum(work, work.residuals[i], work.rows[i]);
+  work.rows.resize(others_.size());
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    plain_spectrum(work, work.residuals[i], work.rows[i]);
+  }
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      r[i] = work.rows[static_cast<std::size_t>(i)][k];
     }
-    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        r[i] = work.rows[static_cast<std::size_t>(i)][k];
-      }
-      white.noalias() = work.whitener[k].lazyProduct(r);
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        *next++ = white[i].real();
-        *next++ = white[i].imag();
-      }
+    white.noalias() = work.whitener[k].lazyProduct(r);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      *next++ = white[i].real();
+      *next++ = white[i].imag();
     }
   }
+}
+
+Eigen::VectorXd WhiteResiduals::whitened_noise(const Composition& composition,
+                                               const std::vector<double>& theta,
+                                               std::span<const std::vector<double>> noise,
+                                               std::size_t worker) {
+  Workspace& work = *work_[worker];
+  const Effects effects(composition, theta, 0);
+  know_noise(work, composition, effects.on_waves);
+  know_waves(work, composition, effects.on_waves, 0);
+  std::vector<Spectrum> spectra(noise.size());
+  for (std::size_t j = 0; j < noise.size(); ++j) {
+    transform_record(work, noise[j], spectra[j]);
+  }
+  work.residuals.resize(others_.size());
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    const std::size_t j = others_[i];
+    Spectrum& damped = work.residuals[i];
+    damped.resize(band_.bins_carried);
+    for (std::size_t k = 0; k < band_.bins_carried; ++k) {
+      damped[k] = work.ratios.mean_at(k) * spectra[j][k] -
+                  work.ratios.reading[j][k] * spectra[campaign_.reference][k];
+    }
+  }
+  Eigen::VectorXd white(static_cast<Eigen::Index>(per_shot()));
+  double* next = white.data();
+  whiten_shot(work, next);
+  return white;
 }
 
 PlainResiduals WhiteResiduals::plain(const Composition& composition,

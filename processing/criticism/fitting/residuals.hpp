@@ -103,6 +103,12 @@ class WhiteResiduals : public ShotResiduals {
                                                      const Composition& composition,
                                                      const std::vector<double>& theta,
                                                      std::size_t worker);
+  /// Whitened residuals of one shot whose records are noise alone, as far as a linear specimen
+  /// carries it. @param theta  as frozen @param noise  by gauge, as long as records, at their rate
+  [[nodiscard]] Eigen::VectorXd whitened_noise(const Composition& composition,
+                                               const std::vector<double>& theta,
+                                               std::span<const std::vector<double>> noise,
+                                               std::size_t worker);
   /// The residuals themselves. @param theta  as frozen
   [[nodiscard]] PlainResiduals plain(const Composition& composition,
                                      const std::vector<double>& theta);
@@ -168,6 +174,7 @@ class WhiteResiduals : public ShotResiduals {
                       const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
                       std::size_t first, std::size_t end, std::size_t worker, double* out);
+  void whiten_shot(Workspace& work, double*& next) const;
   void whiten_shots(const Composition& composition, const std::vector<double>& theta,
                     std::size_t first, std::size_t end, std::size_t worker, double* out);
   void prepare_spectra();

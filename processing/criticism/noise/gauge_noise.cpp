@@ -228,7 +228,10 @@ double GaugeNoise::most_hidden(std::size_t bin) const {
 
 void GaugeNoise::learn(std::size_t gauge, const std::vector<double>& power_over_quiet,
                        NoiseShown shown) {
-  scale_[gauge] = smooth_power(power_over_quiet);
+  const SmoothPower smooth = smooth_power(power_over_quiet);
+  for (std::size_t k = 0; k < scale_[gauge].size(); ++k) {
+    scale_[gauge][k] = smooth.at(static_cast<double>(k + 1));
+  }
   if (campaign_.shots.size() == 1) {
     for (double& scale : scale_[gauge]) {
       scale = std::clamp(scale, 1.0, kMostHidden);

@@ -189,6 +189,12 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
   return slopes_agree(slopes.found, slopes.before);
 }
 
+bool slow_noise_excluded(double log_chance, Claim claim) {
+  const double share = claim == Claim::fresh ? 1.0 : 0.5;
+  constexpr double kChance = -5.8;
+  return log_chance < share * kChance;
+}
+
 std::optional<ProductTest> product_test_of(const Studied& studied, const std::string& id,
                                            const Campaign& campaign) {
   const EffectUse* use = studied.model.find(id);

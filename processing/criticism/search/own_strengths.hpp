@@ -22,6 +22,10 @@ enum class Claim { fresh, standing };
 [[nodiscard]] bool own_strengths_confirmed(const Studied& studied, const std::string& id,
                                            const Campaign& campaign, Claim claim);
 
+/// Whether slow noise does so much so rarely that its chance confirms strengths of each shot's own
+/// instead (`SlowNoise`).
+[[nodiscard]] bool slow_noise_excluded(double log_chance, Claim claim);
+
 /// How near a hum's amplitudes by shot and gauge are to products. @return nothing for other effects
 [[nodiscard]] std::optional<ProductTest> product_test_of(const Studied& studied,
                                                          const std::string& id,

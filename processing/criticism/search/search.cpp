@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -59,6 +60,13 @@ bool is_switch(const Candidate& candidate) {
                      [](const EffectParameter& parameter) { return parameter.is_switch; });
 }
 
+/// What shots have of their own in the records, alike at all gauges or at one: as many numbers at
+/// every gauge would be judged by their products.
+bool may_be_slow_noise(const Candidate& candidate) {
+  const EffectUse& use = candidate.use;
+  return use.per_shot && is_addition(*use.effect) && (use.alike || !use.effect->about().each_gauge);
+}
+
 bool of_material(const Candidate& candidate) {
   return candidate.use.effect->about().stage == Stage::material;
 }
@@ -93,7 +101,7 @@ double Search::with_search(double log_p) const {
 }
 
 double Search::without_search(const Refit& refit) const {
-  return refit.products ? with_search(refit.log_p) : refit.log_p;
+  return refit.products || refit.slow_log_p ? with_search(refit.log_p) : refit.log_p;
 }
 
 double Search::log_trials() const {
@@ -151,12 +159,45 @@ bool Search::stands_out(const Refit& refit) const {
   return std::abs(own.value - parameters.front().null_value) >= own.sd;
 }
 
-bool Search::admissible(const Refit& refit) const {
+bool Search::admissible(Refit& refit) {
   return std::isfinite(refit.studied.fit.objective()) && !beyond_the_record(refit.studied, refit) &&
          stands_out(refit) && fits_the_signal(refit) &&
-         (!safeguards_.own_strengths ||
-          own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
-                                  study_.campaign(), Claim::fresh));
+         (!safeguards_.own_strengths || confirmed(refit));
+}
+
+bool Search::confirmed(Refit& refit) {
+  const double chance = slow_chance(refit.candidate);
+  if (slow_noise_excluded(chance, Claim::fresh)) {
+    refit.slow_log_p = chance;
+    return true;
+  }
+  return own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
+                                 study_.campaign(), Claim::fresh);
+}
+
+/// ln of the chance of the best of all additions of each shot's own on slow noise.
+double Search::slow_chance(std::size_t index) {
+  const Candidate& candidate = candidates_[index];
+  const Direction& direction = directions_[index];
+  if (!may_be_slow_noise(candidate) || direction.freedom < 1.0) {
+    return 0.0;
+  }
+  if (const auto known = slow_chances_.find(index); known != slow_chances_.end()) {
+    return known->second;
+  }
+  if (!slow_noise_) {
+    slow_noise_.emplace(base_, study_);
+  }
+  std::set<std::string> kinds;
+  for (const Candidate& other : candidates_) {
+    if (may_be_slow_noise(other)) {
+      kinds.insert(other.id());
+    }
+  }
+  const double chance =
+      slow_noise_->log_chance(candidate, direction) + std::log(static_cast<double>(kinds.size()));
+  slow_chances_.emplace(index, chance);
+  return chance;
 }
 
 void Search::dismiss(const Refit& refit) {
@@ -226,7 +267,7 @@ void Search::refine(std::vector<Refit>& list) {
       const Model model = with(base_.model, candidates_[own.candidate], true);
       own = described(own.candidate, model, std::move(studied.composition), std::move(fit), worker);
     });
-    std::erase_if(list, [&](const Refit& own) {
+    std::erase_if(list, [&](Refit& own) {
       if (admissible(own)) {
         return false;
       }
@@ -280,7 +321,7 @@ double Search::evidence_of(const Direction& direction, const Candidate& candidat
 
 /// The best variant of each effect, those near the best of all; first-order ties can separate at
 /// finite size, the more so the larger the misfit.
-std::vector<std::size_t> Search::worth_refitting() const {
+std::vector<std::size_t> Search::worth_refitting() {
   std::map<std::string, std::pair<double, std::size_t>> best;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const double evidence = evidence_of(directions_[i], candidates_[i]);
@@ -308,8 +349,28 @@ std::vector<std::size_t> Search::worth_refitting() const {
       chosen.push_back(i);
     }
   }
+  if (safeguards_.own_strengths) {
+    add_beyond_slow_noise(chosen);
+  }
   add_relatives(ranked, chosen);
   return chosen;
+}
+
+/// What shots have of their own gains little by noise that was learned from their differences: of
+/// each such addition, one variant that slow noise does not do.
+void Search::add_beyond_slow_noise(std::vector<std::size_t>& chosen) {
+  std::set<std::string> seen;
+  for (const std::size_t i : chosen) {
+    if (may_be_slow_noise(candidates_[i])) {
+      seen.insert(candidates_[i].id());
+    }
+  }
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (may_be_slow_noise(candidates_[i]) && seen.insert(candidates_[i].id()).second &&
+        slow_noise_excluded(slow_chance(i), Claim::fresh)) {
+      chosen.push_back(i);
+    }
+  }
 }
 
 /// What differs from a chosen candidate by more than first order only.
@@ -579,6 +640,10 @@ void Search::rate(std::vector<Refit>& list) const {
       // little.
       refit.evidence = std::max(refit.evidence, equivalent_square(refit.log_p));
     }
+    if (refit.slow_log_p) {
+      // The noise that it is weighed by holds it: what remains without tells more.
+      refit.evidence = equivalent_square(*refit.slow_log_p);
+    }
   }
 }
 
@@ -591,7 +656,11 @@ double Search::chance_of(const Refit& refit, double gain) const {
     const auto variants = std::count_if(candidates_.begin(), candidates_.end(), [&](const auto& c) {
       return c.id() == use.id() && c.use.per_shot && !c.use.alike;
     });
-    return refit.products->log_p + std::log(static_cast<double>(variants) / trials_);
+    const double chance = refit.products->log_p + std::log(static_cast<double>(variants));
+    return std::min(chance, refit.slow_log_p.value_or(0.0)) - std::log(trials_);
+  }
+  if (refit.slow_log_p) {
+    return *refit.slow_log_p - std::log(trials_);
   }
   if (use.per_shot || gain <= 0.0) {
     return log_gain_tail(gain, refit.freedom, refit.one_sided);

@@ -9,6 +9,7 @@
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/search/product_test.hpp"
 #include "processing/criticism/search/safeguards.hpp"
+#include "processing/criticism/search/slow_noise.hpp"
 
 namespace kolsky {
 
@@ -25,6 +26,8 @@ struct Refit {
   double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.
   std::optional<ProductTest> products = std::nullopt;
+  /// ln of the chance that slow noise does as much by itself, where that is what confirms them.
+  std::optional<double> slow_log_p = std::nullopt;
   double noise = 1.0;       ///< what the objective has of it per residual: of all refits the best's
   double over_noise = 0.0;  ///< gain of the objective, over the noise
   double beside = 1.0;      ///< share of it beside something slow that nothing confirms
@@ -77,7 +80,8 @@ class Search {
                          ModelFit& fit);
   [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
   [[nodiscard]] double evidence_of(const Direction& direction, const Candidate& candidate) const;
-  [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
+  [[nodiscard]] std::vector<std::size_t> worth_refitting();
+  void add_beyond_slow_noise(std::vector<std::size_t>& chosen);
   void add_relatives(const std::vector<std::pair<double, std::size_t>>& ranked,
                      std::vector<std::size_t>& chosen) const;
   [[nodiscard]] std::vector<double> begin_near(const Candidate& candidate,
@@ -94,7 +98,9 @@ class Search {
   [[nodiscard]] Refit described(std::size_t index, const Model& model, Composition composition,
                                 ModelFit fit, std::size_t worker);
   void refine(std::vector<Refit>& list);
-  [[nodiscard]] bool admissible(const Refit& refit) const;
+  [[nodiscard]] bool admissible(Refit& refit);
+  [[nodiscard]] bool confirmed(Refit& refit);
+  [[nodiscard]] double slow_chance(std::size_t candidate);
   [[nodiscard]] bool stands_out(const Refit& refit) const;
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
   void rate_in_order(std::vector<Refit>& list) const;
@@ -111,6 +117,8 @@ class Search {
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   double trials_ = 1.0;
+  std::optional<SlowNoise> slow_noise_;         ///< once it is asked for
+  std::map<std::size_t, double> slow_chances_;  ///< by candidate
   /// Strengths of single shots that explain most of all and that nothing confirms: slow noise, or
   /// something slow that the library lacks.
   struct Unconfirmed {

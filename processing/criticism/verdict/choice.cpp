@@ -40,6 +40,12 @@ bool chosen_apart(const Studied& one, const Studied& other, const std::string& i
   return false;
 }
 
+/// Strengths of each shot's own that no other shot can foretell: products are foretold by the other
+/// gauges, and what slow noise does not do by what comes before and after.
+bool confirmed_otherwise(const Refit& refit) {
+  return refit.products.has_value() || refit.slow_log_p.has_value();
+}
+
 std::string id_of(const Search& search, const Refit& refit) {
   return search.candidates()[refit.candidate].id();
 }
@@ -155,8 +161,7 @@ void Chooser::prefer_library(const Found& found, Places& places) const {
 bool Chooser::sound(const Found& found, std::size_t i) const {
   const Refit& refit = found.refits[i];
   const Certification& own = found.held_out[i];
-  // Products of what each shot and each gauge has of its own are foretold by each other.
-  const bool foretells_most = refit.products || (own.gain > 0.0 && own.share > 0.5);
+  const bool foretells_most = confirmed_otherwise(refit) || (own.gain > 0.0 && own.share > 0.5);
   constexpr double kSlack = 1.5;
   return (!options_.safeguards.held_out || foretells_most) &&
          !beyond_belief(refit.studied, id_of(found.search, refit), study_.campaign(), kSlack);
@@ -168,7 +173,8 @@ bool Chooser::foretold(const Found& found, std::size_t i) const {
   constexpr double kShare = 0.3;
   const Refit& refit = found.refits[i];
   // Of two shots, or parts of one, each is half of all that is known.
-  return !options_.safeguards.held_out || refit.products || study_.campaign().shots.size() < 3 ||
+  return !options_.safeguards.held_out || confirmed_otherwise(refit) ||
+         study_.campaign().shots.size() < 3 ||
          found.held_out[i].gain > kShare * refit.noise * refit.gain;
 }
 
@@ -191,7 +197,9 @@ Choice Chooser::chosen(Found& found, Places places) {
     }
     // One and the same may stand there twice, with its strengths alike or each shot's own.
     if (other != id) {
-      ties.push_back(other);
+      if (std::ranges::count(ties, other) == 0) {
+        ties.push_back(other);
+      }
     } else if (chosen_apart(found.refits[i].studied, found.refits[best].studied, id)) {
       variants_differ =
           std::max(variants_differ, std::abs(strength_of(found.refits[i].studied, id) -

@@ -12,6 +12,8 @@
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
+#include "processing/criticism/search/slow_noise.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
@@ -333,9 +335,7 @@ class Diagnostician {
     for (std::size_t i = 0; i + spared < diagnosis_.effects.size();) {
       const std::string id = diagnosis_.effects[i];
       Studied left = without(current, id);
-      const bool confirmed =
-          !options_.safeguards.own_strengths ||
-          own_strengths_confirmed(current, id, study_.campaign(), Claim::standing);
+      const bool confirmed = !options_.safeguards.own_strengths || stands(left, current, id);
       if (confirmed && missed_in(left, current)) {
         left = without_from_start(current, id);
       }
@@ -345,6 +345,31 @@ class Diagnostician {
         ++i;
       }
     }
+  }
+
+  /// Whether strengths of each shot's own are still more than slow noise.
+  bool stands(const Studied& left, const Studied& current, const std::string& id) {
+    const EffectUse& use = *current.model.find(id);
+    if (own_strengths_confirmed(current, id, study_.campaign(), Claim::standing)) {
+      return true;
+    }
+    if (!is_addition(*use.effect)) {
+      return false;
+    }
+    Candidate candidate{null_use(*use.effect, use.gauge)};
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      const bool auxiliary = use.effect->about().parameters[p].auxiliary();
+      candidate.use.values[p].free = !auxiliary;
+      candidate.use.values[p].prior_sd = use.values[p].prior_sd;
+      if (auxiliary) {
+        candidate.use.values[p].value = use.values[p].value;
+      }
+    }
+    candidate.use.per_shot = use.per_shot;
+    candidate.use.alike = use.alike;
+    return slow_noise_excluded(
+        SlowNoise(left, study_).log_chance(candidate, direction_of(candidate, left, study_, 0)),
+        Claim::standing);
   }
 
   /// Whether a fit is worse for want of what went.

@@ -89,9 +89,9 @@ TEST(SmoothPower, FindsTheSpectrumThatDrewThePowers) {
     power.push_back(truth(k) * chance(random));
   }
   const auto found = smooth_power(power);
-  EXPECT_NEAR(found[0] / truth(0), 1.0, 0.35);
-  EXPECT_NEAR(found[4] / truth(4), 1.0, 0.25);
-  EXPECT_NEAR(found[200] / truth(200), 1.0, 0.06);
+  EXPECT_NEAR(found.at(1.0) / truth(0), 1.0, 0.35);
+  EXPECT_NEAR(found.at(5.0) / truth(4), 1.0, 0.25);
+  EXPECT_NEAR(found.at(201.0) / truth(200), 1.0, 0.06);
 }
 
 }  // namespace

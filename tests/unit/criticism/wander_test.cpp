@@ -11,6 +11,7 @@
 
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
+#include "tests/unit/criticism/filed_bars.hpp"
 
 namespace kolsky {
 namespace {
@@ -78,6 +79,75 @@ TEST(CommonWander, LeavesAHumWhatItIs) {
     EXPECT_LT(hum->sd, 0.6 * kAmplitude) << seed;
   }
   EXPECT_GE(found, 7U);
+}
+
+testing::Campaign split_bars(std::uint64_t seed) {
+  return testing::draw_campaign(
+      {.seed = seed, .shots = 8, .gauges = 2, .noise_strain = 3e-6, .split = true});
+}
+
+Diagnosis diagnosed(const testing::Campaign& truth, const std::vector<Shot>& shots) {
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, 0.0, Workers{});
+  return diagnose(
+      study, truth.filed_bars ? filed_split_bar(truth) : paper_model(BenchKind::shpb, true), {});
+}
+
+bool says_hum(const Diagnosis& diagnosis) {
+  return std::ranges::any_of(diagnosis.effects, [&](const std::string& id) {
+    const auto ties = diagnosis.tied_with.find(id);
+    return id == "mains-hum" ||
+           (ties != diagnosis.tied_with.end() && std::ranges::count(ties->second, "mains-hum") > 0);
+  });
+}
+
+// Its phase is another in every shot, so that it does not repeat; a fit that takes for noise what
+// does not repeat takes the hum for noise, and finds half as many of these.
+TEST(MainsHum, OfFourTimesWhiteNoiseIsFoundOnSplitBars) {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 21; seed < 29; ++seed) {
+    testing::Campaign campaign = split_bars(seed);
+    testing::hide(campaign, testing::parse_effect("mains-hum=12e-6"));
+    const Diagnosis diagnosis = diagnosed(campaign, testing::shots_of(campaign));
+    found += says_hum(diagnosis) ? 1 : 0;
+    EXPECT_LE(diagnosis.effects.size(), 1U) << seed;
+    EXPECT_TRUE(diagnosis.effects.empty() || says_hum(diagnosis)) << seed;
+  }
+  EXPECT_GE(found, 6U);
+}
+
+/// Random walks that reach six times the white noise by the records' ends.
+testing::Readings walking(const testing::Campaign& campaign, std::uint64_t seed, bool common) {
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(campaign);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  for (auto& shot : readings) {
+    const double step = 18e-6 / std::sqrt(static_cast<double>(shot.front().size()));
+    std::vector<double> at(shot.size(), 0.0);
+    for (std::size_t n = 0; n < shot.front().size(); ++n) {
+      const double of_all = step * normal(random);
+      for (std::size_t j = 0; j < shot.size(); ++j) {
+        at[j] += common ? of_all : step * normal(random);
+        shot[j][n] += at[j];
+      }
+    }
+  }
+  return readings;
+}
+
+// They slope as a hum does, and turn besides.
+TEST(RandomWalk, IsNeitherHumNorDrift) {
+  std::size_t claimed = 0;
+  for (const bool common : {false, true}) {
+    for (std::uint64_t seed = 31; seed < 35; ++seed) {
+      const testing::Campaign campaign = split_bars(seed);
+      const Diagnosis diagnosis =
+          diagnosed(campaign, testing::shots_of(campaign, walking(campaign, seed, common)));
+      claimed += diagnosis.effects.empty() ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(claimed, 0U);
 }
 
 }  // namespace
