@@ -83,15 +83,15 @@ bool judges_whole(const Model& model) {
 }
 
 /// A ball with little friction has a second minimum where friction is filed, with moduli and law in
-/// its place, and coarse forces do not lead from there to the other. So where what is filed is
-/// strained, or more is left than noise, the two are compared, each with forces that were taken
-/// where it is (docs/impact.md).
+/// its place, and coarse forces do not lead from there to the other. Nor does anything there have
+/// to be strained. So the two are compared, each with forces that were taken where it is
+/// (docs/impact.md).
 ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composition& composition,
                                               ModelFit fit) {
   const EffectUse* friction = model.find("contact-friction");
   const bool filed =
       friction != nullptr && friction->values[0].free && friction->values[0].prior_sd > 0.0;
-  if (!filed || !astray(composition, fit)) {
+  if (!filed) {
     return fit;
   }
   const auto again_at = [&](const std::vector<double>& theta, Settle settle) {
