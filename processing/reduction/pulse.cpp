@@ -44,10 +44,10 @@ Crossing crossing_before(std::span<const double> record, std::size_t from, doubl
 
 /// The first pulse, with the noise of so many samples at the record's beginning.
 std::optional<Rise> pulse_after(std::span<const double> record, std::size_t look, std::size_t width,
-                                std::size_t reach) {
+                                std::size_t reach, double least_share) {
   const Quiet start = quiet_before(record, look);
   const double level =
-      std::max(6.0 * start.noise_rms, 0.1 * largest_excursion(record, start.baseline));
+      std::max(6.0 * start.noise_rms, least_share * largest_excursion(record, start.baseline));
   if (level <= 0.0) {
     return std::nullopt;
   }
@@ -103,17 +103,17 @@ Quiet quiet_before(std::span<const double> record, std::size_t end) {
 }
 
 std::optional<Rise> find_first_pulse(std::span<const double> record, std::size_t width,
-                                     std::size_t reach) {
+                                     std::size_t reach, double least_share) {
   if (record.size() < kFirstLook + width) {
     return std::nullopt;
   }
   const std::size_t longest = std::max(kFirstLook, record.size() / 100);
-  if (auto rise = pulse_after(record, longest, width, reach)) {
+  if (auto rise = pulse_after(record, longest, width, reach, least_share)) {
     return rise;
   }
   // The look held the pulse itself where that comes early, as in slowly sampled records.
   for (std::size_t look = kFirstLook / 2; look >= kShortestLook; look /= 2) {
-    auto rise = pulse_after(record, look, width, reach);
+    auto rise = pulse_after(record, look, width, reach, least_share);
     if (rise && rise->index >= look) {
       return rise;
     }

@@ -26,13 +26,15 @@ struct Rise {
 };
 
 /// Finds the first pulse: the first run of at least `width` samples that stays above both six times
-/// the noise of the record's beginning and a tenth of the record's largest excursion, followed to
+/// the noise of the record's beginning and a share of the record's largest excursion, followed to
 /// half of the largest excursion within `reach` samples. The beginning is 32 samples or a hundredth
 /// of the record; where nothing stands out of that, 16 or 8, and the pulse comes after them.
 /// @param reach  how far the pulse's own peak can be
+/// @param least_share  of the largest excursion
 /// @return nothing where no such run exists
 [[nodiscard]] std::optional<Rise> find_first_pulse(std::span<const double> record,
-                                                   std::size_t width, std::size_t reach);
+                                                   std::size_t width, std::size_t reach,
+                                                   double least_share = 0.1);
 
 /// The pulse whose foot is given by hand, followed to half of its largest excursion within `reach`
 /// samples.

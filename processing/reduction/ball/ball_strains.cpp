@@ -34,7 +34,9 @@ bool BallPass::find_wave() {
     static_cast<void>(rise_after_foot(readings, foot_, reach_samples, rate_Hz_));
     return true;
   }
-  const auto rise = find_first_pulse(readings, width, reach_samples);
+  // Nothing that a ball does to its bar is larger than its push: what is small before is a drift.
+  constexpr double kLeastShare = 0.3;
+  const auto rise = find_first_pulse(readings, width, reach_samples, kLeastShare);
   if (!rise) {
     return false;
   }
