@@ -179,7 +179,9 @@ bool Search::confirmed(Refit& refit) {
 double Search::slow_chance(std::size_t index) {
   const Candidate& candidate = candidates_[index];
   const Direction& direction = directions_[index];
-  if (!may_be_slow_noise(candidate) || direction.freedom < 1.0) {
+  // Far from the records, what repeats is most of what slow noise would be.
+  if (!may_be_slow_noise(candidate) || direction.freedom < 1.0 ||
+      base_.misfit.chi2_reduced > kFarOff) {
     return 0.0;
   }
   if (const auto known = slow_chances_.find(index); known != slow_chances_.end()) {

@@ -195,22 +195,18 @@ double log_tail(double value, double mean, double variance) {
 SlowNoise::SlowNoise(const Studied& base, Study& study)
     : base_(base),
       campaign_(study.campaign()),
-      shots_(static_cast<Eigen::Index>(campaign_.shots.size())),
       per_shot_(static_cast<Eigen::Index>(study.residuals().per_shot())) {
   const WhiteResiduals& residuals = study.residuals();
   const std::size_t bins = std::min(kMostBins, residuals.band().bins_judged);
   lowest_ = static_cast<Eigen::Index>(2 * bins * residuals.others().size());
   rows_ = lowest_ + kQuietRows * static_cast<Eigen::Index>(campaign_.gauges());
-  model_columns_ = slow_part(base.fit.jacobian);
-  known_otherwise_ =
-      symmetric_inverse(base.fit.covariance) - model_columns_.transpose() * model_columns_;
-  seen_ = slow_part(base.fit.residual);
-  for (Eigen::Index n = 0; n < shots_; ++n) {
+  seen_.resize(rows_, static_cast<Eigen::Index>(campaign_.shots.size()));
+  for (Eigen::Index n = 0; n < seen_.cols(); ++n) {
     const auto at = static_cast<std::size_t>(n);
     const CampaignShot& shot = campaign_.shots[at];
-    seen_.segment(n * rows_ + lowest_, rows_ - lowest_) =
+    seen_.col(n) << base.fit.residual.segment(n * per_shot_, lowest_),
         quiet_rows_of(shot, shot.strain) -
-        quiet_rows_of(shot, additions_of(base.composition, base.fit.theta, campaign_, at));
+            quiet_rows_of(shot, additions_of(base.composition, base.fit.theta, campaign_, at));
   }
 
   const std::vector<SmoothPower> spectra = spectra_of(residuals);
@@ -239,98 +235,85 @@ SlowNoise::SlowNoise(const Studied& base, Study& study)
   }
 }
 
-/// The lowest bins of every shot; nothing of the quiet parts.
-Eigen::MatrixXd SlowNoise::slow_part(const Eigen::MatrixXd& residuals) const {
-  Eigen::MatrixXd slow = Eigen::MatrixXd::Zero(shots_ * rows_, residuals.cols());
-  for (Eigen::Index n = 0; n < shots_; ++n) {
-    slow.middleRows(n * rows_, lowest_) = residuals.middleRows(n * per_shot_, lowest_);
-  }
-  return slow;
-}
-
-Eigen::MatrixXd SlowNoise::columns_of(const Candidate& candidate,
-                                      const Direction& direction) const {
-  Eigen::MatrixXd columns = slow_part(direction.columns);
+SlowNoise::Columns SlowNoise::columns_of(const Candidate& candidate,
+                                         const Direction& direction) const {
+  Columns columns(static_cast<std::size_t>(seen_.cols()), Eigen::MatrixXd(rows_, 0));
   const Composition composition(with(base_.model, candidate, false), campaign_);
   const std::vector<double> theta = carry(base_.composition, base_.fit.theta, composition);
-  Eigen::Index column = 0;
+  Eigen::Index strength = 0;
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
     if (composition.uses()[number.use].id() != candidate.id()) {
       continue;
     }
+    const auto at = static_cast<std::size_t>(number.shot);
     std::vector<double> moved = theta;
     moved[i] += 1.0;
-    for (Eigen::Index n = 0; n < shots_; ++n) {
-      const auto at = static_cast<std::size_t>(n);
-      const CampaignShot& shot = campaign_.shots[at];
-      columns.col(column).segment(n * rows_ + lowest_, rows_ - lowest_) =
-          quiet_rows_of(shot, additions_of(composition, theta, campaign_, at)) -
-          quiet_rows_of(shot, additions_of(composition, moved, campaign_, at));
-    }
-    ++column;
+    Eigen::MatrixXd& own = columns[at];
+    own.conservativeResize(Eigen::NoChange, own.cols() + 1);
+    own.rightCols(1) << direction.columns.col(strength).segment(number.shot * per_shot_, lowest_),
+        quiet_rows_of(campaign_.shots[at], additions_of(composition, theta, campaign_, at)) -
+            quiet_rows_of(campaign_.shots[at], additions_of(composition, moved, campaign_, at));
+    ++strength;
   }
   return columns;
 }
 
-Eigen::MatrixXd SlowNoise::turned(const Form& form, const Eigen::MatrixXd& rows) const {
-  Eigen::MatrixXd out(rows.rows(), rows.cols());
-  for (Eigen::Index n = 0; n < shots_; ++n) {
-    out.middleRows(n * rows_, rows_).noalias() = form.turn * rows.middleRows(n * rows_, rows_);
-  }
-  return out;
-}
-
-double SlowNoise::at_best_levels(const Form& form, const Eigen::VectorXd& seen,
-                                 Levels& levels) const {
-  constexpr int kSteps = 60;
-  Eigen::VectorXd power = Eigen::VectorXd::Zero(rows_);
-  for (Eigen::Index n = 0; n < shots_; ++n) {
-    power += seen.segment(n * rows_, rows_).cwiseAbs2() / static_cast<double>(shots_);
-  }
+double SlowNoise::at_best_levels(const Form& form, const Eigen::MatrixXd& seen, Levels& levels) {
+  constexpr int kMostSteps = 60;
+  constexpr double kSettled = 1e-3;
+  const Eigen::ArrayXd power = seen.rowwise().squaredNorm() / static_cast<double>(seen.cols());
+  const Eigen::ArrayXd slow = form.slow;
   // Expectation and maximisation, as of smooth spectra.
-  for (int step = 0; step < kSteps; ++step) {
-    const Eigen::ArrayXd per_total = (levels.white + levels.slow * form.slow.array()).inverse();
-    const Eigen::ArrayXd over = power.array() * per_total.square();
-    levels.white *= over.sum() / per_total.sum();
-    levels.slow *=
-        (over * form.slow.array()).sum() / std::max(1e-300, (per_total * form.slow.array()).sum());
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Eigen::ArrayXd per_total = (levels.white + levels.slow * slow).inverse();
+    const Eigen::ArrayXd over = power * per_total.square();
+    const double white = over.sum() / per_total.sum();
+    const double rest = (over * slow).sum() / std::max(1e-300, (per_total * slow).sum());
+    levels.white *= white;
+    levels.slow *= rest;
+    if (std::abs(white - 1.0) < kSettled && std::abs(rest - 1.0) < kSettled) {
+      break;
+    }
   }
-  const Eigen::ArrayXd total = levels.white + levels.slow * form.slow.array();
-  return static_cast<double>(shots_) * (power.array() / total + total.log()).sum();
+  const Eigen::ArrayXd total = levels.white + levels.slow * slow;
+  return static_cast<double>(seen.cols()) * (power / total + total.log()).sum();
 }
 
-SlowNoise::Gain SlowNoise::gain(const Form& form, const Eigen::VectorXd& seen,
-                                const Eigen::MatrixXd& columns) const {
+SlowNoise::Gain SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen,
+                                const Columns& columns) const {
   constexpr int kIterations = 3;
   constexpr double kRidge = 1e-9;
   Gain gain;
   const double without = at_best_levels(form, seen, gain.without);
   gain.with = gain.without;
-  const Eigen::Index own = known_otherwise_.rows();
+  Eigen::MatrixXd left(seen.rows(), seen.cols());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::VectorXd weights =
         (gain.with.white + gain.with.slow * form.slow.array()).inverse();
-    const Eigen::MatrixXd weighted = weights.replicate(shots_, 1).asDiagonal() * columns;
-    Eigen::MatrixXd normal = columns.transpose() * weighted;
-    normal.topLeftCorner(own, own) += known_otherwise_;
-    normal.diagonal() *= 1.0 + kRidge;
-    const Eigen::VectorXd step = solve_symmetric(normal, weighted.transpose() * seen);
-    const double left = at_best_levels(form, seen - columns * step, gain.with);
-    gain.twice_log_likelihood = std::max(gain.twice_log_likelihood, without - left);
+    for (Eigen::Index n = 0; n < seen.cols(); ++n) {
+      const Eigen::MatrixXd& own = columns[static_cast<std::size_t>(n)];
+      const Eigen::MatrixXd weighted = weights.asDiagonal() * own;
+      Eigen::MatrixXd normal = own.transpose() * weighted;
+      normal.diagonal() *= 1.0 + kRidge;
+      left.col(n) = seen.col(n) - own * solve_symmetric(normal, weighted.transpose() * seen.col(n));
+    }
+    const double with = at_best_levels(form, left, gain.with);
+    gain.twice_log_likelihood = std::max(gain.twice_log_likelihood, without - with);
   }
   return gain;
 }
 
-double SlowNoise::log_chance(const Form& form, const Eigen::MatrixXd& own_columns) const {
-  Eigen::MatrixXd all(own_columns.rows(), model_columns_.cols() + own_columns.cols());
-  all << model_columns_, own_columns;
-  const Eigen::MatrixXd columns = turned(form, all);
-  const Gain found = gain(form, turned(form, seen_), columns);
+double SlowNoise::log_chance(const Form& form, Columns columns) const {
+  double strengths = 0.0;
+  for (Eigen::MatrixXd& own : columns) {
+    own = form.turn * own;
+    strengths += static_cast<double>(own.cols());
+  }
+  const Gain found = gain(form, form.turn * seen_, columns);
   // Even if the levels of noise were known.
   constexpr double kOrdinary = -5.0;
-  const double known =
-      log_chi2_tail(found.twice_log_likelihood, static_cast<double>(own_columns.cols()));
+  const double known = log_chi2_tail(found.twice_log_likelihood, strengths);
   if (known > kOrdinary) {
     return known;
   }
@@ -339,20 +322,18 @@ double SlowNoise::log_chance(const Form& form, const Eigen::MatrixXd& own_column
   if (form.own && found.with.slow > kStays * found.without.slow) {
     return 0.0;
   }
-  const Eigen::VectorXd deviation = (found.without.white + found.without.slow * form.slow.array())
-                                        .sqrt()
-                                        .matrix()
-                                        .replicate(shots_, 1);
+  const Eigen::VectorXd deviation =
+      (found.without.white + found.without.slow * form.slow.array()).sqrt();
   std::mt19937_64 random(kSearchSeed);
   std::normal_distribution<double> normal;
-  Eigen::VectorXd drawn(deviation.size());
+  Eigen::MatrixXd drawn(seen_.rows(), seen_.cols());
   double mean = 0.0;
   double square = 0.0;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    for (Eigen::Index i = 0; i < drawn.size(); ++i) {
-      drawn[i] = deviation[i] * normal(random);
+    for (double& value : drawn.reshaped()) {
+      value = normal(random);
     }
-    const double gained = gain(form, drawn, columns).twice_log_likelihood;
+    const double gained = gain(form, deviation.asDiagonal() * drawn, columns).twice_log_likelihood;
     mean += gained / kRepeats;
     square += gained * gained / kRepeats;
   }
@@ -361,10 +342,14 @@ double SlowNoise::log_chance(const Form& form, const Eigen::MatrixXd& own_column
 }
 
 double SlowNoise::log_chance(const Candidate& candidate, const Direction& direction) const {
-  const Eigen::MatrixXd columns = columns_of(candidate, direction);
+  const Columns columns = columns_of(candidate, direction);
   double chance = -HUGE_VAL;
   for (const Form& form : forms_) {
     chance = std::max(chance, log_chance(form, columns));
+    constexpr double kOrdinary = -3.0;
+    if (chance > kOrdinary) {
+      break;
+    }
   }
   return chance;
 }

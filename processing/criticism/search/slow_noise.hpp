@@ -18,8 +18,8 @@ namespace kolsky {
 /// noise is that of noise which came through baseline, waves and window as records do: a window
 /// makes the bins of what is slower than itself hang together, a slope's entirely. Levels are
 /// found, and the statistic's distribution drawn, twice: as if every gauge had slow noise of its
-/// own, and as if all had the same. Where much slow noise is left beside the addition, it counts
-/// for nothing: then its slopes are that noise's as well.
+/// own, and as if all had the same. The model's numbers stay where they are. Where much slow noise
+/// is left beside the addition, it counts for nothing: then its slopes are that noise's as well.
 class SlowNoise {
  public:
   /// @param base  fitted, its noise known by its residuals; outlives this
@@ -40,32 +40,29 @@ class SlowNoise {
     double slow = 1.0;
   };
 
-  [[nodiscard]] Eigen::MatrixXd slow_part(const Eigen::MatrixXd& residuals) const;
-  [[nodiscard]] Eigen::MatrixXd columns_of(const Candidate& candidate,
-                                           const Direction& direction) const;
-  [[nodiscard]] Eigen::MatrixXd turned(const Form& form, const Eigen::MatrixXd& rows) const;
-  [[nodiscard]] double log_chance(const Form& form, const Eigen::MatrixXd& columns) const;
-  /// -2 ln of the likelihood of what is seen, the levels at their best from where they are.
-  [[nodiscard]] double at_best_levels(const Form& form, const Eigen::VectorXd& seen,
-                                      Levels& levels) const;
+  /// By shot: what its own strengths do to what is seen of it.
+  using Columns = std::vector<Eigen::MatrixXd>;
   /// What the addition explains, and the noise without it and with it.
   struct Gain {
     double twice_log_likelihood = 0.0;
     Levels without;
     Levels with;
   };
-  [[nodiscard]] Gain gain(const Form& form, const Eigen::VectorXd& seen,
-                          const Eigen::MatrixXd& columns) const;
+
+  [[nodiscard]] Columns columns_of(const Candidate& candidate, const Direction& direction) const;
+  [[nodiscard]] double log_chance(const Form& form, Columns columns) const;
+  [[nodiscard]] Gain gain(const Form& form, const Eigen::MatrixXd& seen,
+                          const Columns& columns) const;
+  /// -2 ln of the likelihood of what is seen, the levels at their best from where they are.
+  [[nodiscard]] static double at_best_levels(const Form& form, const Eigen::MatrixXd& seen,
+                                             Levels& levels);
 
   const Studied& base_;
   const Campaign& campaign_;
-  Eigen::Index shots_;
-  Eigen::Index per_shot_;            ///< residuals, of all bins
-  Eigen::Index lowest_;              ///< of these, of the lowest bins
-  Eigen::Index rows_;                ///< these and what the quiet parts show, per shot
-  Eigen::VectorXd seen_;             ///< by shot
-  Eigen::MatrixXd model_columns_;    ///< of the model's numbers
-  Eigen::MatrixXd known_otherwise_;  ///< what the other bins and priors say of these
+  Eigen::Index per_shot_;  ///< residuals, of all bins
+  Eigen::Index lowest_;    ///< of these, of the lowest bins
+  Eigen::Index rows_;      ///< these and what the quiet parts show
+  Eigen::MatrixXd seen_;   ///< of every shot a column
   std::vector<Form> forms_;
 };
 
