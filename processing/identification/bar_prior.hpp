@@ -6,6 +6,7 @@
 
 #include "processing/base/bench.hpp"
 #include "processing/base/material.hpp"
+#include "processing/models/softening.hpp"
 
 namespace kolsky {
 
@@ -17,9 +18,8 @@ struct BarPrior {
   /// Identified from waves, which show the moduli over the density alone: the deviation of the
   /// material's density is part of the covariance, as the moduli are off by what it is off by.
   bool from_waves = false;
-  /// Relative loss of E1 and E2 by which a deviation of the bench's temperature counts. PMMA at
-  /// room temperature: 0.3 % per kelvin.
-  double softening_per_K = 3e-3;
+  /// Relative loss of E1 and E2 by which a deviation of the bench's temperature counts.
+  double softening_per_K = kSofteningPerK;
 
   /// With the material's covariance; without one its own deviations, as if they were independent.
   explicit BarPrior(const Material& m);

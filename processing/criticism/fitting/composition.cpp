@@ -81,6 +81,13 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
   if (bench.output && bench.output->diameter_m.sd > 0.0) {
     list.push_back(filed("output-bar-diameter", {relative_sd(bench.output->diameter_m)}));
   }
+  const bool viscoelastic =
+      !bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa);
+  if (viscoelastic && bench.kind != BenchKind::impact && bench.temperature_K &&
+      bench.temperature_K->sd > 0.0) {
+    list.push_back(filed("bar-temperature", {bench.temperature_K->sd}));
+    list.back().per_shot = true;  // read anew for each
+  }
   const double modulus_sd =
       bench.input.youngs_modulus_Pa ? relative_sd(*bench.input.youngs_modulus_Pa) : 0.0;
   if (modulus_sd > 0.0) {

@@ -263,8 +263,9 @@ WhiteResiduals::Ratios WhiteResiduals::ratios_of(const Scene& scene) const {
   return ratios;
 }
 
-/// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins; last,
-/// what the mean over a long reference gauge would hold of it, and all of it.
+/// What of the reference gauge's noise the other gauges' residuals hold, at the judged bins; then,
+/// what the mean over a long reference gauge would hold of it; last, where that or what others
+/// share of it asks for it, all of it.
 void WhiteResiduals::carry_noise(Workspace& work, const Ratios& ratios) const {
   const std::size_t before = band_.begin / band_.decimation;
   const std::size_t first = band_.lead / band_.decimation;
@@ -275,6 +276,8 @@ void WhiteResiduals::carry_noise(Workspace& work, const Ratios& ratios) const {
   const Spectrum all_of_it(band_.bins_carried, 1.0);
   if (!ratios.mean.empty()) {
     filters.push_back(&ratios.mean);
+  }
+  if (!ratios.mean.empty() || noise_.shared_with(campaign_.reference)) {
     filters.push_back(&all_of_it);
   }
   work.responses.resize(filters.size());
@@ -304,32 +307,49 @@ double WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
   const auto other = [&](Eigen::Index i) { return others_[static_cast<std::size_t>(i)]; };
   const auto noise = [&](std::size_t a, std::size_t b) { return noise_.covariance(bin, a, b); };
   const std::size_t reference = campaign_.reference;
-  const bool means = carried.ratio.size() > rows;
+  const bool means = carried.ratio.size() > rows + 1;
+  const bool shared = noise_.shared_with(reference);
   // Of what a window of the same length keeps of everything, so that a length of next to nothing
   // is one of nothing.
   const Complex mean = means ? carried.ratio[rows] / carried.ratio[rows + 1] : Complex(1.0);
+  const double of_reference = noise(reference, reference);
+  const double scale = noise_.scale(reference, bin);
+  // What a gauge has of the reference's noise comes through the window with what waves carry of it:
+  // the slower it is, the more the two cancel, and no more than that may be left.
+  const auto part = [&](std::size_t gauge) { return noise(gauge, reference) / of_reference; };
+  const auto rest = [&](std::size_t a, std::size_t b) {
+    return shared ? noise(a, b) - part(a) * part(b) * of_reference : noise(a, b);
+  };
+  const Eigen::Index all = carried.ratio.size() - 1;
   cross.resize(gauges, rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < gauges; ++j) {
       const auto gauge = static_cast<std::size_t>(j);
-      cross(j, i) = std::conj(mean) * noise(gauge, other(i)) -
-                    std::conj(carried.ratio[i]) * noise(gauge, reference);
+      cross(j, i) =
+          shared ? std::conj(mean) * rest(gauge, other(i)) +
+                       part(gauge) * scale *
+                           (part(other(i)) * carried.power(all, rows) - carried.power(all, i))
+                 : std::conj(mean) * noise(gauge, other(i)) -
+                       std::conj(carried.ratio[i]) * noise(gauge, reference);
     }
   }
-  const double of_reference = noise(reference, reference);
-  const double scale = noise_.scale(reference, bin);
   // G P G^H, but of the reference's own noise what is carried.
   const auto covariance = [&](Eigen::Index i, Eigen::Index j) -> Complex {
-    return mean * cross(static_cast<Eigen::Index>(other(i)), j) -
-           carried.ratio[i] * (cross(static_cast<Eigen::Index>(reference), j) +
-                               std::conj(carried.ratio[j]) * of_reference) +
-           scale * carried.power(i, j);
+    const Complex carried_on = scale * carried.power(i, j);
+    if (!shared) {
+      return std::norm(mean) * noise(other(i), other(j)) + carried_on;
+    }
+    const double a = part(other(i));
+    const double b = part(other(j));
+    return std::norm(mean) * rest(other(i), other(j)) + carried_on +
+           scale * (a * b * carried.power(rows, rows) - a * carried.power(rows, j) -
+                    b * carried.power(i, rows));
   };
   // Where the reference is blind, what the window's ends leak of slow noise stays.
   const double kept =
       means ? carried.power(rows, rows).real() / carried.power(rows + 1, rows + 1).real() : 0.0;
   const auto leaked_of_other = [&](Eigen::Index i) {
-    return means ? noise(other(i), other(i)) * (kept - std::norm(mean)) : 0.0;
+    return means ? rest(other(i), other(i)) * (kept - std::norm(mean)) : 0.0;
   };
   const auto variance = [&](Eigen::Index i) {
     return covariance(i, i).real() + leaked_of_other(i);
@@ -350,10 +370,13 @@ double WhiteResiduals::put_whitener(const CarriedBin& carried, std::size_t bin,
     whitener(i, i) = 0.5 * variance(i);
   }
   if (!invert_factor(whitener)) {
-    // What gauges share is known as if it were stationary: among long echoes it can contradict.
+    // What gauges but the reference share is known as if it were stationary: among long echoes it
+    // can contradict.
+    constexpr double kLeast = 1e-3;
     whitener.setZero();
     for (Eigen::Index i = 0; i < rows; ++i) {
-      whitener(i, i) = 1.0 / std::sqrt(0.5 * variance(i));
+      const double least = kLeast * noise(other(i), other(i));
+      whitener(i, i) = 1.0 / std::sqrt(0.5 * std::max(variance(i), least));
     }
   }
   return leaked;
@@ -700,6 +723,9 @@ PlainResiduals WhiteResiduals::plain(const Composition& composition,
   PlainResiduals plain;
   plain.before = band_.begin / band_.decimation;
   plain.responses = work.responses;
+  if (plain.responses.size() == others_.size() + 1) {
+    plain.responses.pop_back();
+  }
   const auto first = static_cast<std::ptrdiff_t>((band_.lead + band_.begin) / band_.decimation);
   for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
     find_residuals(work, composition, theta, n);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/noise/converter_steps.hpp"
 #include "processing/criticism/noise/smooth_power.hpp"
 #include "processing/identification/noise_spectrum.hpp"
@@ -71,6 +72,21 @@ double slowness(const Campaign& campaign, std::size_t a, std::size_t b) {
   return std::max(1.0, 1.0 + 2.0 * alike);
 }
 
+/// The same or what is nearest to it of what correlations can be: pairs that were looked at one by
+/// one can contradict each other.
+Eigen::MatrixXd as_of_noise(const Eigen::MatrixXd& correlation) {
+  constexpr double kLeast = 0.02;
+  const SymmetricEigen eigen(correlation);
+  if (eigen.eigenvalues().minCoeff() >= kLeast) {
+    return correlation;
+  }
+  const Eigen::MatrixXd possible = eigen.eigenvectors() *
+                                   eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() *
+                                   eigen.eigenvectors().transpose();
+  const Eigen::VectorXd scale = possible.diagonal().cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * possible * scale.asDiagonal();
+}
+
 /// How far gauges share their noise; nothing where chance does as much. Slow samples tell less than
 /// as many independent ones: var rho = (1 + 2 sum rho_a(k) rho_b(k)) / n (Bartlett 1935).
 Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
@@ -96,7 +112,7 @@ Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
       }
     }
   }
-  return correlation;
+  return as_of_noise(correlation);
 }
 
 double rounding_square(double step) {
@@ -152,6 +168,11 @@ void GaugeNoise::put_covariance(std::size_t bin, Eigen::MatrixXd& all) const {
       all(a, b) = covariance(bin, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
     }
   }
+}
+
+bool GaugeNoise::shared_with(std::size_t gauge) const {
+  const auto own = static_cast<Eigen::Index>(gauge);
+  return (quiet_.front().col(own).array() != 0.0).count() > 1;
 }
 
 double GaugeNoise::power(std::size_t gauge, std::size_t bin) const {

@@ -36,6 +36,8 @@ class GaugeNoise {
     return std::sqrt(scale_[a][bin] * scale_[b][bin]) *
            quiet_[bin](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
   }
+  /// Whether any other has a part of this gauge's noise.
+  [[nodiscard]] bool shared_with(std::size_t gauge) const;
   /// That of one gauge.
   [[nodiscard]] double power(std::size_t gauge, std::size_t bin) const;
   /// That over what the quiet parts say.
