@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace kolsky {
@@ -58,6 +59,7 @@ class Likelihoods {
     return {std::max(0.0, from), to};
   }
 
+  [[nodiscard]] double most() const { return most_; }
   [[nodiscard]] Amplitude moments() const {
     double weight = 0.0;
     double mean = 0.0;
@@ -81,14 +83,17 @@ class Likelihoods {
 
 }  // namespace
 
-Amplitude common_amplitude(const std::vector<QuadratureParts>& shots) {
+namespace {
+
+/// Where the likelihood is not negligible, looked at closely; nothing where nothing pulls.
+std::optional<Likelihoods> likelihoods_of(const std::vector<QuadratureParts>& shots) {
   double largest = 0.0;
   for (const QuadratureParts& shot : shots) {
     const double information = shot.information.trace();
     largest = std::max(largest, information > 0.0 ? shot.pull.norm() / information : 0.0);
   }
   if (!(largest > 0.0)) {
-    return {};
+    return std::nullopt;
   }
   constexpr double kReach = 20.0;
   std::pair<double, double> reach{0.0, kReach * largest};
@@ -97,7 +102,35 @@ Amplitude common_amplitude(const std::vector<QuadratureParts>& shots) {
   for (int n = 0; n < kTimes; ++n) {
     reach = Likelihoods(shots, reach.first, reach.second).reach();
   }
-  return Likelihoods(shots, reach.first, reach.second).moments();
+  return Likelihoods(shots, reach.first, reach.second);
+}
+
+}  // namespace
+
+Amplitude common_amplitude(const std::vector<QuadratureParts>& shots) {
+  const std::optional<Likelihoods> likelihoods = likelihoods_of(shots);
+  return likelihoods ? likelihoods->moments() : Amplitude{};
+}
+
+double log_likelihood_of_common_amplitude(const std::vector<QuadratureParts>& shots) {
+  const std::optional<Likelihoods> likelihoods = likelihoods_of(shots);
+  return likelihoods ? likelihoods->most() : 0.0;
+}
+
+double log_likelihood_of_drawn_strengths(const Eigen::VectorXd& pull,
+                                         const Eigen::VectorXd& information) {
+  // From a tenth of the least deviation of one to ten times the largest strength.
+  const Eigen::ArrayXd known = information.array().max(1e-300);
+  const double least = 0.1 / std::sqrt(known.maxCoeff());
+  const double largest = std::max(10.0 * (pull.array() / known).abs().maxCoeff(), 2.0 * least);
+  constexpr int kPlaces = 200;
+  double best = 0.0;
+  for (int n = 0; n <= kPlaces; ++n) {
+    const double sd = least * std::pow(largest / least, static_cast<double>(n) / kPlaces);
+    const Eigen::ArrayXd with = known + 1.0 / (sd * sd);
+    best = std::max(best, 0.5 * (pull.array().square() / with - (sd * sd * with).log()).sum());
+  }
+  return best;
 }
 
 }  // namespace kolsky

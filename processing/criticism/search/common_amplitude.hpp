@@ -22,4 +22,13 @@ struct Amplitude {
 /// would be small by what they do not show.
 [[nodiscard]] Amplitude common_amplitude(const std::vector<QuadratureParts>& shots);
 
+/// Of shots whose parts are those of one amplitude, whatever each shot's phase: ln of the
+/// likelihood over that without any, the amplitude at its best and the phases integrated over.
+[[nodiscard]] double log_likelihood_of_common_amplitude(const std::vector<QuadratureParts>& shots);
+
+/// The same of shots whose strengths are drawn around none with one deviation, that at its best.
+/// @param pull, information  of each shot's strength
+[[nodiscard]] double log_likelihood_of_drawn_strengths(const Eigen::VectorXd& pull,
+                                                       const Eigen::VectorXd& information);
+
 }  // namespace kolsky

@@ -194,4 +194,26 @@ double log_chance_of_common_slopes(const Campaign& campaign, const SlopesByShot&
   return log_f_tail(of_means / noise, shots, belief + differences);
 }
 
+double log_chance_of_slopes(const Campaign& campaign, std::size_t gauge) {
+  if (!long_enough(campaign)) {
+    return 0.0;
+  }
+  const QuietParts parts = quiet_parts(campaign);
+  if (!(parts.covariance[gauge].front() > 0.0)) {
+    return 0.0;
+  }
+  const auto shots = static_cast<double>(campaign.shots.size());
+  const std::vector<double>& covariance = parts.covariance[gauge];
+  double square = 0.0;
+  double white_share = 0.0;
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const double slope = slope_before(campaign.shots[n], campaign.shots[n].strain[gauge]);
+    const double variance = slope_variance(covariance, parts.weights[n]);
+    square += slope * slope / variance;
+    white_share += covariance.front() * parts.weights[n].squaredNorm() / variance / shots;
+  }
+  const double belief = belief_in_spectrum(white_share, 0.0, 1.0);
+  return belief > 0.0 ? log_f_tail(square / shots, shots, belief) : 0.0;
+}
+
 }  // namespace kolsky

@@ -23,4 +23,8 @@ using SlopesByShot = std::vector<std::vector<double>>;  ///< by shot and gauge, 
 [[nodiscard]] double log_chance_of_common_slopes(const Campaign& campaign,
                                                  const SlopesByShot& less = {});
 
+/// ln of the chance that a gauge's own noise, as its quiet samples about their slopes have it,
+/// slopes as much before the pulses. @return 0 as above
+[[nodiscard]] double log_chance_of_slopes(const Campaign& campaign, std::size_t gauge);
+
 }  // namespace kolsky

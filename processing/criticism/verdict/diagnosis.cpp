@@ -11,7 +11,9 @@
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
+#include "processing/criticism/search/common_amplitude.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_noise.hpp"
 #include "processing/criticism/verdict/choice.hpp"
@@ -117,6 +119,7 @@ class Diagnostician {
     }
     make_alike(current);
     weigh_drifts(current);
+    weigh_hums(current);
     conclude(first, current);
     return std::move(diagnosis_);
   }
@@ -328,6 +331,77 @@ class Diagnostician {
         }
       }
     }
+  }
+
+  /// A drift of each shot's own is a hum of another phase in every shot, picked up by one gauge or
+  /// by several in unequal shares of which the source takes up the rest: where a hum at that gauge
+  /// does as well, or other gauges slope before the pulses, too, nothing tells the two apart.
+  void weigh_hums(const Studied& current) {
+    const std::string hum = find_effect("mains-hum")->about().id;
+    if (std::ranges::count(diagnosis_.effects, hum) > 0) {
+      return;
+    }
+    for (const std::string& id : diagnosis_.effects) {
+      const EffectUse* drift = current.model.find(id);
+      if (drift == nullptr || !drift->per_shot || drift->gauge.empty() ||
+          !is_addition(*drift->effect)) {
+        continue;
+      }
+      std::vector<std::string>& ties = diagnosis_.tied_with[id];
+      if (std::ranges::count(ties, hum) == 0 &&
+          (others_slope(drift->gauge) || hum_does_as_well(without(current, id), *drift))) {
+        ties.push_back(hum);
+      }
+    }
+  }
+
+  [[nodiscard]] bool others_slope(const std::string& gauge) const {
+    const auto& gauges = study_.campaign().bench.gauges;
+    for (std::size_t j = 0; j < gauges.size(); ++j) {
+      if (gauges[j].name != gauge && log_chance_of_slopes(study_.campaign(), j) < kSure) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// A hum has one amplitude in all shots and any phase, a drift any slope: the likelihoods of
+  /// both, to first order, which for additions is all there is.
+  bool hum_does_as_well(const Studied& neither, const EffectUse& drift) {
+    const double noise = noise_of(neither.misfit, study_.campaign().shots.size());
+    double of_drift = 0.0;
+    double of_hum = -HUGE_VAL;
+    for (const Candidate& candidate : candidates_for(neither, study_.campaign())) {
+      const EffectUse& use = candidate.use;
+      if (!use.per_shot || use.alike || !is_addition(*use.effect)) {
+        continue;
+      }
+      if (use.id() == drift.id()) {
+        const Direction direction = direction_of(candidate, neither, study_, 0);
+        of_drift = log_likelihood_of_drawn_strengths(direction.pull / noise,
+                                                     direction.information.diagonal() / noise);
+      } else if (use.effect->about().quadrature) {
+        const Direction direction = direction_of(candidate, neither, study_, 0);
+        of_hum = std::max(
+            of_hum, log_likelihood_of_common_amplitude(parts_at(direction, noise, drift.gauge)));
+      }
+    }
+    return 2.0 * of_hum > 2.0 * of_drift - kTie;
+  }
+
+  /// Of a hum's strengths, which go by parameter, shot and gauge, each shot's at one gauge.
+  [[nodiscard]] std::vector<QuadratureParts> parts_at(const Direction& direction, double noise,
+                                                      const std::string& gauge) const {
+    const auto& gauges = study_.campaign().bench.gauges;
+    const auto at = std::ranges::find(gauges, gauge, &Gauge::name) - gauges.begin();
+    const auto count = static_cast<Eigen::Index>(gauges.size());
+    const auto shots = static_cast<Eigen::Index>(study_.campaign().shots.size());
+    std::vector<QuadratureParts> parts;
+    for (Eigen::Index n = 0; n < shots; ++n) {
+      const std::vector<Eigen::Index> own{n * count + at, (shots + n) * count + at};
+      parts.push_back({direction.pull(own) / noise, direction.information(own, own) / noise});
+    }
+    return parts;
   }
 
   /// Backward: what others have made superfluous goes, but for so many of the last.
