@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
@@ -111,6 +112,31 @@ double beyond_run(const std::vector<double>& readings, const Run& run) {
   return std::copysign(1.0, extreme) * (least_squares(powers, values)[0] - extreme);
 }
 
+/// The least by which two of a record's values differ.
+double least_step(std::vector<double> readings) {
+  std::ranges::sort(readings);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 1; n < readings.size(); ++n) {
+    const double step = readings[n] - readings[n - 1];
+    least = step > 0.0 ? std::min(least, step) : least;
+  }
+  return least;
+}
+
+/// Whether a record comes to a run, or leaves it, within a few steps between codes: a pulse that
+/// was cut off comes and leaves steeply.
+bool level_beside(const std::vector<double>& readings, const Run& run, double most) {
+  constexpr std::size_t kSide = 8;
+  const std::size_t end = run.first + run.count;
+  const auto near = [&](std::size_t first) {
+    return std::ranges::all_of(std::span(readings).subspan(first, kSide), [&](double value) {
+      return std::abs(value - readings[run.first]) <= most;
+    });
+  };
+  return (run.first >= kSide && near(run.first - kSide)) ||
+         (end + kSide <= readings.size() && near(end));
+}
+
 /// A record that stays at its extreme far longer than it stays anywhere else near it has been cut
 /// off there, wherever its codes end: a table does not tell the converter's range. Where the steps
 /// are coarse and the noise is less, a smooth top stays at one code too: as the quiet record does.
@@ -133,9 +159,11 @@ std::size_t flat_top(const std::vector<double>& readings) {
   constexpr double kSteps = 2.0;
   const Run top = longest_run([&](double value) { return value == extreme; });
   const std::size_t at_extreme = top.count;
+  if (at_extreme < kLongRun || level_beside(readings, top, kSteps * least_step(readings))) {
+    return 0;
+  }
   const std::vector<double> steps = steps_of(readings);
-  if (at_extreme < kLongRun ||
-      (!steps.empty() && beyond_run(readings, top) < kSteps * steps.front())) {
+  if (!steps.empty() && beyond_run(readings, top) < kSteps * steps.front()) {
     return 0;
   }
   const auto cut_off = [&](double from) {

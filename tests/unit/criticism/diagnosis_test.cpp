@@ -634,5 +634,30 @@ TEST(BadData, IsNotARoundTopInCoarseSteps) {
   EXPECT_EQ(bad_data(shot), "");
 }
 
+/// A pulse of flat top between edges of 25 samples, in codes, at whose end noise shows.
+void put_trapezoid(std::vector<std::int32_t>& codes, double height) {
+  for (std::size_t n = 0; n < codes.size(); ++n) {
+    const double at = static_cast<double>(n);
+    const double edge = std::clamp(std::min(at - 300.0, 500.0 - at) / 25.0, 0.0, 1.0);
+    const double smooth = edge * edge * (3.0 - 2.0 * edge);
+    const bool between = edge == 0.0 || (edge == 1.0 && n >= 430);
+    const std::int32_t noise = between && n % 3 == 0 ? 1 : 0;
+    codes[n] = static_cast<std::int32_t>(std::lround(height * smooth)) - noise;
+  }
+}
+
+// The top of a pulse may stay at one code for as long as noise does not carry it to the next; there
+// it leaves to and fro, and not steeply.
+TEST(BadData, IsNotAFlatPulseInCoarseSteps) {
+  Made made = make(83, {});
+  Shot& shot = made.shots.front();
+  put_trapezoid(shot.channels[1].codes, 200.0);
+  EXPECT_EQ(bad_data(shot), "");
+  for (std::int32_t& code : shot.channels[1].codes) {
+    code = std::min(code, 150);
+  }
+  EXPECT_NE(bad_data(shot).find("cut off"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace kolsky
