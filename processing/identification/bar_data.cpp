@@ -296,17 +296,4 @@ void BarData::combine(const Eigen::VectorXd& weights) {
   judged_.push_back(combined(judged_));
 }
 
-std::vector<Complex> BarData::along_waves(std::size_t bin) const {
-  std::vector<Complex> along;
-  double squares = 0.0;
-  for (std::size_t shot = 0; shot < shots(); ++shot) {
-    along.push_back(std::conj(judged_[shot][0][bin]));
-    squares += std::norm(along.back());
-  }
-  for (Complex& share : along) {
-    share /= std::sqrt(squares);
-  }
-  return along;
-}
-
 }  // namespace kolsky

@@ -107,10 +107,6 @@ class BarData {
   [[nodiscard]] double power_of_unit() const {
     return static_cast<double>(places_.judged()) / places_.samples_per_place;
   }
-  /// What turns the shots' residuals in a judged bin into what a wrong model of the bar leaves of
-  /// all of them: it leaves its own share of each shot's wave, whatever that wave's shape.
-  /// @return by shot, of squares that add up to 1
-  [[nodiscard]] std::vector<Complex> along_waves(std::size_t bin) const;
 
  private:
   void choose_band(double asked_Hz);

@@ -263,7 +263,7 @@ std::optional<BarNoise> BarLikelihood::noise_by_residuals() {
     return std::nullopt;
   }
   const std::vector<Echoes> echoes = this->echoes(place_.at);
-  const std::vector<Eigen::MatrixXcd> scatter = scatter_of_residuals();
+  const std::vector<Eigen::MatrixXcd> scatter = scatter_of_residuals(echoes);
   BarNoise noise = data_.noise_with(expected_noise(weights_->noise, echoes, scatter));
   if (!moved(weights_->noise, noise)) {
     return std::nullopt;
@@ -302,10 +302,45 @@ std::vector<NoiseSpectrum::Seen> BarLikelihood::expected_noise(
   return seen;
 }
 
+/// What turns the shots' residuals in a bin into what a wrong model of the bar leaves of all of
+/// them: it leaves its own share of each shot's wave, whatever that wave's shape. The waves are
+/// those that all gauges together see, each by its noise: gauge 0's reading by itself has the noise
+/// in it that every residual has, too, and where a pulse is hardly more than that, residuals of the
+/// true model would lie along it. A model that is far off carries the others' readings to waves
+/// that are none, and leaves more than any noise does: by gauge 0 alone, then.
+/// @return by bin and shot, of squares that add up to 1
+std::vector<std::vector<Complex>> BarLikelihood::along_waves(
+    const std::vector<Echoes>& echoes) const {
+  constexpr double kFarOff = 2.0;  // of reduced chi2
+  const double chi2 = std::accumulate(place_.chi2.begin(), place_.chi2.end(), 0.0);
+  const bool far = chi2 > kFarOff * static_cast<double>(residuals());
+  const std::vector<std::vector<double>>& power = weights_->noise.power;
+  std::vector<std::vector<Complex>> list;
+  for (std::size_t k = 0; k < echoes.size(); ++k) {
+    std::vector<Complex>& along = list.emplace_back();
+    double squares = 0.0;
+    for (std::size_t shot = 0; shot < data_.shots(); ++shot) {
+      Complex wave = data_.judged(shot, 0)[k] / power[0][k];
+      for (Eigen::Index j = 0; j < others() && !far; ++j) {
+        const auto gauge = static_cast<std::size_t>(j) + 1;
+        wave += std::conj(echoes[k].mean[j]) * data_.judged(shot, gauge)[k] / power[gauge][k];
+      }
+      along.push_back(std::conj(wave));
+      squares += std::norm(wave);
+    }
+    for (Complex& share : along) {
+      share /= std::sqrt(squares);
+    }
+  }
+  return list;
+}
+
 /// Mean over what is not along the shots' waves: what a model lacks leaves next to nothing there.
-std::vector<Eigen::MatrixXcd> BarLikelihood::scatter_of_residuals() const {
+std::vector<Eigen::MatrixXcd> BarLikelihood::scatter_of_residuals(
+    const std::vector<Echoes>& echoes) const {
   const Eigen::Index others = this->others();
   const std::size_t shots = data_.shots();
+  const std::vector<std::vector<Complex>> waves = along_waves(echoes);
   std::vector<Eigen::MatrixXcd> list;
   Eigen::MatrixXcd residuals(others, static_cast<Eigen::Index>(shots));
   for (std::size_t k = 0; k < data_.judged_path().size(); ++k) {
@@ -316,9 +351,8 @@ std::vector<Eigen::MatrixXcd> BarLikelihood::scatter_of_residuals() const {
       }
     }
     Eigen::MatrixXcd& scatter = list.emplace_back(residuals * residuals.adjoint());
-    const std::vector<Complex> along = data_.along_waves(k);
     const Eigen::VectorXcd common =
-        residuals * Eigen::Map<const Eigen::VectorXcd>(along.data(), residuals.cols());
+        residuals * Eigen::Map<const Eigen::VectorXcd>(waves[k].data(), residuals.cols());
     scatter -= common * common.adjoint();
     scatter /= static_cast<double>(shots) - 1.0;
   }
@@ -664,14 +698,14 @@ std::vector<std::size_t> BarLikelihood::octaves() const {
   return firsts;
 }
 
-std::vector<OctaveLeft> BarLikelihood::left_over() const {
+std::vector<OctaveLeft> BarLikelihood::left_over() {
   const auto shots = static_cast<Eigen::Index>(data_.shots());
   const Eigen::MatrixXd own = without_nuisances(place_.white_residuals, shots);
+  const std::vector<std::vector<Complex>> waves = along_waves(echoes(place_.at));
   Eigen::VectorXd alike(rows());
   for (Eigen::Index row = 0; row < rows(); row += 2 * others()) {
-    const std::vector<Complex> along =
-        data_.along_waves(static_cast<std::size_t>(row / (2 * others())));
-    const Eigen::Map<const Eigen::VectorXcd> shares(along.data(), shots);
+    const Eigen::Map<const Eigen::VectorXcd> shares(
+        waves[static_cast<std::size_t>(row / (2 * others()))].data(), shots);
     const auto real = own.middleRows(row, others());
     const auto imaginary = own.middleRows(row + others(), others());
     alike.segment(row, others()) = real * shares.real() - imaginary * shares.imag();

@@ -80,7 +80,7 @@ class BarLikelihood {
 
   /// What is left at the place looked at last, every shot by itself, in what the weights take for
   /// noise.
-  [[nodiscard]] std::vector<OctaveLeft> left_over() const;
+  [[nodiscard]] std::vector<OctaveLeft> left_over();
   /// How the gradient's sum over the shots looked at last scatters.
   struct Scatter {
     Eigen::MatrixXd by_noise;  ///< the gauges'
@@ -118,7 +118,10 @@ class BarLikelihood {
   };
   [[nodiscard]] std::vector<Echoes> echoes(std::span<const double> at);
   [[nodiscard]] Whitening whitening(std::span<const double> at, BarNoise noise);
-  [[nodiscard]] std::vector<Eigen::MatrixXcd> scatter_of_residuals() const;
+  [[nodiscard]] std::vector<std::vector<Complex>> along_waves(
+      const std::vector<Echoes>& echoes) const;
+  [[nodiscard]] std::vector<Eigen::MatrixXcd> scatter_of_residuals(
+      const std::vector<Echoes>& echoes) const;
   [[nodiscard]] std::vector<NoiseSpectrum::Seen> expected_noise(
       const BarNoise& noise, const std::vector<Echoes>& echoes,
       const std::vector<Eigen::MatrixXcd>& scatter) const;
