@@ -185,6 +185,16 @@ TrueSpecimen draw_specimen(Random& random, double bar_radius_m, bool stiff) {
   return specimen;
 }
 
+/// A rubber in its place, of the same size.
+void soften(Random& random, TrueSpecimen& specimen) {
+  specimen.density_kg_m3 = filed(uniform(random, 900.0, 1150.0), 1.0);
+  specimen.poisson_ratio = filed(uniform(random, 0.45, 0.49), 1e-3);
+  specimen.E1_Pa = 10e6 * std::pow(6.0, uniform(random, 0.0, 1.0));
+  specimen.E2_Pa = specimen.E1_Pa * uniform(random, 0.5, 2.0);
+  const double relaxation_s = uniform(random, 10e-6, 60e-6);
+  specimen.eta2_Pa_s = relaxation_s * (specimen.E1_Pa + specimen.E2_Pa);
+}
+
 std::vector<TrueGauge> draw_split_gauges(Random& random, int count, double in_m, double out_m) {
   std::vector<TrueGauge> gauges;
   for (int g = 0; g < count; ++g) {
@@ -290,6 +300,9 @@ void draw_split(Random& random, Campaign& campaign) {
                               : filed(world.length_m * uniform(random, 0.7, 1.0), 1e-2);
   split.specimen = draw_specimen(random, world.radius_m, world.material.elastic);
   split.specimen.solid = wishes.solid_specimen;
+  if (wishes.soft_specimen) {
+    soften(random, split.specimen);
+  }
   world.gauges = draw_split_gauges(random, wishes.gauges, world.length_m, split.output_length_m);
   campaign.split = split;
   draw_shots(random, world, wishes.shots, uniform(random, 0.0, 1.0) < 0.5, 110e-6);

@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
   app.add_flag("--elastic", arguments.wishes.elastic, "a metal bar");
   app.add_flag("--solid-specimen", arguments.wishes.solid_specimen,
                "axisymmetric, with its own mass and friction; of split bars");
+  app.add_flag("--soft-specimen", arguments.wishes.soft_specimen, "a rubber; of split bars");
   app.add_flag("--tolerances", arguments.tolerances,
                "file deviations (_sd) and draw the true numbers within them");
   app.add_option("--form", arguments.form)->check(CLI::IsMember({"tables", "captures", "both"}));

@@ -48,6 +48,7 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
   wishes.seed = random() % 1000000000u;
   wishes.measured_noise = plan.measured_noise;
   wishes.split = plan.split;
+  wishes.soft_specimen = plan.soft;
   if (plan.quick) {
     wishes.shots = 4;
     wishes.gauges = 3;
@@ -68,7 +69,7 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
     wishes.bits = 8;
     wishes.noise_strain = uniform(random, 10e-6, 16e-6);
   }
-  wishes.elastic = u > 0.9;
+  wishes.elastic = u > 0.9 && !plan.soft;
   return wishes;
 }
 
