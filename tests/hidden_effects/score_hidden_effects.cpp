@@ -42,8 +42,8 @@ struct Settings {
 };
 
 /// As `kolsky diagnose --without` takes them.
-constexpr std::array kSafeguards{"search-count", "held-out", "shot-agreement", "own-strengths",
-                                 "fitted-noise", "backward", "unknown"};
+constexpr std::array kSafeguards{"search-count", "held-out",   "shot-agreement", "own-strengths",
+                                 "fitted-noise", "slow-noise", "backward",       "unknown"};
 
 struct Scores {
   std::mutex mutex;
@@ -287,7 +287,8 @@ int main(int argc, char** argv) {
   app.add_option("--noise", settings.noise_table,
                  "a record whose quiet beginning is used as noise: TABLE.csv:COLUMN:ROWS");
   app.add_option("--bench", settings.only_bench, "only this one, as a failed case's id has it");
-  app.add_flag("--split", settings.plan.split, "split bars in place of bars");
+  CLI::Option* split = app.add_flag("--split", settings.plan.split, "split bars in place of bars");
+  app.add_flag("--soft", settings.plan.soft, "with rubbers between them")->needs(split);
   app.add_flag("--refit", settings.refit, "fit again with what is named, judge the moduli");
   app.add_flag("--further", settings.further, "make the experiments proposed to break ties");
   app.add_flag("--safeguards", settings.safeguards,

@@ -13,6 +13,8 @@ const std::vector<NamedSafeguard>& named_safeguards() {
        &Safeguards::own_strengths},
       {"fitted-noise", "what does not repeat is noise, not the quiet part alone",
        &Safeguards::fitted_noise},
+      {"slow-noise", "what is claimed is more than slow noise that hangs together",
+       &Safeguards::slow_noise},
       {"backward", "what was found first is sought again beside the rest", &Safeguards::backward},
       {"unknown", "where misfit remains that nothing explains, nothing is named",
        &Safeguards::unknown}};

@@ -13,6 +13,7 @@ struct Safeguards {
   bool shot_agreement = true;
   bool own_strengths = true;
   bool fitted_noise = true;
+  bool slow_noise = true;
   bool backward = true;
   bool unknown = true;
 };

@@ -101,7 +101,7 @@ double Search::with_search(double log_p) const {
 }
 
 double Search::without_search(const Refit& refit) const {
-  return refit.products || refit.slow_log_p ? with_search(refit.log_p) : refit.log_p;
+  return refit.products || refit.slow ? with_search(refit.log_p) : refit.log_p;
 }
 
 double Search::log_trials() const {
@@ -140,7 +140,33 @@ std::vector<Refit> Search::refits() {
   }
   rate_in_order(list);
   refine(list);
+  weigh_beside_slow_noise(list);
   return list;
+}
+
+/// What would be named must gain as much where slow noise counts no more than it tells. Additions
+/// are judged by that noise already.
+void Search::weigh_beside_slow_noise(std::vector<Refit>& list) {
+  constexpr double kOrdinary = -3.0;
+  if (!safeguards_.slow_noise || base_.misfit.chi2_reduced > kFarOff) {
+    return;
+  }
+  const std::size_t per_shot = study_.residuals().per_shot();
+  for (Refit& refit : list) {
+    if (with_search(refit.log_p) > kOrdinary ||
+        is_addition(*candidates_[refit.candidate].use.effect)) {
+      continue;
+    }
+    if (!slow_weights_) {
+      slow_weights_ = slow_weights(study_, base_);
+    }
+    for (const SlowWeights& slow : *slow_weights_) {
+      const Studied with = slow.refitted(refit.studied, per_shot);
+      const double gain = slow.refitted(base_, per_shot).fit.objective() - with.fit.objective();
+      const double scatter = scatter_over_noise(with, candidates_[refit.candidate].id(), per_shot);
+      refit.log_p = std::max(refit.log_p, chance_of(refit, gain / refit.noise / scatter));
+    }
+  }
 }
 
 /// A strength that is less than its own deviation is none, whatever fits better with it. (That of a
@@ -166,23 +192,23 @@ bool Search::admissible(Refit& refit) {
 }
 
 bool Search::confirmed(Refit& refit) {
-  const double chance = slow_chance(refit.candidate);
-  if (slow_noise_excluded(chance, Claim::fresh)) {
-    refit.slow_log_p = chance;
+  const SlowChance chance = slow_chance(refit.candidate);
+  if (slow_noise_excluded(chance.least(), Claim::fresh)) {
+    refit.slow = chance;
     return true;
   }
   return own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
                                  study_.campaign(), Claim::fresh);
 }
 
-/// ln of the chance of the best of all additions of each shot's own on slow noise.
-double Search::slow_chance(std::size_t index) {
+/// ln of the chances of the best of all additions of each shot's own on slow noise.
+SlowChance Search::slow_chance(std::size_t index) {
   const Candidate& candidate = candidates_[index];
   const Direction& direction = directions_[index];
   // Far from the records, what repeats is most of what slow noise would be.
   if (!may_be_slow_noise(candidate) || direction.freedom < 1.0 ||
       base_.misfit.chi2_reduced > kFarOff) {
-    return 0.0;
+    return {};
   }
   if (const auto known = slow_chances_.find(index); known != slow_chances_.end()) {
     return known->second;
@@ -196,21 +222,45 @@ double Search::slow_chance(std::size_t index) {
       kinds.insert(other.id());
     }
   }
-  const double chance =
-      slow_noise_->log_chance(candidate, direction) + std::log(static_cast<double>(kinds.size()));
+  const double among = std::log(2.0 * static_cast<double>(kinds.size()));
+  const SlowNoise::Addition own{candidate, direction};
+  SlowChance chance{slow_noise_->log_chance({&own, 1}) + among};
+  std::vector<SlowNoise::Addition> others = at_other_gauges(candidate);
+  if (!slow_noise_excluded(chance.alone, Claim::fresh) && !others.empty()) {
+    const double beside = slow_noise_->log_chance_beside(own, others);
+    others.push_back(own);
+    chance.with_others = std::max(beside, slow_noise_->log_chance(others)) + among;
+  }
   slow_chances_.emplace(index, chance);
   return chance;
 }
 
+/// The same addition at other gauges.
+std::vector<SlowNoise::Addition> Search::at_other_gauges(const Candidate& own) const {
+  std::vector<SlowNoise::Addition> list;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const EffectUse& use = candidates_[i].use;
+    if (use.effect == own.use.effect && use.gauge != own.use.gauge &&
+        may_be_slow_noise(candidates_[i]) && directions_[i].freedom >= 1.0) {
+      list.push_back({candidates_[i], directions_[i]});
+    }
+  }
+  return list;
+}
+
 void Search::dismiss(const Refit& refit) {
   const EffectUse& use = candidates_[refit.candidate].use;
-  dismissed_[use.id()] = use.per_shot ? "unconfirmed" : "rejected";
+  const double noise = noise_of(refit.studied.misfit, study_.campaign().shots.size());
+  const double gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+  const double chance = log_gain_tail(gain, refit.freedom, false);
+  Dismissed& own = dismissed_[use.id()];
+  own.verdict = use.per_shot ? "unconfirmed" : "rejected";
+  own.gain = std::max(own.gain, gain);
+  own.chance = std::min(own.chance, chance);
   if (!use.per_shot || !is_addition(*use.effect) || !fits_the_signal(refit)) {
     return;
   }
-  const double noise = noise_of(refit.studied.misfit, study_.campaign().shots.size());
-  const double gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
-  const double evidence = equivalent_square(log_gain_tail(gain, refit.freedom, false));
+  const double evidence = equivalent_square(chance);
   if (!unconfirmed_ || evidence > unconfirmed_->evidence) {
     unconfirmed_ = {refit.candidate, evidence};
   }
@@ -273,7 +323,7 @@ void Search::refine(std::vector<Refit>& list) {
       if (admissible(own)) {
         return false;
       }
-      dismissed_[candidates_[own.candidate].id()] = "rejected";
+      dismiss(own);
       return true;
     });
     rate_in_order(list);
@@ -369,7 +419,7 @@ void Search::add_beyond_slow_noise(std::vector<std::size_t>& chosen) {
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     if (may_be_slow_noise(candidates_[i]) && seen.insert(candidates_[i].id()).second &&
-        slow_noise_excluded(slow_chance(i), Claim::fresh)) {
+        slow_noise_excluded(slow_chance(i).least(), Claim::fresh)) {
       chosen.push_back(i);
     }
   }
@@ -642,9 +692,10 @@ void Search::rate(std::vector<Refit>& list) const {
       // little.
       refit.evidence = std::max(refit.evidence, equivalent_square(refit.log_p));
     }
-    if (refit.slow_log_p) {
-      // The noise that it is weighed by holds it: what remains without tells more.
-      refit.evidence = equivalent_square(*refit.slow_log_p);
+    if (refit.slow) {
+      // The noise that it is weighed by holds it: what remains without tells more. A rival it meets
+      // by itself.
+      refit.evidence = equivalent_square(refit.slow->alone);
     }
   }
 }
@@ -659,10 +710,10 @@ double Search::chance_of(const Refit& refit, double gain) const {
       return c.id() == use.id() && c.use.per_shot && !c.use.alike;
     });
     const double chance = refit.products->log_p + std::log(static_cast<double>(variants));
-    return std::min(chance, refit.slow_log_p.value_or(0.0)) - std::log(trials_);
+    return std::min(chance, refit.slow ? refit.slow->least() : 0.0) - std::log(trials_);
   }
-  if (refit.slow_log_p) {
-    return *refit.slow_log_p - std::log(trials_);
+  if (refit.slow) {
+    return refit.slow->least() - std::log(trials_);
   }
   if (use.per_shot || gain <= 0.0) {
     return log_gain_tail(gain, refit.freedom, refit.one_sided);

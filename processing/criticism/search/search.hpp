@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,11 +11,20 @@
 #include "processing/criticism/search/product_test.hpp"
 #include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/slow_noise.hpp"
+#include "processing/criticism/search/slow_weights.hpp"
 
 namespace kolsky {
 
 /// Degrees of freedom from which on noise counts as known exactly: Student's t is normal there.
 inline constexpr double kKnownWell = 1e4;
+
+/// ln of the chance that slow noise does as much as an addition of each shot's own.
+struct SlowChance {
+  double alone = 0.0;
+  double with_others = 0.0;  ///< where the same at other gauges is there, too
+
+  [[nodiscard]] double least() const { return std::min(alone, with_others); }
+};
 
 /// A candidate refitted in full beside the model.
 struct Refit {
@@ -26,8 +36,8 @@ struct Refit {
   double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.
   std::optional<ProductTest> products = std::nullopt;
-  /// ln of the chance that slow noise does as much by itself, where that is what confirms them.
-  std::optional<double> slow_log_p = std::nullopt;
+  /// Where that is what confirms them.
+  std::optional<SlowChance> slow = std::nullopt;
   double noise = 1.0;       ///< what the objective has of it per residual: of all refits the best's
   double over_noise = 0.0;  ///< gain of the objective, over the noise
   double beside = 1.0;      ///< share of it beside something slow that nothing confirms
@@ -72,8 +82,13 @@ class Search {
   /// The candidates worth it, refitted; the best first.
   [[nodiscard]] std::vector<Refit> refits();
 
-  /// What was refitted and is no explanation, with what became of it ("unconfirmed", "rejected").
-  [[nodiscard]] const std::map<std::string, std::string>& dismissed() const { return dismissed_; }
+  /// What was refitted and is no explanation.
+  struct Dismissed {
+    std::string verdict;  ///< "unconfirmed" or "rejected"
+    double gain = 0.0;    ///< over the noise; first order may have promised far more
+    double chance = 0.0;  ///< ln of that of its gain on noise, the search not counted
+  };
+  [[nodiscard]] const std::map<std::string, Dismissed>& dismissed() const { return dismissed_; }
 
  private:
   void from_other_starts(std::size_t index, const Composition& composition, std::size_t worker,
@@ -100,9 +115,11 @@ class Search {
   void refine(std::vector<Refit>& list);
   [[nodiscard]] bool admissible(Refit& refit);
   [[nodiscard]] bool confirmed(Refit& refit);
-  [[nodiscard]] double slow_chance(std::size_t candidate);
+  [[nodiscard]] SlowChance slow_chance(std::size_t candidate);
+  [[nodiscard]] std::vector<SlowNoise::Addition> at_other_gauges(const Candidate& own) const;
   [[nodiscard]] bool stands_out(const Refit& refit) const;
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
+  void weigh_beside_slow_noise(std::vector<Refit>& list);
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
   void dismiss(const Refit& refit);
@@ -117,8 +134,9 @@ class Search {
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   double trials_ = 1.0;
-  std::optional<SlowNoise> slow_noise_;         ///< once it is asked for
-  std::map<std::size_t, double> slow_chances_;  ///< by candidate
+  std::optional<SlowNoise> slow_noise_;                   ///< once it is asked for
+  std::map<std::size_t, SlowChance> slow_chances_;        ///< by candidate
+  std::optional<std::vector<SlowWeights>> slow_weights_;  ///< likewise
   /// Strengths of single shots that explain most of all and that nothing confirms: slow noise, or
   /// something slow that the library lacks.
   struct Unconfirmed {
@@ -126,7 +144,7 @@ class Search {
     double evidence = 0.0;
   };
   std::optional<Unconfirmed> unconfirmed_;
-  std::map<std::string, std::string> dismissed_;
+  std::map<std::string, Dismissed> dismissed_;
 };
 
 }  // namespace kolsky

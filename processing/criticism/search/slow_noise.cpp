@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <span>
 #include <utility>
@@ -11,7 +10,7 @@
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/noise/smooth_power.hpp"
 #include "processing/criticism/search/search_trials.hpp"
-#include "processing/reduction/pulse.hpp"
+#include "processing/criticism/search/slow_waves.hpp"
 
 namespace kolsky {
 
@@ -72,122 +71,41 @@ Eigen::VectorXd quiet_rows_of(const CampaignShot& shot,
   return rows;
 }
 
-/// What waves of a few frequencies at one gauge each are in what is looked at, their cosine and
-/// sine parts.
-struct Carried {
-  std::vector<double> frequency;                 ///< in judged bins
-  std::vector<std::vector<Eigen::MatrixXd>> at;  ///< by gauge and frequency, two columns
-};
-
-std::vector<double> wave(const CampaignShot& shot, double w_rad_s, double phase) {
-  std::vector<double> record;
-  for (const double t : shot.facts.time_s) {
-    record.push_back(std::cos(w_rad_s * t - phase));
-  }
-  const double baseline = quiet_before(record, shot.quiet_samples).baseline;
-  for (double& value : record) {
-    value -= baseline;
-  }
-  return record;
-}
-
-/// Closer than the bins, so that what is slower than the window is there.
-Carried carried(const Studied& base, Study& study, Eigen::Index lowest) {
-  constexpr std::size_t kPerBin = 4;
-  constexpr std::size_t kBins = 16;  ///< what is beyond the lowest leaks into them, too
-  WhiteResiduals& residuals = study.residuals();
-  const CampaignShot& shot = study.campaign().shots.front();
-  const std::size_t gauges = study.campaign().gauges();
-  Carried out;
-  for (std::size_t q = 1; q <= kPerBin * kBins; ++q) {
-    out.frequency.push_back(static_cast<double>(q) / static_cast<double>(kPerBin));
-  }
-  const std::size_t count = out.frequency.size();
-  const Eigen::Index rows = lowest + kQuietRows * static_cast<Eigen::Index>(gauges);
-  out.at.assign(gauges, std::vector<Eigen::MatrixXd>(count, Eigen::MatrixXd(rows, 2)));
-  study.executor().run(count * gauges, [&](std::size_t i, std::size_t worker) {
-    const std::size_t j = i / count;
-    const std::size_t q = i % count;
-    const double w = 2.0 * std::numbers::pi * out.frequency[q] * residuals.band().bin_width_Hz;
-    std::vector<std::vector<double>> records(gauges,
-                                             std::vector<double>(shot.strain[j].size(), 0.0));
-    for (const int part : {0, 1}) {
-      records[j] = wave(shot, w, 0.5 * std::numbers::pi * part);
-      out.at[j][q].col(part) << residuals
-                                    .whitened_noise(base.composition, base.fit.theta, records,
-                                                    worker)
-                                    .head(lowest),
-          quiet_rows_of(shot, records);
-    }
-  });
-  return out;
-}
-
-/// Spectra of the gauges as they are known, as white noise and the rest.
-std::vector<SmoothPower> spectra_of(const WhiteResiduals& residuals) {
-  std::vector<SmoothPower> list;
-  for (std::size_t j = 0; j < residuals.campaign().gauges(); ++j) {
-    std::vector<double> power;
-    for (std::size_t k = 0; k < residuals.band().bins_judged; ++k) {
-      power.push_back(residuals.noise().power(j, k));
-    }
-    // A wave of unit amplitude has this power at its bin: it stands for those up to the next.
-    const auto judged = static_cast<double>(residuals.band().judged);
-    const double unit = 2.0 * power.back() / (judged * judged);
-    const double last = power.back();
-    for (double& value : power) {
-      value /= last;
-    }
-    const SmoothPower smooth = smooth_power(power);
-    list.push_back({unit * smooth.white, unit * smooth.pink, unit * smooth.walk});
-  }
-  return list;
-}
-
 /// A wave's unit of power, spread over all frequencies, as variance of each of a record's samples.
 double white_per_sample(const JudgedBand& band) {
   return 0.5 * static_cast<double>(band.judged * band.decimation);
-}
-
-double slow_power(const SmoothPower& power, double f) {
-  return power.at(f) - power.white;
-}
-
-/// Covariance of residuals, of noise that gauges have of their own.
-template <class Power>
-Eigen::MatrixXd covariance_of_own(const Carried& carried, const Power& power) {
-  const double step = carried.frequency.front();
-  const Eigen::Index size = carried.at.front().front().rows();
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t j = 0; j < carried.at.size(); ++j) {
-    for (std::size_t q = 0; q < carried.frequency.size(); ++q) {
-      const Eigen::MatrixXd& both = carried.at[j][q];
-      sum.noalias() += step * power(j, carried.frequency[q]) * both * both.transpose();
-    }
-  }
-  return sum;
-}
-
-/// The same where all gauges have the same noise, each as much of it as its power says.
-template <class Power>
-Eigen::MatrixXd covariance_of_common(const Carried& carried, const Power& power) {
-  const double step = carried.frequency.front();
-  const Eigen::Index size = carried.at.front().front().rows();
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t q = 0; q < carried.frequency.size(); ++q) {
-    Eigen::MatrixXd both = Eigen::MatrixXd::Zero(size, 2);
-    for (std::size_t j = 0; j < carried.at.size(); ++j) {
-      both += std::sqrt(power(j, carried.frequency[q])) * carried.at[j][q];
-    }
-    sum.noalias() += step * both * both.transpose();
-  }
-  return sum;
 }
 
 /// ln of the chance of more than this, of a variable of that mean and variance (a gamma variable).
 double log_tail(double value, double mean, double variance) {
   const double scale = variance / mean;
   return log_chi2_tail(2.0 * std::max(value, 0.0) / scale, 2.0 * mean / scale);
+}
+
+/// Of the waves, what is looked at: the lowest residuals, and below them the quiet parts.
+SlowWaves seen_of(SlowWaves waves, const CampaignShot& shot, Eigen::Index lowest) {
+  const std::size_t gauges = waves.at.size();
+  for (std::size_t j = 0; j < gauges; ++j) {
+    for (std::size_t q = 0; q < waves.at[j].size(); ++q) {
+      const Eigen::Index rows = lowest + kQuietRows * static_cast<Eigen::Index>(gauges);
+      Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(rows, 2);
+      seen.topRows(lowest) = waves.at[j][q].topRows(lowest);
+      for (const int part : {0, 1}) {
+        seen.col(part).segment(lowest + kQuietRows * static_cast<Eigen::Index>(j), kQuietRows) =
+            quiet_rows(shot, wave_of(waves, shot, q, part));
+      }
+      waves.at[j][q] = std::move(seen);
+    }
+  }
+  return waves;
+}
+
+double strengths_of(std::span<const Eigen::MatrixXd> columns) {
+  double sum = 0.0;
+  for (const Eigen::MatrixXd& own : columns) {
+    sum += static_cast<double>(own.cols());
+  }
+  return sum;
 }
 
 }  // namespace
@@ -209,12 +127,12 @@ SlowNoise::SlowNoise(const Studied& base, Study& study)
             quiet_rows_of(shot, additions_of(base.composition, base.fit.theta, campaign_, at));
   }
 
-  const std::vector<SmoothPower> spectra = spectra_of(residuals);
-  const Carried waves = carried(base, study, lowest_);
+  const std::vector<SmoothPower> spectra = spectra_of_waves(residuals);
+  const SlowWaves waves = seen_of(slow_waves(base, study), campaign_.shots.front(), lowest_);
   // Of white noise the quiet parts hold much that is quicker than these waves.
   const Eigen::MatrixXd white =
-      covariance_of_own(waves, [&](std::size_t j, double) { return spectra[j].white; });
-  const SymmetricEigen lowest(white.topLeftCorner(lowest_, lowest_));
+      parts_of_own(waves, [&](std::size_t j, double) { return spectra[j].white; });
+  const SymmetricEigen lowest(white.topRows(lowest_) * white.topRows(lowest_).transpose());
   constexpr double kNothing = 1e-9;
   const Eigen::VectorXd variances =
       lowest.eigenvalues().cwiseMax(kNothing * lowest.eigenvalues().maxCoeff());
@@ -227,23 +145,25 @@ SlowNoise::SlowNoise(const Studied& base, Study& study)
   }
   const auto power = [&](std::size_t j, double f) { return slow_power(spectra[j], f); };
   for (const bool own : {true, false}) {
-    const Eigen::MatrixXd slow =
-        own ? covariance_of_own(waves, power) : covariance_of_common(waves, power);
+    const Eigen::MatrixXd parts = own ? parts_of_own(waves, power) : parts_in_common(waves, power);
+    const Eigen::MatrixXd slow = parts * parts.transpose();
     const SymmetricEigen both(whiten * slow * whiten.transpose());
     forms_.push_back(
         {own, both.eigenvectors().transpose() * whiten, both.eigenvalues().cwiseMax(0.0)});
   }
 }
 
-SlowNoise::Columns SlowNoise::columns_of(const Candidate& candidate,
-                                         const Direction& direction) const {
-  Columns columns(static_cast<std::size_t>(seen_.cols()), Eigen::MatrixXd(rows_, 0));
-  const Composition composition(with(base_.model, candidate, false), campaign_);
+SlowNoise::Columns SlowNoise::none() const {
+  return Columns(campaign_.shots.size(), Eigen::MatrixXd(rows_, 0));
+}
+
+void SlowNoise::add_columns(const Addition& addition, Columns& columns) const {
+  const Composition composition(with(base_.model, addition.candidate, false), campaign_);
   const std::vector<double> theta = carry(base_.composition, base_.fit.theta, composition);
   Eigen::Index strength = 0;
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
-    if (composition.uses()[number.use].id() != candidate.id()) {
+    if (composition.uses()[number.use].id() != addition.candidate.id()) {
       continue;
     }
     const auto at = static_cast<std::size_t>(number.shot);
@@ -251,19 +171,19 @@ SlowNoise::Columns SlowNoise::columns_of(const Candidate& candidate,
     moved[i] += 1.0;
     Eigen::MatrixXd& own = columns[at];
     own.conservativeResize(Eigen::NoChange, own.cols() + 1);
-    own.rightCols(1) << direction.columns.col(strength).segment(number.shot * per_shot_, lowest_),
+    own.rightCols(1) << addition.direction.columns.col(strength).segment(number.shot * per_shot_,
+                                                                         lowest_),
         quiet_rows_of(campaign_.shots[at], additions_of(composition, theta, campaign_, at)) -
             quiet_rows_of(campaign_.shots[at], additions_of(composition, moved, campaign_, at));
     ++strength;
   }
-  return columns;
 }
 
-double SlowNoise::at_best_levels(const Form& form, const Eigen::MatrixXd& seen, Levels& levels) {
+SlowNoise::Levels SlowNoise::best_levels(const Eigen::ArrayXd& slow, const Eigen::MatrixXd& seen,
+                                         Levels levels) {
   constexpr int kMostSteps = 60;
   constexpr double kSettled = 1e-3;
   const Eigen::ArrayXd power = seen.rowwise().squaredNorm() / static_cast<double>(seen.cols());
-  const Eigen::ArrayXd slow = form.slow;
   // Expectation and maximisation, as of smooth spectra.
   for (int step = 0; step < kMostSteps; ++step) {
     const Eigen::ArrayXd per_total = (levels.white + levels.slow * slow).inverse();
@@ -276,21 +196,28 @@ double SlowNoise::at_best_levels(const Form& form, const Eigen::MatrixXd& seen, 
       break;
     }
   }
-  const Eigen::ArrayXd total = levels.white + levels.slow * slow;
-  return static_cast<double>(seen.cols()) * (power / total + total.log()).sum();
+  return levels;
 }
 
-SlowNoise::Gain SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen,
-                                const Columns& columns) const {
+double SlowNoise::twice_log_likelihood(const Eigen::ArrayXd& slow, const Eigen::MatrixXd& seen,
+                                       const Levels& levels) {
+  const Eigen::ArrayXd power = seen.rowwise().squaredNorm() / static_cast<double>(seen.cols());
+  const Eigen::ArrayXd total = levels.white + levels.slow * slow;
+  return -static_cast<double>(seen.cols()) * (power / total + total.log()).sum();
+}
+
+SlowNoise::Fitted SlowNoise::fitted(const Form& form, const Eigen::MatrixXd& seen,
+                                    const Columns& columns, Levels levels) {
   constexpr int kIterations = 3;
   constexpr double kRidge = 1e-9;
-  Gain gain;
-  const double without = at_best_levels(form, seen, gain.without);
-  gain.with = gain.without;
+  if (columns.front().cols() == 0) {
+    levels = best_levels(form.slow, seen, levels);
+    return {twice_log_likelihood(form.slow, seen, levels), levels};
+  }
+  Fitted out;
   Eigen::MatrixXd left(seen.rows(), seen.cols());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const Eigen::VectorXd weights =
-        (gain.with.white + gain.with.slow * form.slow.array()).inverse();
+    const Eigen::VectorXd weights = (levels.white + levels.slow * form.slow.array()).inverse();
     for (Eigen::Index n = 0; n < seen.cols(); ++n) {
       const Eigen::MatrixXd& own = columns[static_cast<std::size_t>(n)];
       const Eigen::MatrixXd weighted = weights.asDiagonal() * own;
@@ -298,32 +225,45 @@ SlowNoise::Gain SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen,
       normal.diagonal() *= 1.0 + kRidge;
       left.col(n) = seen.col(n) - own * solve_symmetric(normal, weighted.transpose() * seen.col(n));
     }
-    const double with = at_best_levels(form, left, gain.with);
-    gain.twice_log_likelihood = std::max(gain.twice_log_likelihood, without - with);
+    levels = best_levels(form.slow, left, levels);
+    out.twice_log_likelihood =
+        std::max(out.twice_log_likelihood, twice_log_likelihood(form.slow, left, levels));
+    out.levels = levels;
   }
-  return gain;
+  return out;
+}
+
+SlowNoise::Columns SlowNoise::turned(const Form& form, Columns columns) {
+  for (Eigen::MatrixXd& own : columns) {
+    own = form.turn * own;
+  }
+  return columns;
+}
+
+double SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen, const Columns& columns,
+                       const Columns& beside) const {
+  const Fitted without = fitted(form, seen, beside, {});
+  const Fitted with = fitted(form, seen, columns, without.levels);
+  return std::max(0.0, with.twice_log_likelihood - without.twice_log_likelihood);
 }
 
 double SlowNoise::log_chance(const Form& form, Columns columns) const {
-  double strengths = 0.0;
-  for (Eigen::MatrixXd& own : columns) {
-    own = form.turn * own;
-    strengths += static_cast<double>(own.cols());
-  }
-  const Gain found = gain(form, form.turn * seen_, columns);
+  columns = turned(form, std::move(columns));
+  const Eigen::MatrixXd seen = form.turn * seen_;
+  const double found = gain(form, seen, columns, none());
   // Even if the levels of noise were known.
   constexpr double kOrdinary = -5.0;
-  const double known = log_chi2_tail(found.twice_log_likelihood, strengths);
+  const double known = log_chi2_tail(found, strengths_of(columns));
   if (known > kOrdinary) {
     return known;
   }
   // Of what is named nothing stays: what wanders as quickly as it turns is something else.
   constexpr double kStays = 0.1;
-  if (form.own && found.with.slow > kStays * found.without.slow) {
+  const Levels without = fitted(form, seen, none(), {}).levels;
+  if (form.own && fitted(form, seen, columns, without).levels.slow > kStays * without.slow) {
     return 0.0;
   }
-  const Eigen::VectorXd deviation =
-      (found.without.white + found.without.slow * form.slow.array()).sqrt();
+  const Eigen::VectorXd deviation = (without.white + without.slow * form.slow.array()).sqrt();
   std::mt19937_64 random(kSearchSeed);
   std::normal_distribution<double> normal;
   Eigen::MatrixXd drawn(seen_.rows(), seen_.cols());
@@ -333,16 +273,19 @@ double SlowNoise::log_chance(const Form& form, Columns columns) const {
     for (double& value : drawn.reshaped()) {
       value = normal(random);
     }
-    const double gained = gain(form, deviation.asDiagonal() * drawn, columns).twice_log_likelihood;
+    const double gained = gain(form, deviation.asDiagonal() * drawn, columns, none());
     mean += gained / kRepeats;
     square += gained * gained / kRepeats;
   }
   const double variance = square - mean * mean;
-  return mean > 0.0 && variance > 0.0 ? log_tail(found.twice_log_likelihood, mean, variance) : 0.0;
+  return mean > 0.0 && variance > 0.0 ? log_tail(found, mean, variance) : 0.0;
 }
 
-double SlowNoise::log_chance(const Candidate& candidate, const Direction& direction) const {
-  const Columns columns = columns_of(candidate, direction);
+double SlowNoise::log_chance(std::span<const Addition> additions) const {
+  Columns columns = none();
+  for (const Addition& addition : additions) {
+    add_columns(addition, columns);
+  }
   double chance = -HUGE_VAL;
   for (const Form& form : forms_) {
     chance = std::max(chance, log_chance(form, columns));
@@ -350,6 +293,22 @@ double SlowNoise::log_chance(const Candidate& candidate, const Direction& direct
     if (chance > kOrdinary) {
       break;
     }
+  }
+  return chance;
+}
+
+double SlowNoise::log_chance_beside(const Addition& addition,
+                                    std::span<const Addition> others) const {
+  Columns beside = none();
+  for (const Addition& other : others) {
+    add_columns(other, beside);
+  }
+  Columns columns = beside;
+  add_columns(addition, columns);
+  double chance = -HUGE_VAL;
+  for (const Form& form : forms_) {
+    const double found = gain(form, form.turn * seen_, turned(form, columns), turned(form, beside));
+    chance = std::max(chance, log_chi2_tail(found, strengths_of(columns) - strengths_of(beside)));
   }
   return chance;
 }

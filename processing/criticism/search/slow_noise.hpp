@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "processing/criticism/search/candidates.hpp"
@@ -20,13 +22,25 @@ namespace kolsky {
 /// found, and the statistic's distribution drawn, twice: as if every gauge had slow noise of its
 /// own, and as if all had the same. The model's numbers stay where they are. Where much slow noise
 /// is left beside the addition, it counts for nothing: then its slopes are that noise's as well.
+/// But what is left may be another gauge's drift: an addition is judged beside others, too.
 class SlowNoise {
  public:
   /// @param base  fitted, its noise known by its residuals; outlives this
   SlowNoise(const Studied& base, Study& study);
 
-  /// ln of the chance that slow noise gains as much by the addition.
-  [[nodiscard]] double log_chance(const Candidate& candidate, const Direction& direction) const;
+  /// An addition of each shot's own.
+  struct Addition {
+    const Candidate& candidate;
+    const Direction& direction;
+  };
+
+  /// ln of the chance that slow noise gains as much by the additions together.
+  [[nodiscard]] double log_chance(std::span<const Addition> additions) const;
+
+  /// ln of the chance that noise gains as much by one addition where others are there, too. Where
+  /// nothing slow stays beside all of them, it is known what noise does.
+  [[nodiscard]] double log_chance_beside(const Addition& addition,
+                                         std::span<const Addition> others) const;
 
  private:
   /// White and slow noise of one shot, in coordinates in which both are diagonal.
@@ -42,20 +56,28 @@ class SlowNoise {
 
   /// By shot: what its own strengths do to what is seen of it.
   using Columns = std::vector<Eigen::MatrixXd>;
-  /// What the addition explains, and the noise without it and with it.
-  struct Gain {
-    double twice_log_likelihood = 0.0;
-    Levels without;
-    Levels with;
+  /// Of what additions leave, the noise at its best.
+  struct Fitted {
+    double twice_log_likelihood = -HUGE_VAL;
+    Levels levels;
   };
 
-  [[nodiscard]] Columns columns_of(const Candidate& candidate, const Direction& direction) const;
+  [[nodiscard]] Columns none() const;
+  [[nodiscard]] static Columns turned(const Form& form, Columns columns);
+  void add_columns(const Addition& addition, Columns& columns) const;
   [[nodiscard]] double log_chance(const Form& form, Columns columns) const;
-  [[nodiscard]] Gain gain(const Form& form, const Eigen::MatrixXd& seen,
-                          const Columns& columns) const;
-  /// -2 ln of the likelihood of what is seen, the levels at their best from where they are.
-  [[nodiscard]] static double at_best_levels(const Form& form, const Eigen::MatrixXd& seen,
-                                             Levels& levels);
+  /// @param beside  a part of the columns: by how much these gain over it
+  [[nodiscard]] double gain(const Form& form, const Eigen::MatrixXd& seen, const Columns& columns,
+                            const Columns& beside) const;
+  [[nodiscard]] static Fitted fitted(const Form& form, const Eigen::MatrixXd& seen,
+                                     const Columns& columns, Levels levels);
+  /// @param slow  variances as in `Form`
+  /// @param from  where the search for them begins
+  [[nodiscard]] static Levels best_levels(const Eigen::ArrayXd& slow, const Eigen::MatrixXd& seen,
+                                          Levels from);
+  [[nodiscard]] static double twice_log_likelihood(const Eigen::ArrayXd& slow,
+                                                   const Eigen::MatrixXd& seen,
+                                                   const Levels& levels);
 
   const Studied& base_;
   const Campaign& campaign_;

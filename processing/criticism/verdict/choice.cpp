@@ -43,7 +43,7 @@ bool chosen_apart(const Studied& one, const Studied& other, const std::string& i
 /// Strengths of each shot's own that no other shot can foretell: products are foretold by the other
 /// gauges, and what slow noise does not do by what comes before and after.
 bool confirmed_otherwise(const Refit& refit) {
-  return refit.products.has_value() || refit.slow_log_p.has_value();
+  return refit.products.has_value() || refit.slow.has_value();
 }
 
 std::string id_of(const Search& search, const Refit& refit) {
@@ -85,12 +85,20 @@ void Chooser::note_all(const Found& found) {
               diagnosis_.candidates);
   for (CandidateResult& result : diagnosis_.candidates) {
     const auto dismissed = found.search.dismissed().find(result.effect);
-    // What gains no more than noise does came into no question that it could fail.
-    if (dismissed != found.search.dismissed().end() && result.log_p <= least_plausible() &&
-        std::ranges::none_of(found.refits, [&](const Refit& own) {
+    if (dismissed == found.search.dismissed().end() ||
+        std::ranges::any_of(found.refits, [&](const Refit& own) {
           return id_of(found.search, own) == result.effect;
         })) {
-      result.verdict = dismissed->second;
+      continue;
+    }
+    if (!result.per_shot && dismissed->second.gain < result.gain) {
+      result.gain = dismissed->second.gain;
+      result.own_log_p = dismissed->second.chance;
+      result.log_p = found.search.with_search(dismissed->second.chance);
+    }
+    // What gains no more than noise does came into no question that it could fail.
+    if (result.log_p <= least_plausible()) {
+      result.verdict = dismissed->second.verdict;
     }
   }
 }

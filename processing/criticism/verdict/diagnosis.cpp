@@ -441,9 +441,9 @@ class Diagnostician {
     }
     candidate.use.per_shot = use.per_shot;
     candidate.use.alike = use.alike;
-    return slow_noise_excluded(
-        SlowNoise(left, study_).log_chance(candidate, direction_of(candidate, left, study_, 0)),
-        Claim::standing);
+    const Direction direction = direction_of(candidate, left, study_, 0);
+    const SlowNoise::Addition addition{candidate, direction};
+    return slow_noise_excluded(SlowNoise(left, study_).log_chance({&addition, 1}), Claim::standing);
   }
 
   /// Whether a fit is worse for want of what went.

@@ -9,6 +9,7 @@
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
+#include "processing/criticism/search/slow_weights.hpp"
 #include "processing/criticism/verdict/departure.hpp"
 #include "processing/criticism/verdict/distortion.hpp"
 #include "processing/criticism/verdict/single_shots.hpp"
@@ -94,14 +95,13 @@ Distortions unit_columns(Study& study, const Studied& studied) {
 }
 
 /// Every distortion, less what the model's own numbers take up of it.
-Extended clear_columns(Study& study, const Studied& studied) {
+Extended clear_columns(const Studied& studied, const Distortions& unit) {
   const ModelFit& fit = studied.fit;
-  Distortions unit = unit_columns(study, studied);
   const Eigen::MatrixXd taken = fit.covariance * (fit.jacobian.transpose() * unit.columns);
   const Eigen::Index rows = unit.columns.rows();
   const auto numbers = static_cast<Eigen::Index>(fit.theta.size());
-  Extended out{{Eigen::MatrixXd::Zero(rows + numbers, unit.columns.cols()), std::move(unit.kinds),
-                std::move(unit.sizes), std::move(unit.sensors)},
+  Extended out{{Eigen::MatrixXd::Zero(rows + numbers, unit.columns.cols()), unit.kinds, unit.sizes,
+                unit.sensors},
                Eigen::VectorXd::Zero(rows + numbers)};
   Eigen::MatrixXd& columns = out.distortions.columns;
   columns.topRows(rows) = unit.columns - fit.jacobian * taken;
@@ -241,10 +241,8 @@ Unexplained in_distortions(const Extended& extended, std::size_t per_shot, std::
   return {combined(log_p, by_kind), 0.0, std::max(0.0, found / noise.power - freedom)};
 }
 
-}  // namespace
-
-Unexplained unexplained(Study& study, const Studied& studied) {
-  const Extended extended = clear_columns(study, studied);
+Unexplained unexplained_by(Study& study, const Studied& studied, const Distortions& unit) {
+  const Extended extended = clear_columns(studied, unit);
   const std::size_t per_shot = study.residuals().per_shot();
   const std::size_t shots = study.campaign().shots.size();
   Unexplained left = in_distortions(extended, per_shot, shots);
@@ -262,6 +260,31 @@ Unexplained unexplained(Study& study, const Studied& studied) {
   left.common_log_p = combined_log_p(log_ps, weights);
   left.log_p = combined_log_p(std::array{left.common_log_p, left.apart.log_p},
                               std::array{kInCommon, kOfOwnReadings});
+  return left;
+}
+
+}  // namespace
+
+Unexplained unexplained(Study& study, const Studied& studied) {
+  const Distortions unit = unit_columns(study, studied);
+  Unexplained left = unexplained_by(study, studied, unit);
+  constexpr double kOrdinary = -3.0;
+  if (left.log_p > kOrdinary || study.campaign().shots.size() < 3) {
+    return left;
+  }
+  // It stands only if slow noise does not do it.
+  const std::size_t per_shot = study.residuals().per_shot();
+  for (const SlowWeights& slow : slow_weights(study, studied)) {
+    Distortions weighed = unit;
+    slow.weigh(weighed.columns, per_shot);
+    for (SensorColumns& sensor : weighed.sensors) {
+      slow.weigh(sensor.columns, per_shot);
+    }
+    const Unexplained beside = unexplained_by(study, slow.refitted(studied, per_shot), weighed);
+    if (beside.log_p > left.log_p) {
+      left = beside;
+    }
+  }
   return left;
 }
 

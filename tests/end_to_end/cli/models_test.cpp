@@ -272,7 +272,7 @@ TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
       {"\"heldout\"", "the nearest is held-out"}));
   const std::string help = kolsky({"diagnose", "--help"}).out;
   for (const char* name : {"search-count:", "held-out:", "shot-agreement:", "own-strengths:",
-                           "fitted-noise:", "backward:", "unknown:"}) {
+                           "fitted-noise:", "slow-noise:", "backward:", "unknown:"}) {
     EXPECT_NE(help.find("\n                            " + std::string(name)), std::string::npos)
         << name;
   }
