@@ -76,6 +76,10 @@ void Reducer::set_push_goes_on(double share) {
   state_->options.push_goes_on = share;
 }
 
+void Reducer::set_band_limit_Hz(double limit_Hz) {
+  state_->options.band_limit_Hz = limit_Hz;
+}
+
 std::size_t Reducer::tables_made() const {
   return state_->tables.made();
 }

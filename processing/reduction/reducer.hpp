@@ -60,6 +60,9 @@ class Reducer {
   /// Takes the striker's push to go on by this share from now on.
   void set_push_goes_on(double share);
 
+  /// Takes the band to end here from now on.
+  void set_band_limit_Hz(double limit_Hz);
+
   /// How often propagation tables of two bars were made, not found.
   [[nodiscard]] std::size_t tables_made() const;
 

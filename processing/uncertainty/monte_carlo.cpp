@@ -75,6 +75,14 @@ ReductionOptions held(ReductionOptions options, const Reduction& nominal) {
   return options;
 }
 
+/// Where the band would end if the noise alone ended it.
+double widest_band_Hz(const Shot& shot, ReductionOptions options, const Reduction& nominal) {
+  options = held(std::move(options), nominal);
+  options.band_limit_Hz.reset();
+  options.most_band_Hz = shot.rate.Hz() / 2.0;
+  return Reducer(std::move(options)).reduce(shot).band_limit_Hz;
+}
+
 /// Reduces moved copies of a shot; one per thread.
 class Worker {
  public:
@@ -89,7 +97,7 @@ class Worker {
   /// @param moves  one per source
   /// @param random draws the noise; none: the samples as they are
   Draw draw(const std::vector<double>& moves, RandomStream* random) {
-    ShotNumbers numbers{shot_.bench, *options_.bar_model};
+    ShotNumbers numbers{shot_.bench, *options_.bar_model, 0.0, nominal_.band_limit_Hz};
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       sources_[i].move(numbers, moves[i]);
     }
@@ -97,6 +105,7 @@ class Worker {
     moved_.record(random);
     reducer_.set_bar_model(numbers.bars);
     reducer_.set_push_goes_on(numbers.push_goes_on);
+    reducer_.set_band_limit_Hz(numbers.band_limit_Hz);
     const Reduction reduction = reducer_.reduce(moved_.shot());
     Draw result;
     result.good = reduction.quality.reducible && reduction.time_s.size() > 1;
@@ -252,6 +261,11 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   result.sources = uncertainty_sources(shot.bench, wanted.bars.value_or(BarPrior(*told.bar_model)));
   if (reduction.separation == Separation::never && reduction.push_left_share > 0.0) {
     result.sources.push_back(hidden_push_source(reduction.push_left_share));
+  }
+  constexpr double kWider = 1.02;
+  const double widest_Hz = widest_band_Hz(shot, told, reduction);
+  if (widest_Hz > kWider * reduction.band_limit_Hz) {
+    result.sources.push_back(band_limit_source(reduction.band_limit_Hz, widest_Hz));
   }
   const Campaign campaign(wanted.draws, result.sources.size());
   std::vector<Draw> draws(campaign.count());

@@ -1,5 +1,6 @@
 #include "processing/uncertainty/sources.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -166,6 +167,14 @@ Sources uncertainty_sources(const Bench& bench, const BarPrior& bars) {
 UncertaintySource hidden_push_source(double left_share) {
   return {kHiddenPush, "rest of the push", 0.0, left_share,
           [](ShotNumbers& moved, double deviations) { moved.push_goes_on = deviations; }};
+}
+
+UncertaintySource band_limit_source(double limit_Hz, double widest_Hz) {
+  return {"band_limit_Hz", "band limit", limit_Hz, widest_Hz - limit_Hz,
+          [limit_Hz, widest_Hz](ShotNumbers& moved, double deviations) {
+            moved.band_limit_Hz =
+                limit_Hz + std::clamp(deviations, 0.0, 1.0) * (widest_Hz - limit_Hz);
+          }};
 }
 
 }  // namespace kolsky

@@ -15,6 +15,7 @@ struct ShotNumbers {
   Bench bench;
   Material bars;
   double push_goes_on = 0.0;  ///< as in ReductionOptions
+  double band_limit_Hz = 0.0;
 };
 
 /// Something that is filed with a standard deviation.
@@ -38,5 +39,11 @@ inline constexpr const char* kHiddenPush = "push_left_share";
 /// is all of it.
 /// @param left_share  of the push's peak
 [[nodiscard]] UncertaintySource hidden_push_source(double left_share);
+
+/// What is above the band is missing from every history. Where the band ends below what the noise
+/// allows, because the bars are known no further or because it was asked for, one deviation is all
+/// that lies between, to one side: nothing else is missing less.
+/// @param widest_Hz  where the noise would let it end
+[[nodiscard]] UncertaintySource band_limit_source(double limit_Hz, double widest_Hz);
 
 }  // namespace kolsky
