@@ -9,12 +9,15 @@ struct LoopSummary {
   double peak_stress_Pa = 0.0;
   double strain_at_peak = 0.0;  ///< at the peak stress
   double peak_strain = 0.0;
-  double loading_s = 0.0;  ///< from 5 % of the peak stress to 98 % of the largest strain
+  /// Of the first loading: from 5 % of its peak stress to 98 % of its largest strain.
+  double loading_s = 0.0;
   double mean_strain_rate_per_s = 0.0;  ///< over the loading
 };
 
-/// Samples up to the largest strain, in the sense of the largest stress: what follows, the specimen
-/// unloads, or the histories drift.
+/// Samples up to the largest strain of the first loading, in its sense: what follows, the specimen
+/// unloads, is loaded again, or the histories drift. The first loading is over when the strain has
+/// come back by a tenth of its largest so far, or a tenth of the largest stress so far is left and
+/// the strain grows no more.
 [[nodiscard]] std::size_t loading_end(const Reduction& reduction);
 
 /// All zero for an empty reduction.

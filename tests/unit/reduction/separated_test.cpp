@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "processing/base/error.hpp"
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/reduction/validity.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/unit/reduction/solved_bench.hpp"
 
@@ -202,6 +204,20 @@ TEST(SeparatedReduction, LaterLoadingsAreFollowed) {
   EXPECT_LT(off(r.force_front_N, records.truth.force_N), 2e-3);
   EXPECT_LT(off(r.force_back_N, records.truth.force_N), 2e-3);
   EXPECT_LT(off(r.strain, records.truth.strain), 2e-3);
+
+  // What may be quoted is the first loading, up to where the spring begins to let go.
+  const auto& strain = records.truth.strain;
+  const auto loaded =
+      std::find_if(strain.begin(), strain.end(), [](double value) { return value > 1e-4; });
+  const auto released = std::find_if(loaded, strain.end(), [](double value) { return value < 0; });
+  ASSERT_NE(released, strain.end()) << "loaded once only";
+  const double released_s = records.truth.step_s * static_cast<double>(released - strain.begin());
+  const double most = *std::max_element(strain.begin(), released);
+  const Quotable part = quotable_part(r);
+  ASSERT_TRUE(part.any) << part.text;
+  EXPECT_LT(part.to_s, released_s);
+  EXPECT_NEAR(part.to_strain, most, 0.01 * most);
+  EXPECT_LT(summarise(r).loading_s, released_s);
 }
 
 TEST(SeparatedReduction, NoiseIsWhatItsCheckSaysAndBlindFrequenciesAreNamed) {

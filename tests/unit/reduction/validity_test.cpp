@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
@@ -62,6 +63,44 @@ TEST(Validity, QuotesNothingOfADriftThatFollows) {
   ASSERT_TRUE(part.any);
   EXPECT_NEAR(part.from_s, 44e-6, 3e-6);
   EXPECT_NEAR(part.to_s, 99e-6, 2e-6);
+}
+
+// A pull beyond the push, and a second push beyond both.
+TEST(Validity, QuotesTheFirstLoadingOfSeveral) {
+  Reduction r = by_hand();
+  for (int n = 201; n <= 700; ++n) {
+    const double phase = (n <= 450 ? -1.2 : 1.3) * (n <= 450 ? n - 200 : n - 450) / 250.0;
+    r.time_s.push_back(1e-6 * n);
+    r.strain.push_back(0.1 * phase);
+    r.strain_rate_per_s.push_back(0.0);
+    r.force_front_N.push_back(100.0 * phase);
+    r.force_back_N.push_back(100.0 * phase);
+    r.stress_Pa.push_back(100.0 * phase);
+  }
+  EXPECT_NEAR(quotable_part(r).to_s, 99e-6, 2e-6);
+  EXPECT_NEAR(summarise(r).mean_strain_rate_per_s, 1e3, 1.0);
+}
+
+// Nothing comes back of a plastic strain: what ends the first loading is that the force is gone.
+TEST(Validity, QuotesTheFirstLoadingOfWhatKeepsItsStrain) {
+  Reduction r = by_hand();
+  r.time_s.clear();
+  for (auto* history :
+       {&r.strain, &r.strain_rate_per_s, &r.stress_Pa, &r.force_front_N, &r.force_back_N}) {
+    history->clear();
+  }
+  for (int n = 0; n <= 400; ++n) {
+    const int pass = n % 200;
+    const double loaded = pass > 100 ? 0.0 : 100.0;
+    r.time_s.push_back(1e-6 * n);
+    r.strain.push_back(0.1 * (n / 200) + 1e-3 * std::min(pass, 100) - (pass > 100 ? 2e-4 : 0.0));
+    r.strain_rate_per_s.push_back(pass <= 100 ? 1e3 : 0.0);
+    for (auto* history : {&r.stress_Pa, &r.force_front_N, &r.force_back_N}) {
+      history->push_back(loaded);
+    }
+  }
+  EXPECT_NEAR(quotable_part(r).to_s, 99e-6, 2e-6);
+  EXPECT_NEAR(summarise(r).loading_s, 98e-6, 3e-6);
 }
 
 TEST(Validity, QuotesATensileLoadingToo) {
