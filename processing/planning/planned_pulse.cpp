@@ -6,8 +6,8 @@
 
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/planning/pulse_transform.hpp"
 #include "processing/waves/bar_modes.hpp"
-#include "processing/waves/transform.hpp"
 
 namespace kolsky {
 
@@ -43,25 +43,24 @@ double first_gauge_m(const Bench& bench) {
 /// strain = J exp(-s sqrt(rho J) x) F / A.
 double largest_strain(const PlannedPulse& pulse, const Bar& bar, const Compliance& compliance,
                       double place_m) {
-  constexpr double kSamplesInPulse = 2000.0;
-  const double period_s = pulse.duration_s() / kSamplesInPulse;
-  const double passed_s =
-      pulse.duration_s() + pulse.rise_s + 1.5 * place_m / front_speed_m_per_s(bar, compliance);
-  DampedTransform transform(static_cast<std::size_t>(passed_s / period_s) + 1, period_s);
-  std::vector<double> record(transform.length(), 0.0);
-  for (std::size_t n = 0; n < record.size(); ++n) {
-    record[n] = pulse.force_N(static_cast<double>(n) * period_s);
-  }
-  std::vector<Complex> spectrum(transform.bins());
-  transform.forward(record, spectrum);
-  for (std::size_t k = 0; k < spectrum.size(); ++k) {
-    const Complex s = transform.s(k);
+  constexpr double kStepsInPulse = 2000.0;
+  constexpr double kMostStepsInPulse = 1e5;
+  constexpr double kStepsInRise = 64.0;
+  const double step_s =
+      std::clamp(pulse.rise_s / kStepsInRise, pulse.duration_s() / kMostStepsInPulse,
+                 pulse.duration_s() / kStepsInPulse);
+  const double quiet_s = 32.0 * step_s;
+  const double record_s = quiet_s + pulse.duration_s() + pulse.rise_s +
+                          1.5 * place_m / front_speed_m_per_s(bar, compliance);
+  PulseTransform transform(pulse, quiet_s, record_s, step_s);
+  std::vector<Complex> per_N;
+  for (const Complex s : transform.path()) {
     const Complex J = compliance.at(s);
-    spectrum[k] *=
-        J * std::exp(-s * std::sqrt(bar.density_kg_m3.value * J) * place_m) / bar.area_m2();
+    per_N.push_back(J * std::exp(-s * std::sqrt(bar.density_kg_m3.value * J) * place_m) /
+                    bar.area_m2());
   }
-  transform.inverse(spectrum, record);
-  return *std::max_element(record.begin(), record.end());
+  const std::vector<double> strain = transform.history(per_N);
+  return *std::max_element(strain.begin(), strain.end());
 }
 
 }  // namespace

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
+#include "processing/planning/foretold_waves.hpp"
 #include "processing/reduction/reducer.hpp"
-#include "processing/specimen/shpb_model.hpp"
+#include "processing/specimen/shpb_records.hpp"
 #include "processing/uncertainty/noise.hpp"
-#include "processing/waves/transform.hpp"
+#include "processing/waves/bar_modes.hpp"
 
 namespace kolsky {
 
@@ -27,72 +29,12 @@ double largest(const std::vector<double>& record) {
   return most;
 }
 
-/// Each gauge at a station of its own, in the bench's order, and where each stands in the model's.
-std::vector<ShpbStation> one_station_per_gauge(const Bench& bench) {
-  std::vector<ShpbStation> stations;
-  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
-    const Gauge& gauge = bench.gauges[i];
-    stations.push_back({{i}, gauge.bar == "input", bench.distance_to_specimen_m(gauge)});
-  }
-  std::stable_sort(
-      stations.begin(), stations.end(), [](const ShpbStation& a, const ShpbStation& b) {
-        return a.on_input != b.on_input ? a.on_input : a.to_specimen_m > b.to_specimen_m;
-      });
-  return stations;
-}
-
-double slowest_m_per_s(const Bench& bench, const Material& bars) {
-  return std::min(front_speed_m_per_s(bench.input, *compliance_of(bench.input, bars)),
-                  front_speed_m_per_s(*bench.output, *compliance_of(*bench.output, bars)));
-}
-
-/// Strain at each gauge, in the bench's order.
-std::vector<std::vector<double>> strains_of(const Bench& bench, const Material& bars,
-                                            const Material& specimen, const PlannedPulse& pulse) {
-  const double longest_m = std::max<double>(bench.input.length_m, bench.output->length_m);
-  const double record_s = kQuiet_s + pulse.duration_s() +
-                          (bench.input.length_m + 4.0 * longest_m) / slowest_m_per_s(bench, bars);
-  const double period_s = 1.0 / bench.sampling_frequency_Hz;
-  const auto samples = static_cast<std::size_t>(record_s / period_s);
-  DampedTransform transform(samples, period_s);
-  std::vector<double> record(transform.length(), 0.0);
-  for (std::size_t n = 0; n < samples; ++n) {
-    record[n] = pulse.force_N(static_cast<double>(n) * period_s - kQuiet_s);
-  }
-  std::vector<Complex> force(transform.bins());
-  transform.forward(record, force);
-  std::vector<Complex> path;
-  for (std::size_t k = 0; k < transform.bins(); ++k) {
-    path.push_back(transform.s(k));
-  }
-  const auto stations = one_station_per_gauge(bench);
-  ShpbModel model(stations);
-  const BarPrior prior(bars);
-  const MovedShpb moved(bench, stations, prior, {}, {});
-  ShpbTheory theory;
-  theory.specimen = bench.specimen->density_kg_m3 ? SpecimenWaves::rod : SpecimenWaves::massless;
-  std::vector<std::vector<Complex>> transfers;
-  std::vector<Complex> first_per_N;
-  model.evaluate(theory, moved, ThreeElementSolid(specimen), path, 0, transfers, &first_per_N);
-  std::vector<std::vector<double>> strains(bench.gauges.size());
-  std::vector<Complex> spectrum(transform.bins());
-  for (std::size_t j = 0; j < stations.size(); ++j) {
-    for (std::size_t k = 0; k < spectrum.size(); ++k) {
-      spectrum[k] = force[k] * first_per_N[k] * (j == 0 ? 1.0 : transfers[j - 1][k]);
-    }
-    transform.inverse(spectrum, record);
-    strains[stations[j].channels.front()].assign(
-        record.begin(), record.begin() + static_cast<std::ptrdiff_t>(samples));
-  }
-  return strains;
-}
-
 ChannelRecord record_of(const Gauge& gauge, const BridgeConversion& bridge,
-                        const std::vector<double>& strain, double noise_strain,
-                        RandomStream& random) {
+                        const std::vector<double>& strain, std::size_t steps_per_sample,
+                        double noise_strain, RandomStream& random) {
   std::vector<double> readings;
-  for (const double value : strain) {
-    readings.push_back(bridge.reading(value + noise_strain * random.normal()));
+  for (std::size_t n = 0; n < strain.size(); n += steps_per_sample) {
+    readings.push_back(bridge.reading(strain[n] + noise_strain * random.normal()));
   }
   ChannelRecord channel;
   channel.gauge = gauge.name;
@@ -122,30 +64,6 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
   (void)shpb_stations(bench);  // both bars have a gauge
   ShotPlan plan;
   plan.pulse = pulse;
-  plan.shot.id = "plan";
-  plan.shot.bench = bench;
-  plan.shot.rate = SampleRate::from_Hz(bench.sampling_frequency_Hz);
-  const auto strains = strains_of(bench, bars, specimen, pulse);
-  RandomStream random(1, 0);
-  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
-    const Gauge& gauge = bench.gauges[i];
-    const BridgeConversion bridge(gauge, bench.bar_of(gauge), bench.positive);
-    plan.shot.channels.push_back(
-        record_of(gauge, bridge, strains[i], options.noise_strain, random));
-    const auto [low, high] = std::minmax_element(strains[i].begin(), strains[i].end());
-    plan.gauges.push_back(
-        {gauge.name, gauge.unit, *high, *low,
-         std::max(std::abs(bridge.reading(*high)), std::abs(bridge.reading(*low)))});
-  }
-  ReductionOptions reduction;
-  reduction.bar_model = bars;
-  plan.reduction = Reducer(reduction).reduce(plan.shot);
-  if (const Quality& quality = plan.reduction.quality; !quality.reducible) {
-    throw InputError("plan", quality.reason, quality.mend);
-  }
-  plan.summary = summarise(plan.reduction);
-  plan.quotable = quotable_part(plan.reduction);
-
   const double speed_in = front_speed_m_per_s(bench.input, *compliance_of(bench.input, bars));
   const double speed_out = front_speed_m_per_s(*bench.output, *compliance_of(*bench.output, bars));
   plan.whole_pulse_m = 0.5 * speed_in * (pulse.duration_s() + pulse.rise_s);
@@ -154,6 +72,31 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
   if (bench.output->far_end == FarEnd::free) {
     plan.returns_s = std::min(plan.returns_s, 2.0 * bench.output->length_m / speed_out);
   }
+  ForetoldWaves waves = foretell_waves(bench, bars, specimen, pulse, kQuiet_s, plan.returns_s);
+  plan.specimen = std::move(waves.specimen);
+  plan.summary = summarise(plan.specimen);
+  plan.equilibrium = quotable_part(plan.specimen);
+
+  plan.shot.id = "plan";
+  plan.shot.bench = bench;
+  plan.shot.rate = SampleRate::from_Hz(bench.sampling_frequency_Hz);
+  RandomStream random(1, 0);
+  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
+    const Gauge& gauge = bench.gauges[i];
+    const std::vector<double>& strain = waves.gauge_strain[i];
+    const BridgeConversion bridge(gauge, bench.bar_of(gauge), bench.positive);
+    plan.shot.channels.push_back(
+        record_of(gauge, bridge, strain, waves.steps_per_sample, options.noise_strain, random));
+    const auto [low, high] = std::minmax_element(strain.begin(), strain.end());
+    plan.gauges.push_back(
+        {gauge.name, gauge.unit, *high, *low,
+         std::max(std::abs(bridge.reading(*high)), std::abs(bridge.reading(*low)))});
+  }
+  ReductionOptions reduction;
+  reduction.bar_model = bars;
+  plan.reduction = Reducer(reduction).reduce(plan.shot);
+  plan.quotable = quotable_part(plan.reduction);
+
   const double density = bench.specimen->density_kg_m3.value_or(specimen.density_kg_m3);
   const double settled_Pa = specimen.E1_Pa * specimen.E2_Pa / (specimen.E1_Pa + specimen.E2_Pa);
   plan.specimen_transit_s = bench.specimen->length_m / std::sqrt(settled_Pa / density);

@@ -35,16 +35,18 @@ struct ShotPlan {
   double returns_s = 0.0;  ///< from arrival at the specimen until a far end answers there
   double specimen_transit_s = 0.0;
   std::vector<GaugeForecast> gauges;
-  Shot shot;            ///< as it would be recorded
-  Reduction reduction;  ///< as it would come out
-  LoopSummary summary;
-  Quotable quotable;
+  Reduction specimen;    ///< what happens to it, until it is unloaded
+  LoopSummary summary;   ///< of that
+  Quotable equilibrium;  ///< the part of it in which both faces carry the same force
+  Shot shot;             ///< as it would be recorded
+  Reduction reduction;   ///< what a reduction would make of that; perhaps nothing
+  Quotable quotable;     ///< of the reduction
 };
 
-/// Foretells a shot on a linear specimen: its gauge records, from the waves of the paper's model,
-/// the specimen's mass included where its density is filed; and what the reduction makes of them.
-/// @throws InputError where the bench has no specimen or no gauges, and where nothing can be made
-///   of what they would read: bars too short for the pulse
+/// Foretells a shot on a linear specimen, from the waves of the paper's model, the specimen's mass
+/// included where its density is filed: what happens to the specimen, what the gauges read, and
+/// what a reduction of those records would see of the specimen.
+/// @throws InputError where the bench has no specimen or no gauges
 [[nodiscard]] ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& specimen,
                                  const PlannedPulse& pulse, const PlanOptions& options);
 

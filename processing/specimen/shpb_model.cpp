@@ -109,9 +109,9 @@ const std::vector<BarMode>& ShpbModel::modes(WaveTheory theory, const MovedShpb&
 void ShpbModel::evaluate(const ShpbTheory& theory, const MovedShpb& moved,
                          const Compliance& specimen, const std::vector<Complex>& path,
                          std::size_t slot, std::vector<std::vector<Complex>>& transfers,
-                         std::vector<Complex>* first_per_N) {
-  if (first_per_N != nullptr) {
-    first_per_N->resize(path.size());
+                         ShpbPerForce* per_N) {
+  if (per_N != nullptr) {
+    per_N->resize(path.size());
   }
   const auto& input = modes(theory.bars, moved, 0, path, slot);
   const auto& output = modes(theory.bars, moved, 1, path, slot);
@@ -137,10 +137,16 @@ void ShpbModel::evaluate(const ShpbTheory& theory, const MovedShpb& moved,
     // the factor exp(gamma d0).
     const Complex reading = gamma / (s * input[k].mean_over_surface);
     const Complex first = moved.gain[0] * reading * (1.0 + r * std::exp(-2.0 * gamma * d0));
-    if (first_per_N != nullptr) {
+    if (per_N != nullptr) {
       const double length_m = moved.bars[0].length_m;
       const Complex round_trips = 1.0 + r * std::exp(-2.0 * gamma * length_m);
-      (*first_per_N)[k] = first * std::exp(-gamma * (length_m - d0)) / (Z_in * round_trips);
+      const Complex front = (1.0 + r) * std::exp(-gamma * length_m) / round_trips;
+      const Complex back = loaded.transmitted * front;
+      per_N->first[k] = first * std::exp(-gamma * (length_m - d0)) / (Z_in * round_trips);
+      per_N->force_front[k] = front;
+      per_N->force_back[k] = back;
+      per_N->velocity_front_m_per_s[k] = loaded.admittance * front;
+      per_N->velocity_back_m_per_s[k] = behind * back;
     }
     // Velocity wave into the output bar: what a second bar's strain follows from.
     const Complex launched = loaded.transmitted * Z_in * (1.0 + r) /

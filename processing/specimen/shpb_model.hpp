@@ -25,6 +25,22 @@ struct ShpbTheory {
   bool operator==(const ShpbTheory&) const = default;
 };
 
+/// What follows from a force on the impacted end, which is free but for that force: per newton.
+struct ShpbPerForce {
+  std::vector<Complex> first;        ///< reading of the first station
+  std::vector<Complex> force_front;  ///< of the specimen, on its faces
+  std::vector<Complex> force_back;
+  std::vector<Complex> velocity_front_m_per_s;
+  std::vector<Complex> velocity_back_m_per_s;
+
+  void resize(std::size_t count) {
+    for (auto* part :
+         {&first, &force_front, &force_back, &velocity_front_m_per_s, &velocity_back_m_per_s}) {
+      part->resize(count);
+    }
+  }
+};
+
 /// The gauge records of a specimen shot as multiples of that of the first station.
 ///
 /// The wave that comes from the input bar's impacted end is a free source at all times: whatever
@@ -43,12 +59,10 @@ class ShpbModel {
 
   /// H_j / H_0 along a path of s, for stations 1 on. `transfers()[j - 1][k]`.
   /// Modes of the bars are kept from call to call for a path of the same `slot`.
-  /// @param first_per_N  if given: what the first station reads per force on the impacted end,
-  ///   which is free but for that force
+  /// @param per_N  if given: what a force on the impacted end makes
   void evaluate(const ShpbTheory& theory, const MovedShpb& moved, const Compliance& specimen,
                 const std::vector<Complex>& path, std::size_t slot,
-                std::vector<std::vector<Complex>>& transfers,
-                std::vector<Complex>* first_per_N = nullptr);
+                std::vector<std::vector<Complex>>& transfers, ShpbPerForce* per_N = nullptr);
 
   [[nodiscard]] const std::vector<ShpbStation>& stations() const { return stations_; }
 

@@ -66,6 +66,17 @@ PlannedPulse pulse_of(const Settings& s, const Bench& bench, const Material& bar
   return pulse_of_striker(bench, bars, *speed, rise_s);
 }
 
+/// What the reduction of the shot would say.
+JsonValue reduced_json(const ShotPlan& plan) {
+  if (!plan.reduction.quality.reducible) {
+    return nullptr;
+  }
+  const LoopSummary loop = summarise(plan.reduction);
+  return JsonObject{{"peak_strain", loop.peak_strain},
+                    {"peak_stress_Pa", loop.peak_stress_Pa},
+                    {"quotable", plan.quotable.text}};
+}
+
 JsonValue describe(const ShotPlan& plan, const Bars& bars) {
   JsonList gauges;
   for (const GaugeForecast& gauge : plan.gauges) {
@@ -75,9 +86,9 @@ JsonValue describe(const ShotPlan& plan, const Bars& bars) {
                                 {"unit", gauge.unit},
                                 {"highest_reading", gauge.highest_reading}});
   }
-  const Reduction& r = plan.reduction;
+  const Quality& quality = plan.reduction.quality;
   JsonObject checks;
-  for (const Check& check : r.quality.checks) {
+  for (const Check& check : quality.checks) {
     checks.push_back({check.name, JsonObject{{"value", check.value},
                                              {"limit", check.limit},
                                              {"verdict", verdict_name(check.verdict)},
@@ -93,22 +104,24 @@ JsonValue describe(const ShotPlan& plan, const Bars& bars) {
       {"peak_stress_Pa", plan.summary.peak_stress_Pa},
       {"mean_strain_rate_per_s", plan.summary.mean_strain_rate_per_s},
       {"loading_s", plan.summary.loading_s},
-      {"equilibrium_from_s", plan.quotable.any ? JsonValue(plan.quotable.from_s) : nullptr},
+      {"equilibrium_from_s", plan.equilibrium.any ? JsonValue(plan.equilibrium.from_s) : nullptr},
       {"equilibrium_from_strain",
-       plan.quotable.any ? JsonValue(plan.quotable.from_strain) : nullptr},
+       plan.equilibrium.any ? JsonValue(plan.equilibrium.from_strain) : nullptr},
       {"specimen_transit_s", plan.specimen_transit_s},
       {"window_s", plan.window_s},
       {"whole_pulse_m", plan.whole_pulse_m},
       {"returns_s", plan.returns_s},
       {"gauges", std::move(gauges)},
-      {"quality", JsonObject{{"reducible", r.quality.reducible},
-                             {"reason", r.quality.reason},
-                             {"verdict", verdict_name(r.quality.verdict())},
+      {"reduced", reduced_json(plan)},
+      {"quality", JsonObject{{"reducible", quality.reducible},
+                             {"reason", quality.reason},
+                             {"mend", quality.mend},
+                             {"verdict", verdict_name(quality.verdict())},
                              {"checks", std::move(checks)}}},
-      {"time_s", r.time_s},
-      {"stress_Pa", r.stress_Pa},
-      {"strain", r.strain},
-      {"strain_rate_per_s", r.strain_rate_per_s}};
+      {"time_s", plan.specimen.time_s},
+      {"stress_Pa", plan.specimen.stress_Pa},
+      {"strain", plan.specimen.strain},
+      {"strain_rate_per_s", plan.specimen.strain_rate_per_s}};
 }
 
 std::string line(const std::string& name, const std::string& text) {
@@ -125,6 +138,36 @@ std::string needed(const ShotPlan& plan) {
                          : "");
 }
 
+std::string equilibrium_text(const Quotable& part) {
+  return part.any ? fmt::format("from {} on, at a strain of {}", with_unit(part.from_s, "s"),
+                                with_unit(part.from_strain, "strain"))
+                  : "none while the specimen is loaded";
+}
+
+/// What a reduction of the shot would see; where the striker's push is hidden, no more than that.
+std::string reduced_text(const ShotPlan& plan) {
+  const Quality& quality = plan.reduction.quality;
+  std::string text = line("reduced", verdict_name(quality.verdict()));
+  if (!quality.reducible) {
+    return text + line("", quality.reason) + line("", quality.mend);
+  }
+  const Check* overlap = quality.find("window_overlap");
+  if (overlap != nullptr && overlap->verdict == Verdict::fail) {
+    return text + line("", "not what is foretold: " + overlap->text);
+  }
+  const LoopSummary loop = summarise(plan.reduction);
+  text += line(
+      "", fmt::format("largest strain {}, peak stress {}", with_unit(loop.peak_strain, "strain"),
+                      with_unit(loop.peak_stress_Pa, "Pa")));
+  text += line("  may be quoted", plan.quotable.text);
+  for (const Check& check : quality.checks) {
+    if (check.verdict != Verdict::pass) {
+      text += line("  " + check.name, check.text);
+    }
+  }
+  return text;
+}
+
 std::string report(const ShotPlan& plan, const Bars& bars) {
   const double pulse_s = plan.pulse.duration_s() + plan.pulse.rise_s;
   std::string text =
@@ -137,7 +180,7 @@ std::string report(const ShotPlan& plan, const Bars& bars) {
       line("mean strain rate", fmt::format("{} over {} of loading",
                                            with_unit(plan.summary.mean_strain_rate_per_s, "1/s"),
                                            with_unit(plan.summary.loading_s, "s")));
-  text += line("may be quoted", plan.quotable.text);
+  text += line("equilibrium", equilibrium_text(plan.equilibrium));
   text +=
       line("window", fmt::format("{} of incident pulse alone at the first gauge, which lasts {}",
                                  with_unit(plan.window_s, "s"), with_unit(pulse_s, "s")));
@@ -154,13 +197,7 @@ std::string report(const ShotPlan& plan, const Bars& bars) {
                     1e6 * gauge.highest_strain,
                     gauge.unit == "V" ? ", up to " + with_unit(gauge.highest_reading, "V") : ""));
   }
-  text += line("verdict", verdict_name(plan.reduction.quality.verdict()));
-  for (const Check& check : plan.reduction.quality.checks) {
-    if (check.verdict != Verdict::pass) {
-      text += line("  " + check.name, check.text);
-    }
-  }
-  return text;
+  return text + reduced_text(plan);
 }
 
 Bars bars_of(const Settings& settings, const Bench& bench) {
@@ -209,7 +246,8 @@ Command plan_command() {
   command.purpose =
       "what a shot will give before it is fired\n"
       "Strain, rate, time to equilibrium, windows and gauge ranges, from a striker's speed or a\n"
-      "pulse, for a linear specimen.";
+      "pulse, for a linear specimen that stays in touch with both bars; and what a reduction of\n"
+      "the records that its gauges would take will see of that.";
   command.examples =
       "  kolsky plan --bench bench.toml --specimen core.toml --pulse-strain 1e-3 --pulse-duration "
       "170e-6 --rise 40e-6\n"
