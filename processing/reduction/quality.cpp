@@ -447,6 +447,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
   const bool assumed = inputs.separated && inputs.separated->assumes_equilibrium;
   const Check agree = equilibrium(reduction, end);
   const Check lag = front_back_lag(reduction, end);
+  const Check energy = energy_balance(inputs, reduction, end);
   reduction.quality.checks = {assumed ? untested(agree, Verdict::warn) : agree,
                               signal_to_noise(inputs),
                               inputs.separated ? separated_overlap(inputs) : window_overlap(inputs),
@@ -455,7 +456,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
                               record_end(inputs, reduction, cut ? 0.0 : inputs.missing_s, end),
                               assumed ? untested(lag, Verdict::pass) : lag,
                               assumed ? untested(separation, Verdict::pass) : separation,
-                              energy_balance(inputs, reduction, end),
+                              assumed ? untested(energy, Verdict::pass) : energy,
                               band(inputs, reduction),
                               quiet_start(reduction)};
   if (inputs.separated) {
