@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "processing/base/bar_model_check.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -65,6 +67,8 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
   const std::string model = apparatus.bench.input.youngs_modulus_Pa ? "elastic, as in the bench"
                             : apparatus.bar_model                   ? apparatus.bar_model->source
                                                                     : paper_pmma().source;
+  const std::string doubt =
+      apparatus.bar_model ? poorly_identified(*apparatus.bar_model) : std::string();
   return fmt::format(
       "bench      {}: {}, {:.6g} MS/s\n"
       "bars       {}\n"
@@ -77,12 +81,12 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
       "model      {}\n"
       "reduction  {}\n"
       "endpoints  results {}, preview {}, control {}\n",
-      config.bench.string(), name_of(apparatus.bench.kind), rate_Hz * 1e-6, model,
-      gauges_line(config, apparatus), config.digitiser.uri, block, milliseconds(block),
-      trigger.channel, trigger.level_sigma, 1e3 * milliseconds(options.minimum_width_samples),
-      milliseconds(options.hold_off_samples), trigger.pre_samples, trigger.post_samples,
-      milliseconds(trigger.pre_samples), milliseconds(trigger.post_samples), ring,
-      1e-3 * milliseconds(ring), config.store.string(),
+      config.bench.string(), name_of(apparatus.bench.kind), rate_Hz * 1e-6,
+      doubt.empty() ? model : model + " (" + doubt + ")", gauges_line(config, apparatus),
+      config.digitiser.uri, block, milliseconds(block), trigger.channel, trigger.level_sigma,
+      1e3 * milliseconds(options.minimum_width_samples), milliseconds(options.hold_off_samples),
+      trigger.pre_samples, trigger.post_samples, milliseconds(trigger.pre_samples),
+      milliseconds(trigger.post_samples), ring, 1e-3 * milliseconds(ring), config.store.string(),
       config.model ? config.model->string() : "none, shots are not compared",
       reduction_line(config.reduction), config.endpoints.results, config.endpoints.preview,
       config.endpoints.control);

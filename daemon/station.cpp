@@ -10,6 +10,7 @@
 #include "daemon/shots/shot_context.hpp"
 #include "drivers/digitiser/open.hpp"
 #include "kolsky/v1/kolsky.pb.h"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky {
@@ -61,6 +62,14 @@ void name_other_benches(const StreamInfo& stream, const Apparatus& apparatus,
     log::warning(fmt::format(
         "{} of {} captures were filed with a bench file that reads otherwise, {} first: {} is used",
         others.size(), stream.captures.size(), others.front(), config.bench.string()));
+  }
+}
+
+void name_doubtful_bars(const Apparatus& apparatus) {
+  const std::string doubt =
+      apparatus.bar_model ? poorly_identified(*apparatus.bar_model) : std::string();
+  if (!doubt.empty()) {
+    log::warning("the bar model was " + doubt);
   }
 }
 
@@ -142,6 +151,7 @@ Station::Station(DaemonConfig config)
                  .published = [this](const auto& shot) { critic_.compare(shot); }},
                 settings_) {
   name_other_benches(stream_, apparatus_, config_);
+  name_doubtful_bars(apparatus_);
   critic_.change(read_active_model(config_, apparatus_.bench));
 }
 
@@ -197,6 +207,7 @@ void Station::reload() {
   acquirer_.change_plan(plan(config, apparatus.trigger_channel));
   config_ = std::move(config);
   apparatus_ = std::move(apparatus);
+  name_doubtful_bars(apparatus_);
   const std::lock_guard lock(settings_mutex_);
   settings_ = std::move(settings);
 }

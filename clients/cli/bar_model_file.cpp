@@ -25,8 +25,18 @@ void require_band(const BarModelFile& model, std::optional<double> asked_Hz) {
   require_band_known(model.prior.material, asked_Hz, model.name);
 }
 
-std::string temperature_unchecked(const BarModelFile& model, const Shot& shot) {
-  return kolsky::temperature_unchecked(model.prior.material, shot);
+std::vector<std::string> doubts_of(const Material& model, const Shot& shot) {
+  std::vector<std::string> doubts{temperature_unchecked(model, shot), poorly_identified(model)};
+  std::erase(doubts, "");
+  return doubts;
+}
+
+std::string doubts_in_brackets(const Material& model, const Shot& shot) {
+  std::string text;
+  for (const std::string& doubt : doubts_of(model, shot)) {
+    text += " (" + doubt + ")";
+  }
+  return text;
 }
 
 }  // namespace kolsky::cli

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "processing/base/shot.hpp"
 #include "processing/specimen/shpb_unknowns.hpp"
@@ -27,7 +28,10 @@ void require_holds(const BarModelFile& model, const Bench& bench);
 /// Refuses a band that reaches beyond the model's. @throws InputError
 void require_band(const BarModelFile& model, std::optional<double> asked_Hz);
 
-/// What to say where a bar model's temperature is known and the shot's is not; else nothing.
-[[nodiscard]] std::string temperature_unchecked(const BarModelFile& model, const Shot& shot);
+/// What to say of a model beside its name, one by one: a temperature that cannot be checked, a poor
+/// identification.
+[[nodiscard]] std::vector<std::string> doubts_of(const Material& model, const Shot& shot);
+/// The same in brackets, for behind a name; else nothing.
+[[nodiscard]] std::string doubts_in_brackets(const Material& model, const Shot& shot);
 
 }  // namespace kolsky::cli

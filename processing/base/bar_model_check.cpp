@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kDensityApart = 0.01;
 constexpr double kDeviations = 3.0;
+constexpr double kPoorChi2 = 2.0;  // far from 1
 /// Densities of PMMA are from 1150 to 1200 kg/m3.
 constexpr double kNoPmmaApart = 0.05;
 
@@ -68,7 +69,24 @@ bool any_viscoelastic(const Bench& bench) {
   return any;
 }
 
+void require_moduli(const Material& model, const Bench& bench, const std::string& name) {
+  if (any_viscoelastic(bench)) {
+    require_passive(model, name);
+  }
+  require_density(model, bench, name);
+}
+
 }  // namespace
+
+void require_passive(const Material& model, const std::string& name) {
+  if (model.identified && !model.identified->passive) {
+    throw InputError(name + ": identified.passive",
+                     "is false: the waves it was identified from grow on their way, which no bar "
+                     "lets them do",
+                     "check the gauge factors and the order of the gauges of those shots, and "
+                     "identify the bars again");
+  }
+}
 
 std::optional<double> temperature_of(const Shot& shot) {
   const auto fact = shot.meta.find("temperature_K");
@@ -85,14 +103,14 @@ std::optional<double> temperature_of(const Shot& shot) {
 }
 
 void require_bar_model_holds(const Material& model, const Bench& bench, const std::string& name) {
-  require_density(model, bench, name);
+  require_moduli(model, bench, name);
   if (any_viscoelastic(bench) && bench.temperature_K) {
     require_temperature(model, bench.temperature_K->value, "the bench is filed", name);
   }
 }
 
 void require_bar_model_holds(const Material& model, const Shot& shot, const std::string& name) {
-  require_density(model, shot.bench, name);
+  require_moduli(model, shot.bench, name);
   if (any_viscoelastic(shot.bench)) {
     require_temperature(model, temperature_of(shot), "capture " + shot.id + " was taken", name);
   }
@@ -117,6 +135,16 @@ std::string temperature_unchecked(const Material& model, const Shot& shot) {
   return "identified at " + with_decimals(*known_K, 1) +
          " K; what this shot's bars had is not on file: give temperature_K in the bench or the "
          "capture's meta";
+}
+
+std::string poorly_identified(const Material& model) {
+  const auto chi2 = model.identified ? model.identified->chi2_reduced : std::nullopt;
+  if (!chi2 || *chi2 <= kPoorChi2) {
+    return "";
+  }
+  return "identified by a fit that leaves " + with_decimals(*chi2, *chi2 < 10.0 ? 1 : 0) +
+         " times what noise does (reduced chi2): its moduli may be off by more than their "
+         "deviations";
 }
 
 Material assumed_bars(const Bench& bench) {

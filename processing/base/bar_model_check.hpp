@@ -14,10 +14,16 @@ inline constexpr double kNearEnough_K = 2.0;
 /// @throws InputError where that fact is no number
 [[nodiscard]] std::optional<double> temperature_of(const Shot& shot);
 
-/// Refuses a bar model for what it does not hold for: viscoelastic bars of another density (moduli
-/// tell a wave's speed only with the density they were identified with), more than 1 % and three
-/// filed deviations off; and, where both are known, bars more than 2 K from the temperature it was
-/// identified at (PMMA changes by some 0.3 % per kelvin). A bench of elastic bars takes any.
+/// Refuses a bar model that was identified from waves that grow on their way: no bar does that.
+/// @param name  of the model, for the message
+/// @throws InputError
+void require_passive(const Material& model, const std::string& name);
+
+/// Refuses a bar model for what it does not hold for: one that is not passive; viscoelastic bars of
+/// another density (moduli tell a wave's speed only with the density they were identified with),
+/// more than 1 % and three filed deviations off; and, where both are known, bars more than 2 K from
+/// the temperature it was identified at (PMMA changes by some 0.3 % per kelvin). A bench of elastic
+/// bars takes any.
 /// @param name  of the model, for the message
 /// @throws InputError
 void require_bar_model_holds(const Material& model, const Bench& bench, const std::string& name);
@@ -30,6 +36,9 @@ void require_band_known(const Material& model, std::optional<double> asked_Hz,
 
 /// What to say where a bar model's temperature is known and the shot's is not; else nothing.
 [[nodiscard]] std::string temperature_unchecked(const Material& model, const Shot& shot);
+
+/// What to say of a bar model whose identification left far more than noise; else nothing.
+[[nodiscard]] std::string poorly_identified(const Material& model);
 
 /// What viscoelastic bars of which nothing is filed are taken to be: the paper's PMMA.
 /// @throws InputError where a bar without a modulus is more than 5 % denser or lighter than that

@@ -24,6 +24,9 @@ struct Material {
   struct Identified {
     std::optional<double> band_limit_Hz{};  ///< up to which the records were used
     std::optional<double> temperature_K{};  ///< of the bars
+    // Of the identification itself: for who takes it from its file, not carried with shots.
+    std::optional<double> chi2_reduced{};  ///< what the fit left, per degree of freedom
+    bool passive = true;                   ///< false: waves grew on their way
     friend bool operator==(const Identified&, const Identified&) = default;
   };
   /// None: nobody has identified it from waves.

@@ -130,7 +130,9 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
   run.bars = fmt::format("identified from {} shots", shots.size());
   material.source = "kolsky chain, " + run.bars;
-  material.identified = Material::Identified{fit.band_limit_Hz, run.bar->temperature_K};
+  material.identified =
+      Material::Identified{fit.band_limit_Hz, run.bar->temperature_K, fit.chi2_reduced,
+                           !run.bar->spectrum.mean_loss.gains()};
   Bars bars{BarPrior(material), fit.band_limit_Hz, std::string(kPlace) + "--bar-shots"};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -148,9 +150,10 @@ SpecimenFit fit_of(const std::vector<Shot>& shots, const Bars& bars, const char*
       require_bar_model_holds(bars.prior.material, shot, bars.name);
     }
   }
-  if (const std::string unknown = own ? "" : temperature_unchecked(bars.prior.material, shots[0]);
-      !unknown.empty()) {
-    say_to_a_person("bars " + unknown);
+  if (!own) {
+    for (const std::string& doubt : doubts_of(bars.prior.material, shots.front())) {
+      say_to_a_person("bars " + doubt);
+    }
   }
   const BarPrior prior =
       own && shots.front().bar_model ? BarPrior(*shots.front().bar_model) : bars.prior;

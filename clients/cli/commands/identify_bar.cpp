@@ -59,6 +59,7 @@ void write_material(const std::string& path, const BarIdentification& result,
                     const std::vector<Shot>& shots) {
   const BarFit& fit = result.three_element;
   const Bar& bar = shots.front().bench.input;
+  const bool grows = result.spectrum.mean_loss.gains();
   Material material;
   material.density_kg_m3 = bar.density_kg_m3;
   material.poisson_ratio = bar.poisson_ratio;
@@ -81,7 +82,8 @@ void write_material(const std::string& path, const BarIdentification& result,
                      "file an elastic bar by bars.*.youngs_modulus_Pa in the bench instead");
   }
   NewFile file(path);
-  file.write(format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced}));
+  file.write(
+      format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced, !grows}));
   file.publish(kReadableByAll);
 }
 

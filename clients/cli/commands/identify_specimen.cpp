@@ -119,9 +119,9 @@ IdentifiedSpecimen identify(const Settings& settings) {
     throw in_captures(error, settings.captures);
   }
   if (outcome.bars) {
-    const std::string unchecked = temperature_unchecked(*outcome.bars, outcome.shots.front());
-    if (!unchecked.empty()) {
-      outcome.fit.warnings.push_back("the bar model was " + unchecked);
+    for (const std::string& doubt :
+         doubts_of(outcome.bars->prior.material, outcome.shots.front())) {
+      outcome.fit.warnings.push_back("the bar model was " + doubt);
     }
   }
   SpectralOptions spectral;

@@ -13,6 +13,7 @@
 #include "drivers/files/models/model_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/impact/bench_impact.hpp"
 
@@ -155,7 +156,9 @@ int make_new(const NewSettings& settings, Context& context) {
     }
     file.bar_source = take_ball(settings, filed, file.model);
   } else if (settings.bar_model) {
-    take_bar_model(read_material(*settings.bar_model), file.model);
+    const Material bars = read_material(*settings.bar_model);
+    require_passive(bars, *settings.bar_model);
+    take_bar_model(bars, file.model);
     file.bar_source = *settings.bar_model;
   } else if (!elastic) {
     file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"

@@ -204,7 +204,8 @@ Bars bars_of(const Settings& settings, const Bench& bench) {
   if (settings.bar_model) {
     const BarModelFile model = read_bar_model(*settings.bar_model);
     require_holds(model, bench);
-    return {model.prior.material, model.name, false};
+    const std::string doubt = poorly_identified(model.prior.material);
+    return {model.prior.material, model.name + (doubt.empty() ? "" : " (" + doubt + ")"), false};
   }
   try {
     const Material material = assumed_bars(bench);

@@ -175,10 +175,7 @@ int run(const Settings& settings, Context& context) {
   require_histories(reduced);
   if (bars.has_value()) {
     require_holds(*bars, reduced.shot);
-    const std::string unchecked = temperature_unchecked(*bars, reduced.shot);
-    if (!unchecked.empty()) {
-      reduced.reduction.bar_model += " (" + unchecked + ")";
-    }
+    reduced.reduction.bar_model += doubts_in_brackets(bars->prior.material, reduced.shot);
   }
   if (settings.uncertainty || settings.draws.has_value()) {
     reduced.uncertainty = propagate(reduced.shot, reduced.options, reduced.reduction,

@@ -141,6 +141,7 @@ JsonValue describe(const BarIdentification& result, const std::vector<ForetoldSh
       {"chi2_reduced", three.chi2_reduced},
       {"degrees_of_freedom", static_cast<std::uint64_t>(three.degrees_of_freedom)},
       {"misfit", describe(three.misfit)},
+      {"passive", !result.spectrum.mean_loss.gains()},
       {"dispersion", name_of(three.theory)},
       {"far_end", name_of(three.far_end)},
       {"two_passes", result.two_passes},

@@ -36,7 +36,9 @@ Material read(const TomlTable& table) {
   }
   if (const auto identified = table.optional_table("identified")) {
     material.identified = Material::Identified{identified->optional_number("band_limit_Hz"),
-                                               identified->optional_number("temperature_K")};
+                                               identified->optional_number("temperature_K"),
+                                               identified->optional_number("chi2_reduced"),
+                                               identified->optional_flag("passive").value_or(true)};
     for (const std::string& key : identified->keys()) {
       identified->accept(key);  // the rest of that is for people
     }
@@ -129,7 +131,8 @@ std::string format_material(const Material& material, const Identified& identifi
   from_waves.identified = material.identified.value_or(Material::Identified{});
   return format_material(from_waves) + "shots = " + std::to_string(identified.shots) +
          "\ndispersion = " + quoted(identified.dispersion) +
-         "\nchi2_reduced = " + digits(identified.chi2_reduced) + "\n";
+         "\nchi2_reduced = " + digits(identified.chi2_reduced) +
+         "\npassive = " + (identified.passive ? "true" : "false") + "\n";
 }
 
 }  // namespace kolsky

@@ -11,14 +11,16 @@ namespace kolsky {
 [[nodiscard]] Material read_material(const std::filesystem::path& path);
 [[nodiscard]] Material parse_material(const std::string& text, const std::string& name);
 
-/// TOML with as many digits as it takes for the same bits to be read back.
+/// TOML with as many digits as it takes for the same bits to be read back. What is said of the
+/// identification itself goes by the form below.
 [[nodiscard]] std::string format_material(const Material& material);
 
-/// How the values were identified, for people.
+/// How the values were identified.
 struct Identified {
   std::size_t shots = 0;
   std::string dispersion;  ///< how waves were taken to travel
   double chi2_reduced = 0.0;
+  bool passive = true;  ///< false: waves grew on their way, and no bar model may be made of it
 };
 
 /// The same with these in the table `[identified]`.

@@ -28,38 +28,51 @@ class IdentifyBar : public ::testing::Test {
         "kind = \"bar\"\nsampling_frequency_Hz = 1e6\npositive = \"compression\"\n"
         "temperature_K = 296.0\n[bars.input]\nlength_m = 2.0\ndiameter_m = 0.02\n"
         "density_kg_m3 = 1180.0\npoisson_ratio = 0.36\n";
+    std::string exact = bench;
     for (int j = 0; j < 4; ++j) {
-      bench += fmt::format(
-          "[[gauges]]\nname = \"g{}\"\nbar = \"input\"\nposition_m = {}\nposition_m_sd = 0.0002\n"
-          "unit = \"V\"\nstrain_per_V = 0.001\nstrain_per_V_sd = 0.00001\n",
+      const std::string gauge = fmt::format(
+          "[[gauges]]\nname = \"g{}\"\nbar = \"input\"\nposition_m = {}\nunit = \"V\"\n"
+          "strain_per_V = 0.001\n",
           j + 1, 0.1 + 0.2 * j);
+      exact += gauge;
+      bench += gauge + "position_m_sd = 0.0002\nstrain_per_V_sd = 0.00001\n";
     }
     folder_.write("bench.toml", bench);
+    folder_.write("exact.toml", exact);
     testing::BarShots::Setup setup;
     setup.material = kTruth;
     testing::BarShots::Recording recording;
     recording.gain_sd = 0.01;
     recording.position_sd_m = 0.2e-3;
     std::mt19937_64 random(3);
-    int number = 0;
-    for (const Shot& shot : testing::BarShots(setup).draw(3, recording, random)) {
-      std::string table = "time_s,g1,g2,g3,g4\n";
-      for (std::size_t n = 0; n < shot.samples(); ++n) {
-        table += fmt::format("{:.7f}", static_cast<double>(n) * 1e-6);
-        for (const ChannelRecord& channel : shot.channels) {
-          table += fmt::format(",{:.7e}", channel.value(channel.codes[n]));
-        }
-        table += "\n";
-      }
-      const std::string name = fmt::format("shot{}", ++number);
-      folder_.write(name + ".csv", table);
-      captures_.push_back((folder_ / (name + ".h5")).string());
-      (void)json_of(scene::kolsky({"import", "csv", (folder_ / (name + ".csv")).string(), "--bench",
-                                   folder_ / "bench.toml", "-o", captures_.back(), "--json"}));
+    shots_ = testing::BarShots(setup).draw(3, recording, random);
+    for (std::size_t i = 0; i < shots_.size(); ++i) {
+      captures_.push_back(imported(shots_[i], fmt::format("shot{}", i + 1), 1.0, "bench.toml"));
     }
   }
 
+  /// @param growth  of each gauge's readings over those of the one before
+  std::string imported(const Shot& shot, const std::string& name, double growth,
+                       const std::string& bench) {
+    std::string table = "time_s,g1,g2,g3,g4\n";
+    for (std::size_t n = 0; n < shot.samples(); ++n) {
+      table += fmt::format("{:.7f}", static_cast<double>(n) * 1e-6);
+      double gain = 1.0;
+      for (const ChannelRecord& channel : shot.channels) {
+        table += fmt::format(",{:.7e}", gain * channel.value(channel.codes[n]));
+        gain *= growth;
+      }
+      table += "\n";
+    }
+    folder_.write(name + ".csv", table);
+    std::string capture = folder_ / (name + ".h5");
+    (void)json_of(scene::kolsky({"import", "csv", folder_ / (name + ".csv"), "--bench",
+                                 folder_ / bench, "-o", capture, "--json"}));
+    return capture;
+  }
+
   scene::Folder folder_;
+  std::vector<Shot> shots_;
   std::vector<std::string> captures_;
 };
 
@@ -76,6 +89,18 @@ TEST_F(IdentifyBar, IsWhatReducingABarPointsToAndItsGaugesAreExported) {
   std::getline(gauges, header);
   EXPECT_EQ(header.substr(0, 6), "time_s") << header;
   EXPECT_NE(header.find("g4"), std::string::npos) << header;
+}
+
+TEST_F(IdentifyBar, FilesThatTheWavesGrow) {
+  const std::string growing = imported(shots_.front(), "growing", 1.25, "exact.toml");
+  const std::string model = folder_ / "growing.toml";
+  const json told =
+      json_of(scene::kolsky({"identify", "bar", growing, "--model-out", model, "--json"}));
+  EXPECT_EQ(told["passive"], false);
+  const Material filed = read_material(model);
+  ASSERT_TRUE(filed.identified);
+  EXPECT_FALSE(filed.identified->passive);
+  EXPECT_EQ(filed.identified->chi2_reduced, told["chi2_reduced"].get<double>());
 }
 
 TEST_F(IdentifyBar, ASolidThatIsAskedForIsSaidToBe) {

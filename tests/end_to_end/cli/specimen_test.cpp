@@ -245,6 +245,40 @@ TEST_F(SpecimenFiles, RefuseABarModelOutsideWhereItWasIdentified) {
                       {"odd.toml", "covariance"}));
 }
 
+// Moduli may look like any others: what they were identified from does not.
+TEST_F(SpecimenFiles, RefuseOrDoubtABarModelThatWasIdentifiedBadly) {
+  const std::string& capture = captures_.front();
+  const auto model = [&](const std::string& name, const std::string& line) {
+    folder_.write(name, kPmma + line);
+    return folder_ / name;
+  };
+  const std::string growing = model("growing.toml", "passive = false\n");
+  const std::vector<std::string> said{"growing.toml", "identified.passive", "grow on their way",
+                                      "gauge factors"};
+  folder_.write("core.toml",
+                "density_kg_m3 = 1140\npoisson_ratio = 0.376\nE1_Pa = 121e6\nE2_Pa = 143e6\n"
+                "eta2_Pa_s = 2860\n");
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bar-model", growing}), said));
+  EXPECT_TRUE(refused(kolsky(identify({"--bar-model", growing})), said));
+  EXPECT_TRUE(refused(
+      kolsky({"plan", "--bench", folder_ / "bench.toml", "--specimen", folder_ / "core.toml",
+              "--bar-model", growing, "--pulse-strain", "0.001", "--pulse-duration", "170e-6"}),
+      said));
+  EXPECT_TRUE(refused(kolsky({"model", "new", "--kind", "shpb", "--bar-model", growing, "-o",
+                              folder_ / "model.toml"}),
+                      said));
+
+  const std::string poor = model("poor.toml", "chi2_reduced = 872.7\n");
+  EXPECT_NE(kolsky({"reduce", capture, "--bar-model", poor}).out.find("873 times what noise does"),
+            std::string::npos);
+  const json told = json_of(kolsky(identify({"--bar-model", poor, "--json"})));
+  EXPECT_NE(told["warnings"].dump().find("873 times what noise does"), std::string::npos)
+      << told["warnings"];
+  const std::string good = model("good.toml", "chi2_reduced = 1.2\npassive = true\n");
+  EXPECT_EQ(kolsky({"reduce", capture, "--bar-model", good}).out.find("times what noise"),
+            std::string::npos);
+}
+
 // Nylon, say: moduli of PMMA would only look like a result.
 TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
   const auto bench_of = [](const char* density) {

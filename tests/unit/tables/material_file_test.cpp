@@ -71,7 +71,9 @@ TEST(MaterialFile, WhatIsWrittenReadsBackToTheBit) {
   odd.covariance = {1.0 / 3.0, 0.1, 0.0, 0.1, 2.0 / 7.0, -1e-3, 0.0, -1e-3, 1e14 / 3.0};
   odd.identified = Material::Identified{94.39e3 / 7.0, 293.15};
   expect_same(parse_material(format_material(odd), "m.toml"), odd);
-  const std::string with_more = format_material(odd, {10, "exact", 1.01});
+  const std::string with_more = format_material(odd, {10, "exact", 1.01, false});
+  odd.identified->chi2_reduced = 1.01;
+  odd.identified->passive = false;
   EXPECT_NE(with_more.find("dispersion = \"exact\""), std::string::npos);
   expect_same(parse_material(with_more, "m.toml"), odd);
 }
