@@ -222,17 +222,27 @@ void take_temperatures(const std::vector<Shot>& shots, BarIdentification& result
   }
 }
 
-void warn_of_gain(const BarSpectrum& spectrum, std::vector<std::string>& warnings) {
+/// By how much and where J2 is below zero.
+std::string where_negative(const BarSpectrum& spectrum) {
   const MeanLoss& loss = spectrum.mean_loss;
-  if (!loss.gains()) {
-    return;
+  std::string text;
+  if (loss.J2_per_Pa < 0.0) {
+    text = ", by " + rounded(-loss.J2_per_Pa / loss.sd_per_Pa) +
+           " deviations on average over the band";
   }
-  warnings.push_back(
-      "not passive: J2 is negative, on average over the band " +
-      rounded(loss.J2_per_Pa / loss.sd_per_Pa) + " deviations and at " +
-      std::to_string(loss.negative) + " of " + std::to_string(spectrum.frequency_Hz.size()) +
-      " frequencies clearly: waves would grow on their way; check the gauge factors and the order "
-      "of the gauges");
+  if (loss.negative > 0) {
+    text += ", clearly at " + std::to_string(loss.negative) + " of " +
+            std::to_string(spectrum.frequency_Hz.size()) + " frequencies";
+  }
+  return text;
+}
+
+void warn_of_gain(const BarSpectrum& spectrum, std::vector<std::string>& warnings) {
+  if (spectrum.mean_loss.gains()) {
+    warnings.push_back("not passive: J2 is negative" + where_negative(spectrum) +
+                       ": waves would grow on their way; check the gauge factors and the order of "
+                       "the gauges");
+  }
 }
 
 /// What is open about a bar of three elements.

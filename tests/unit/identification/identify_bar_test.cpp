@@ -306,7 +306,9 @@ TEST(IdentifyBar, GrowingWavesAreFlagged) {
       auto shots = draw(elastic_bar(post_samples), 2, 7);
       let_waves_grow(shots, growth);
       const auto result = identify_bar(shots, {.compare_solids = false});
-      EXPECT_TRUE(says(result, "not passive"));
+      EXPECT_TRUE(says(result, "not passive: J2 is negative"));
+      EXPECT_FALSE(says(result, "not passive: J2 is negative, by -")) << "twice negative";
+      EXPECT_TRUE(says(result, "deviations on average over the band"));
       EXPECT_FALSE(says(result, "as good as elastic"));
     }
   }
