@@ -13,6 +13,12 @@ void require(const std::optional<std::string>& path, const char* beginning) {
 
 }  // namespace
 
+void require_new_output(const std::optional<std::string>& path) {
+  if (path) {
+    const NewFile dropped(*path);
+  }
+}
+
 void require_model_output(const std::optional<std::string>& path) {
   require(path, "kolsky_model");
 }

@@ -7,6 +7,8 @@ namespace kolsky::cli {
 
 // Before long work: whether its result may be put where it is asked for.
 
+/// @throws InputError where the name is taken or the folder cannot be written
+void require_new_output(const std::optional<std::string>& path);
 /// @throws InputError where the file cannot be written or is there and no model
 void require_model_output(const std::optional<std::string>& path);
 /// @throws InputError where the file cannot be written or is there and no page

@@ -46,12 +46,24 @@ std::vector<std::string> warnings_of(const std::vector<FittedNumber>& parameters
 std::vector<std::string> warnings_of(const std::vector<CompliancePoint>& spectrum) {
   constexpr double kClearly = 4.0;
   for (const CompliancePoint& p : spectrum) {
-    if (p.J2_per_Pa < -kClearly * p.J2_sd_of_mean) {
+    const double sd = std::isnan(p.J2_sd_of_mean) ? 0.0 : p.J2_sd_of_mean;
+    if (p.J2_per_Pa < -kClearly * sd) {
       return {"J2 is negative at " + std::to_string(std::lround(p.frequency_Hz)) +
               " Hz: no passive material does that"};
     }
   }
   return {};
+}
+
+std::string gives_energy_back(const std::vector<CompliancePoint>& spectrum) {
+  const auto negative = std::ranges::count_if(
+      spectrum, [](const CompliancePoint& point) { return point.J2_per_Pa < 0.0; });
+  const auto count = static_cast<std::ptrdiff_t>(spectrum.size());
+  if (count == 0 || 2 * negative < count) {
+    return "";
+  }
+  return "strain over stress has a negative J2 at " + std::to_string(negative) + " of " +
+         std::to_string(count) + " frequencies, as if the specimen gave energy back";
 }
 
 std::string no_more_than_three_elements(const SpecimenFit& fit) {

@@ -17,6 +17,10 @@ inline constexpr double kPoorChi2 = 1.5;
 /// A loss that is clearly negative, where it first is: no passive material does that.
 [[nodiscard]] std::vector<std::string> warnings_of(const std::vector<CompliancePoint>& spectrum);
 
+/// Of strain over stress that gives energy back at half of its frequencies or more, where a fit to
+/// the records found nothing either: it is bars or gauges that are wrong. Empty for any other.
+[[nodiscard]] std::string gives_energy_back(const std::vector<CompliancePoint>& spectrum);
+
 /// Of a family that takes nothing worth having off the chi2 of three elements: what it has more is
 /// not determined.
 [[nodiscard]] std::string no_more_than_three_elements(const SpecimenFit& fit);

@@ -230,8 +230,8 @@ void SpecimenSearch::require_determined(const SpecimenMinimum& minimum) const {
           "fit",
           std::string("says nothing of ") +
               parameters_of(solid_)[static_cast<std::size_t>(i)].name + " where it ends",
-          "give more shots or a wider band, bars that are not much shorter than the pulse, or "
-          "try another family of solids");
+          "check the bar model, give more shots or a wider band, bars that are not much shorter "
+          "than the pulse, or try another family of solids");
     }
   }
 }

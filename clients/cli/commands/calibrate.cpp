@@ -4,6 +4,7 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/calibration_report.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
@@ -45,6 +46,7 @@ CalibrationOptions options_from(const Settings& settings, const std::vector<Shot
 }
 
 int run(const Settings& settings, Context& context) {
+  require_new_output(settings.bench_out);
   std::vector<Shot> shots = read_shots(settings.captures);
   if (settings.bench) {
     for (Shot& shot : shots) {
@@ -62,6 +64,9 @@ int run(const Settings& settings, Context& context) {
     }
   }();
   const Shot& first = shots.front();
+  // First what was found: a file that cannot be made takes none of it away.
+  context.out << (context.json ? to_text(describe(calibration, first.bench)) + "\n"
+                               : report(calibration, first.bench));
   if (settings.bench_out) {
     NewFile file(*settings.bench_out);
     const std::string text = edit_bench(first.bench_toml, corrections(calibration, first.bench));
@@ -69,8 +74,6 @@ int run(const Settings& settings, Context& context) {
     file.write(text);
     file.publish(kReadableByAll);
   }
-  context.out << (context.json ? to_text(describe(calibration, first.bench)) + "\n"
-                               : report(calibration, first.bench));
   return kDone;
 }
 

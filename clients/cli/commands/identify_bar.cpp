@@ -4,6 +4,7 @@
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/doubts.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/bar_report.hpp"
 #include "clients/cli/reports/fit_draws.hpp"
 #include "clients/cli/slow_work.hpp"
@@ -58,8 +59,8 @@ BarIdentificationOptions options_from(const Settings& settings) {
 void write_material(const std::string& path, const BarIdentification& result,
                     const std::vector<Shot>& shots) {
   const BarFit& fit = result.three_element;
-  const Bar& bar = shots.front().bench.input;
   const bool grows = result.spectrum.mean_loss.gains();
+  const Bar& bar = shots.front().bench.input;
   Material material;
   material.density_kg_m3 = bar.density_kg_m3;
   material.poisson_ratio = bar.poisson_ratio;
@@ -79,7 +80,10 @@ void write_material(const std::string& path, const BarIdentification& result,
   } catch (const InputError& error) {
     throw InputError(std::string(kName) + ": --model-out",
                      "cannot file this fit: " + error.place() + " " + error.problem(),
-                     "file an elastic bar by bars.*.youngs_modulus_Pa in the bench instead");
+                     grows ? "check the gauge factors and the order of the gauges: the waves grow "
+                             "on their way"
+                           : "file an elastic bar by bars.*.youngs_modulus_Pa in the bench "
+                             "instead");
   }
   NewFile file(path);
   file.write(
@@ -110,6 +114,8 @@ int run(const Settings& settings, Context& context) {
   if (settings.draws) {
     require_draws(kName, *settings.draws);
   }
+  require_new_output(settings.model_out);
+  require_new_output(settings.svg);
   const std::vector<Shot> shots = captured_shots(settings.captures);
   BarIdentification result = identify(shots, settings);
   // Three elements are what there is by default, too.
@@ -119,19 +125,19 @@ int run(const Settings& settings, Context& context) {
     foretold = foretell(shots, result.fit);
   }
   const std::optional<FitDraws> draws = drawn(shots, result, settings);
-  if (settings.model_out) {
-    write_material(*settings.model_out, result, shots);
-  }
+  // First what was found: a file that cannot be made takes none of it away.
+  const std::vector<ForetoldShot> told =
+      settings.waveforms ? foretold : std::vector<ForetoldShot>{};
+  context.out << (context.json ? to_text(describe(result, told, draws)) + "\n"
+                               : report(result, draws));
   if (settings.svg) {
     NewFile page(*settings.svg);
     page.write(render_svg(bar_figure(result, foretold.front())));
     page.publish(kReadableByAll);
   }
-  if (!settings.waveforms) {
-    foretold.clear();
+  if (settings.model_out) {
+    write_material(*settings.model_out, result, shots);
   }
-  context.out << (context.json ? to_text(describe(result, foretold, draws)) + "\n"
-                               : report(result, draws));
   return kDone;
 }
 

@@ -8,6 +8,7 @@
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/doubts.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/fit_draws.hpp"
 #include "clients/cli/reports/specimen_report.hpp"
 #include "clients/cli/slow_work.hpp"
@@ -76,10 +77,24 @@ SpecimenFitOptions fit_options(const Settings& settings, const std::optional<Bar
   return options;
 }
 
+/// What a material file holds besides the moduli comes from the bench.
+void require_fileable(const Shot& shot) {
+  const Specimen& specimen = *shot.bench.specimen;
+  if (!specimen.density_kg_m3 || !specimen.poisson_ratio) {
+    throw InputError(std::string(kName) + ": --model-out",
+                     "needs the specimen's density and Poisson's ratio, which the bench of " +
+                         shot.id + " lacks",
+                     "file specimen.density_kg_m3 and specimen.poisson_ratio");
+  }
+}
+
 std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarModelFile>& bars) {
   std::vector<Shot> shots = captured_shots(settings.captures);
   for (const Shot& shot : shots) {
     require_specimen(shot);
+    if (settings.model_out) {
+      require_fileable(shot);
+    }
     if (bars) {
       require_holds(*bars, shot);
     } else if (shot.bar_model) {
@@ -96,18 +111,44 @@ FitDraws draw(const IdentifiedSpecimen& outcome, const BarPrior& bars, std::uint
                             draw_options(draws, progress), all_cores());
 }
 
+BarPrior bars_of(const IdentifiedSpecimen& outcome, const Settings& settings) {
+  const Shot& first = outcome.shots.front();
+  if (outcome.bars) {
+    return outcome.bars->prior;
+  }
+  try {
+    return BarPrior(first.bar_model ? *first.bar_model : assumed_bars(first.bench));
+  } catch (const InputError& error) {
+    throw in_captures(error, settings.captures);
+  }
+}
+
+/// A fit that found nothing, with what the histories say of why.
+InputError with_cause(const InputError& error, const std::vector<Shot>& shots, const Material& bars,
+                      const SpecimenFitOptions& options) {
+  SpectralOptions spectral;
+  spectral.bars = options.bars.value_or(spectral.bars);
+  std::string cause;
+  try {
+    cause = gives_energy_back(estimate_spectrum(shots, bars, spectral).spectrum);
+  } catch (const InputError&) {
+    return error;
+  }
+  return cause.empty() ? error
+                       : InputError(error.place(), error.problem() + ": " + cause,
+                                    "check the bar model first, then gauge factors and positions");
+}
+
 IdentifiedSpecimen identify(const Settings& settings) {
   IdentifiedSpecimen outcome;
+  require_new_output(settings.model_out);
   if (settings.bar_model) {
     outcome.bars = read_bar_model(*settings.bar_model);
     require_band(*outcome.bars, settings.band_limit_Hz);
   }
   SpecimenFitOptions options = fit_options(settings, outcome.bars);
   outcome.shots = read_shots(settings, outcome.bars);
-  const Shot& first = outcome.shots.front();
-  BarPrior prior = outcome.bars      ? outcome.bars->prior
-                   : first.bar_model ? BarPrior(*first.bar_model)
-                                     : BarPrior(assumed_bars(first.bench));
+  BarPrior prior = bars_of(outcome, settings);
   if (const auto& identified = prior.material.identified; identified && !options.most_band_Hz) {
     options.most_band_Hz = identified->band_limit_Hz;
   }
@@ -116,7 +157,7 @@ IdentifiedSpecimen identify(const Settings& settings) {
   try {
     outcome.fit = fit_specimen(outcome.shots, prior, options);
   } catch (const InputError& error) {
-    throw in_captures(error, settings.captures);
+    throw in_captures(with_cause(error, outcome.shots, prior.material, options), settings.captures);
   }
   if (outcome.bars) {
     for (const std::string& doubt :
@@ -143,11 +184,6 @@ IdentifiedSpecimen identify(const Settings& settings) {
 void write_material(const IdentifiedSpecimen& outcome, const std::string& path) {
   const SpecimenFit& fit = outcome.fit;
   const Bench& bench = outcome.shots.front().bench;
-  if (!bench.specimen->density_kg_m3 || !bench.specimen->poisson_ratio) {
-    throw InputError(std::string(kName) + ": --model-out",
-                     "needs the specimen's density and Poisson's ratio, which the bench lacks",
-                     "file specimen.density_kg_m3 and specimen.poisson_ratio");
-  }
   Material material;
   material.density_kg_m3 = *bench.specimen->density_kg_m3;
   material.poisson_ratio = *bench.specimen->poisson_ratio;
@@ -157,6 +193,13 @@ void write_material(const IdentifiedSpecimen& outcome, const std::string& path) 
   material.source =
       fmt::format("kolsky identify specimen, {} shots, chi2 per degree of freedom {:.3f}",
                   outcome.shots.size(), fit.chi2_reduced);
+  try {
+    check(material);
+  } catch (const InputError& error) {
+    throw InputError(std::string(kName) + ": --model-out",
+                     "cannot file this fit: " + error.place() + " " + error.problem(),
+                     "give more shots or a wider band");
+  }
   std::string text = format_material(material) + "covariance = [";
   for (const auto& row : fit.covariance) {
     for (const double value : row) {
@@ -175,10 +218,11 @@ void write_material(const IdentifiedSpecimen& outcome, const std::string& path) 
 
 int run(const Settings& settings, Context& context) {
   const IdentifiedSpecimen outcome = identify(settings);
+  // First what was found: a file that cannot be made takes none of it away.
+  context.out << (context.json ? to_text(describe(outcome)) + "\n" : report(outcome));
   if (settings.model_out) {
     write_material(outcome, *settings.model_out);
   }
-  context.out << (context.json ? to_text(describe(outcome)) + "\n" : report(outcome));
   return kDone;
 }
 

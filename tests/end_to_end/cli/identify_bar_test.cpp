@@ -103,6 +103,25 @@ TEST_F(IdentifyBar, FilesThatTheWavesGrow) {
   EXPECT_EQ(filed.identified->chi2_reduced, told["chi2_reduced"].get<double>());
 }
 
+TEST_F(IdentifyBar, ShowsWhatItCannotFile) {
+  testing::BarShots::Setup elastic;
+  elastic.material = {1180.0, 5.66e9};
+  std::mt19937_64 random(4);
+  const Shot shot = testing::BarShots(elastic).draw(1, {}, random).front();
+  const std::string growing = imported(shot, "growing", 1.25, "exact.toml");
+  const std::string model = folder_ / "growing.toml";
+  const scene::Answer answer = scene::kolsky({"identify", "bar", growing, "--model-out", model});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.out.find("not passive"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.err.find("cannot file this fit"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("order of the gauges"), std::string::npos) << answer.err;
+  // What can be known beforehand is said before any work.
+  const scene::Answer nowhere =
+      scene::kolsky({"identify", "bar", growing, "--model-out", folder_ / "none/growing.toml"});
+  EXPECT_EQ(nowhere.code, 2);
+  EXPECT_EQ(nowhere.out, "");
+}
+
 TEST_F(IdentifyBar, ASolidThatIsAskedForIsSaidToBe) {
   const json result = json_of(
       scene::kolsky({"identify", "bar", captures_.front(), "--solid", "three-element", "--json"}));

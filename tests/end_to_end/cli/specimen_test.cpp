@@ -8,6 +8,7 @@
 #include <iterator>
 #include <numbers>
 #include <random>
+#include <sstream>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/generators/linear_shpb.hpp"
@@ -279,6 +280,27 @@ TEST_F(SpecimenFiles, RefuseOrDoubtABarModelThatWasIdentifiedBadly) {
             std::string::npos);
 }
 
+// Bars with so much loss leave no specimen that would make these records.
+TEST_F(SpecimenFiles, NameTheBarModelWhereTheFitFindsNothing) {
+  folder_.write("lossy.toml",
+                "density_kg_m3 = 1180.0\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\nE2_Pa = 12e9\n"
+                "eta2_Pa_s = 0.3e6\n");
+  std::string bench = kBench;
+  for (const char* sd :
+       {"temperature_K_sd = 0.3\n", "diameter_m_sd = 0.00002\n", "position_m_sd = 0.0001\n"}) {
+    bench = replaced(bench, sd, "");
+  }
+  folder_.write("exact.toml", bench);
+  const std::string exact = folder_ / "exact.h5";
+  ASSERT_EQ(kolsky({"import", "csv", folder_ / "shot0.csv", "--bench", folder_ / "exact.toml", "-o",
+                    exact})
+                .code,
+            0);
+  EXPECT_TRUE(
+      refused(kolsky({"identify", "specimen", exact, "--bar-model", folder_ / "lossy.toml"}),
+              {"exact.h5", "says nothing of", "check the bar model"}));
+}
+
 // Nylon, say: moduli of PMMA would only look like a result.
 TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
   const auto bench_of = [](const char* density) {
@@ -320,7 +342,9 @@ TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
   EXPECT_TRUE(refused(kolsky({"reduce", dense}), said));
   EXPECT_TRUE(
       refused(kolsky({"reduce", captures_.front(), "--bench", folder_ / "dense.toml"}), said));
-  EXPECT_TRUE(refused(kolsky({"identify", "specimen", dense}), said));
+  std::vector<std::string> said_of_capture = said;
+  said_of_capture.push_back("dense.h5");
+  EXPECT_TRUE(refused(kolsky({"identify", "specimen", dense}), said_of_capture));
   EXPECT_TRUE(refused(plan("dense", {}), said));
   // With their moduli they are bars like others.
   const std::vector<std::string> known{"--bar-model", folder_ / "nylon.toml"};

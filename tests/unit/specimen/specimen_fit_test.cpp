@@ -502,6 +502,12 @@ TEST(SpecimenWarnings, NameALossThatIsNegative) {
   CompliancePoint active = passive;
   active.frequency_Hz = 2e3;
   active.J2_per_Pa = -1e-9;
+  EXPECT_EQ(gives_energy_back({passive, active}).find("strain over stress has a negative J2 at 2"),
+            0U);
+  CompliancePoint lossy;
+  lossy.J2_per_Pa = 1e-10;
+  EXPECT_TRUE(gives_energy_back({lossy, lossy, active}).empty()) << "one frequency of three";
+  EXPECT_TRUE(gives_energy_back({}).empty());
   EXPECT_TRUE(warnings_of({passive}).empty());
   const auto warnings = warnings_of({passive, active});
   ASSERT_EQ(warnings.size(), 1U);
