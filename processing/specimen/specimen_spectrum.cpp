@@ -227,7 +227,10 @@ SpectralEstimate estimate_spectrum(const std::vector<Shot>& shots, const Materia
     const Complex mean = points.J[k] * to_axis;
     point.J1_per_Pa = mean.real();
     point.J2_per_Pa = -mean.imag();
-    if (spectra.size() > 1) {
+    if (spectra.size() < 2) {
+      constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+      point.J1_sd = point.J2_sd = point.J1_sd_of_mean = point.J2_sd_of_mean = kUnknown;
+    } else {
       for (const ShotSpectra& of_shot : spectra) {
         const Complex off = of_shot.strain[k] / of_shot.stress[k] * to_axis - mean;
         point.J1_sd += off.real() * off.real() / (count - 1.0);

@@ -13,8 +13,9 @@ namespace kolsky {
 
 /// The specimen's compliance as strain over stress of the reduced histories (paper, eq. 25).
 struct SpectralEstimate {
-  std::vector<CompliancePoint> spectrum;  ///< mean and scatter over the shots; bench exact
-  std::vector<FittedNumber> parameters;   ///< a three-element solid through it
+  /// Mean and scatter over the shots; bench exact. One shot has no scatter: NaN.
+  std::vector<CompliancePoint> spectrum;
+  std::vector<FittedNumber> parameters;  ///< a three-element solid through it
   double band_limit_Hz = 0.0;
   double window_s = 0.0;  ///< of the histories that every shot has
   /// How the waves of all shots were told apart: by equilibrium, which (25) takes for granted

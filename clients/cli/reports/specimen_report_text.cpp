@@ -70,6 +70,9 @@ std::string report(const IdentifiedSpecimen& outcome) {
     text += fmt::format("  strain over stress, frequency by frequency (eq. 25, up to {})\n",
                         with_unit(outcome.spectral->band_limit_Hz, "Hz"));
     text += table_of(outcome.spectral->parameters);
+    text +=
+        "    these deviations hold scatter only, neither the bench's nor the bars': --draws has "
+        "them\n";
     if (outcome.spectral->separation == Separation::equilibrium) {
       text += "    waves overlap: told apart by the output bar's force, as if in equilibrium\n";
     }

@@ -180,6 +180,21 @@ TEST_F(SpecimenFiles, AreIdentifiedWithBothEstimatorsAndAFileToGoOnWith) {
   EXPECT_TRUE(refused(kolsky(identify({"--model-out", file})), {"core.toml", "exists"}));
 }
 
+TEST_F(SpecimenFiles, HaveNoScatterWhereThereIsOneShot) {
+  const json told = json_of(kolsky(
+      {"identify", "specimen", captures_.front(), "--bar-model", folder_ / "pmma.toml", "--json"}));
+  const json& spectrum = told["spectral"]["spectrum"];
+  for (const char* name : {"J1_sd", "J1_sd_of_mean", "J2_sd", "J2_sd_of_mean"}) {
+    ASSERT_FALSE(spectrum[name].empty()) << name;
+    for (const json& sd : spectrum[name]) {
+      EXPECT_TRUE(sd.is_null()) << name << " " << sd;
+    }
+  }
+  EXPECT_TRUE(spectrum["J1_per_Pa"][0].is_number());
+  EXPECT_NE(kolsky(identify({"--bar-model", folder_ / "pmma.toml"})).out.find("scatter only"),
+            std::string::npos);
+}
+
 TEST_F(SpecimenFiles, GiveANewResultWithACorrectedBenchBesideTheOldOne) {
   folder_.write("corrected.toml", replaced(kBench, "length_m = 0.004", "length_m = 0.005"));
   const std::string& capture = captures_.front();
