@@ -55,9 +55,8 @@ struct Asked {
 
 /// What --true does, for --help.
 inline constexpr const char* kTrueHelp =
-    "in --json also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - strain), for "
-    "a "
-    "specimen that keeps its volume";
+    "in --json and tables also strain_true = -ln(1 - strain) and stress_true_Pa = stress_Pa (1 - "
+    "strain), for a specimen that keeps its volume";
 
 /// The uncertainty's part of both.
 void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object);

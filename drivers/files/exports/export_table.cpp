@@ -18,15 +18,21 @@ ExportTable history_table(const Reduction& reduction) {
     return {{"time_s", "s", "time from first touch", reduction.ball->time_s},
             {"force_N", "N", "force on the bar's face, low-passed", reduction.ball->force_N}};
   }
-  return {{"time_s", "s", "time from the pulse's arrival at interface A", reduction.time_s},
-          {"stress_Pa", "Pa", "engineering stress, compression positive", reduction.stress_Pa},
-          {"strain", "", "engineering strain, compression positive", reduction.strain},
-          {"strain_rate_per_s", "1/s", "engineering strain rate", reduction.strain_rate_per_s},
-          {"force_front_N", "N", "force on the specimen's front face", reduction.force_front_N},
-          {"force_back_N", "N", "force on the specimen's back face", reduction.force_back_N},
-          {"incident_strain", "", "incident wave at interface A", reduction.incident},
-          {"reflected_strain", "", "reflected wave at interface A", reduction.reflected},
-          {"transmitted_strain", "", "transmitted wave at interface B", reduction.transmitted}};
+  ExportTable table{
+      {"time_s", "s", "time from the pulse's arrival at interface A", reduction.time_s},
+      {"stress_Pa", "Pa", "engineering stress, compression positive", reduction.stress_Pa},
+      {"strain", "", "engineering strain, compression positive", reduction.strain},
+      {"strain_rate_per_s", "1/s", "engineering strain rate", reduction.strain_rate_per_s},
+      {"force_front_N", "N", "force on the specimen's front face", reduction.force_front_N},
+      {"force_back_N", "N", "force on the specimen's back face", reduction.force_back_N},
+      {"incident_strain", "", "incident wave at interface A", reduction.incident},
+      {"reflected_strain", "", "reflected wave at interface A", reduction.reflected},
+      {"transmitted_strain", "", "transmitted wave at interface B", reduction.transmitted}};
+  if (!reduction.strain_true.empty()) {
+    table.push_back({"strain_true", "", "true strain", reduction.strain_true});
+    table.push_back({"stress_true_Pa", "Pa", "true stress", reduction.stress_true_Pa});
+  }
+  return table;
 }
 
 ExportTable gauge_table(const Shot& shot) {

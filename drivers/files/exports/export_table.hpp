@@ -20,7 +20,8 @@ struct ExportColumn {
 /// Time first.
 using ExportTable = std::vector<ExportColumn>;
 
-/// The specimen's histories; columns without rows where the shot could not be reduced.
+/// The specimen's histories, the true ones last where they were asked for; columns without rows
+/// where the shot could not be reduced.
 [[nodiscard]] ExportTable history_table(const Reduction& reduction);
 
 /// The gauges' records over time from the trigger, or from the first sample.

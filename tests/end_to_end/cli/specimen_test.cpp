@@ -213,6 +213,37 @@ TEST_F(SpecimenFiles, GiveANewResultWithACorrectedBenchBesideTheOldOne) {
   EXPECT_EQ(again["meta"]["corrected_from"], both["capture"]);
 }
 
+TEST_F(SpecimenFiles, GiveTrueValuesInTheirTableToo) {
+  const std::string& capture = captures_.front();
+  const auto header_and_rows = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"reduce", capture, "--csv", folder_ / name};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(kolsky(words).code, 0);
+    std::ifstream table(folder_ / name);
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(table, line);) {
+      std::istringstream cells(line);
+      rows.emplace_back();
+      for (std::string cell; std::getline(cells, cell, ',');) {
+        rows.back().push_back(cell);
+      }
+    }
+    return rows;
+  };
+  const auto plain = header_and_rows("plain.csv", {});
+  const auto rows = header_and_rows("true.csv", {"--true"});
+  ASSERT_EQ(rows.front().size(), plain.front().size() + 2);
+  const auto column = [&](const std::string& name) {
+    const auto at = std::find(rows.front().begin(), rows.front().end(), name);
+    EXPECT_NE(at, rows.front().end()) << name;
+    return static_cast<std::size_t>(at - rows.front().begin());
+  };
+  const std::size_t n = rows.size() / 2;
+  const auto number = [&](const std::string& name) { return std::stod(rows[n][column(name)]); };
+  EXPECT_NEAR(number("strain_true"), -std::log(1.0 - number("strain")), 1e-12);
+  EXPECT_NEAR(number("stress_true_Pa"), number("stress_Pa") * (1.0 - number("strain")), 1e-3);
+}
+
 TEST_F(SpecimenFiles, SayHowFarTheyCanBeTrusted) {
   const json told = json_of(kolsky({"reduce", captures_.front(), "--bar-model",
                                     folder_ / "pmma.toml", "--draws", "60", "--json"}));
