@@ -338,6 +338,25 @@ Check band(const QualityInputs& in, const Reduction& r) {
   return check;
 }
 
+/// An arrival that was given against what the record shows.
+Check arrival(double late_s, double way_s) {
+  Check check{
+      .name = "arrival", .value = late_s, .limit = kArrivalLimit_s, .unit = "s", .text = {}};
+  if (std::abs(late_s) <= kArrivalLimit_s) {
+    check.text = formatted("given, %.1f us off the foot that the record shows", 1e6 * late_s);
+    return check;
+  }
+  check.verdict = Verdict::warn;
+  check.text = formatted(
+      "given %.1f us %s than the foot of the first pulse at the gauge: %s; what is printed as the "
+      "arrival is at the specimen, %.1f us after that foot",
+      1e6 * std::abs(late_s), late_s > 0.0 ? "later" : "earlier",
+      late_s > 0.0 ? "what the pulse does before is left out"
+                   : "the pulse's end may count as reflected",
+      1e6 * way_s);
+  return check;
+}
+
 Check quiet_start(const Reduction& r) {
   const auto samples = static_cast<double>(r.quiet_samples);
   Check check{.name = "quiet_start",
@@ -459,6 +478,9 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
                               assumed ? untested(energy, Verdict::pass) : energy,
                               band(inputs, reduction),
                               quiet_start(reduction)};
+  if (inputs.arrival_late_s) {
+    reduction.quality.checks.push_back(arrival(*inputs.arrival_late_s, inputs.way_to_specimen_s));
+  }
   if (inputs.separated) {
     reduction.quality.checks.push_back(separated_noise(*inputs.separated));
   }

@@ -52,6 +52,9 @@ struct SeparationJudgement {
 /// itself it is never more.
 inline constexpr double kOverlapLimit = 0.02;
 
+/// An arrival that is given further from the foot that the record shows is another's.
+inline constexpr double kArrivalLimit_s = 10e-6;
+
 /// What the checks need besides the histories.
 struct QualityInputs {
   double input_peak = 0.0;       ///< of the incident pulse at its gauge, strain
@@ -76,7 +79,10 @@ struct QualityInputs {
   std::vector<double> front_rate_per_s;
   double specimen_length_m = 0.0;
   double specimen_mass_kg = 0.0;  ///< 0 where its density is not filed
-  double band_loss = 0.0;         ///< share of the incident pulse's energy that the band limit took
+  /// Of an arrival that was given: by how much it is later than the foot that the record shows.
+  std::optional<double> arrival_late_s{};
+  double way_to_specimen_s = 0.0;  ///< of a front, from the gauge that sees the push
+  double band_loss = 0.0;  ///< share of the incident pulse's energy that the band limit took
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the

@@ -61,11 +61,7 @@ class Pass {
     weigh_hidden_push();
     separate();
     if (!faces_ && push_still_rises()) {
-      return not_reducible(
-          formatted("the reflection hides the push at %s %.0f us after its foot, while it still "
-                    "rises: the bar is too short for this pulse",
-                    first_gauge().c_str(), 2e6 * travel_to_specimen_s()),
-          "it takes " + longer_window(in_.gauge_to_specimen_m, wave_speed_m_per_s()));
+      return push_not_seen();
     }
     if (!choose_window()) {
       return not_reducible("the record ends before the pulse has loaded the specimen",
@@ -86,6 +82,21 @@ class Pass {
   }
 
  private:
+  /// The push still rises when it is hidden: of a short bar, or after an arrival that is not its
+  /// foot.
+  [[nodiscard]] Reduction push_not_seen() const {
+    if (arrival_late_s_ && *arrival_late_s_ > kArrivalLimit_s) {
+      return not_reducible(
+          formatted("the arrival given is %.1f us later than the foot of the first pulse at %s",
+                    1e6 * *arrival_late_s_, first_gauge().c_str()),
+          "give the foot at that gauge: the arrival that is printed is at the specimen");
+    }
+    return not_reducible(
+        formatted("the reflection hides the push at %s %.0f us after its foot, while it still "
+                  "rises: the bar is too short for this pulse",
+                  first_gauge().c_str(), 2e6 * travel_to_specimen_s()),
+        "it takes " + longer_window(in_.gauge_to_specimen_m, wave_speed_m_per_s()));
+  }
   [[nodiscard]] const std::string& first_gauge() const {
     return shot_.channels[in_.channels.front()].gauge;
   }
@@ -114,6 +125,10 @@ class Pass {
     double foot = 0.0;
     if (options_.arrival_s) {
       foot = *options_.arrival_s * rate_Hz_;
+      if (const auto first =
+              find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach)) {
+        arrival_late_s_ = (foot - rough_foot(*first, reach)) * period_s_;
+      }
       rise = rise_after_foot(t_.input_strain, foot, reach, rate_Hz_);
     } else {
       rise = find_first_pulse(t_.input_strain, std::max<std::size_t>(width, 3), reach);
@@ -529,6 +544,8 @@ class Pass {
       q.specimen_mass_kg = *specimen.density_kg_m3 * specimen.area_m2() * specimen.length_m;
     }
     q.band_loss = band_loss_;
+    q.arrival_late_s = arrival_late_s_;
+    q.way_to_specimen_s = bars_.input.front_time_s(in_.gauge_to_specimen_m);
     if (faces_) {
       q.separated = separation_judgement();
     }
@@ -581,7 +598,8 @@ class Pass {
   double period_s_;
   double sense_ = 1.0;
   double gauge_foot_ = 0.0;
-  std::size_t push_end_ = 0;  ///< of what is known of the push, in samples of its own
+  std::optional<double> arrival_late_s_;  ///< of one that was given, than the foot that is found
+  std::size_t push_end_ = 0;              ///< of what is known of the push, in samples of its own
   double push_left_Pa_ = 0.0;
   double push_peak_Pa_ = 0.0;
   double push_left_share_ = 0.0;

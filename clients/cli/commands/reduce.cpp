@@ -214,9 +214,11 @@ Command reduce_command() {
              "material file of viscoelastic bars; else the capture's own, else the paper's PMMA",
              &s.bar_model),
       flag("--true", kTrueHelp, &s.request.with_true),
-      option("--arrival", "S",
-             "foot of the incident pulse at the first gauge, in s from the first sample",
-             &s.arrival_s),
+      option(
+          "--arrival", "S",
+          "foot of the incident pulse at the input bar's first gauge, in s from the first sample;\n"
+          "the arrival that is printed is at the specimen, later by the way there",
+          &s.arrival_s),
       option("--band-limit", "HZ",
              "upper end of the frequencies used, in Hz; else what the noise allows",
              &s.request.band_limit_Hz),

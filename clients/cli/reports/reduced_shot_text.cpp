@@ -31,8 +31,9 @@ std::string what_was_shot(const Shot& shot) {
 
 std::string arrival_text(const Reduction& reduction) {
   const DisplayUnit unit = display_unit("s", std::abs(reduction.arrival_s));
-  return fmt::format("{:.2f} ± {:.2f} {} into the record", reduction.arrival_s * unit.factor,
-                     reduction.arrival_sigma_s * unit.factor, unit.name);
+  return fmt::format("{:.2f} ± {:.2f} {} into the record, at the specimen",
+                     reduction.arrival_s * unit.factor, reduction.arrival_sigma_s * unit.factor,
+                     unit.name);
 }
 
 std::string numbers(const Reduction& reduction) {

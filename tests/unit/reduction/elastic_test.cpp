@@ -161,6 +161,28 @@ TEST(ElasticReduction, ABenchThatCountsTensionPositiveGivesTheSameCompression) {
   EXPECT_EQ(turned.stress_Pa, plain.stress_Pa);
 }
 
+// The arrival that is printed is at the specimen; the one that is given is at the gauge.
+TEST(ElasticReduction, AnArrivalThatIsNotThePulsesFootIsNamed) {
+  const ElasticShpb model;
+  const Shot shot = noiseless(model, model.solve());
+  EXPECT_EQ(Reducer().reduce(shot).quality.find("arrival"), nullptr);
+  const auto given = [&](double late_s) {
+    ReductionOptions options;
+    options.arrival_s = model.foot_at_gauge_s + late_s;
+    return Reducer(options).reduce(shot);
+  };
+  EXPECT_EQ(check_of(given(0.0), "arrival").verdict, Verdict::pass);
+  EXPECT_EQ(check_of(given(-50e-6), "arrival").verdict, Verdict::warn);
+  const Check late = check_of(given(15e-6), "arrival");
+  EXPECT_EQ(late.verdict, Verdict::warn);
+  EXPECT_NEAR(late.value, 15e-6, 2e-6);
+  // From the gauge at c = sqrt(E / rho).
+  EXPECT_NE(late.text.find("at the specimen, 97.6 us after"), std::string::npos) << late.text;
+  const Quality later = given(49e-6).quality;
+  EXPECT_NE(later.reason.find("later than the foot of the first pulse"), std::string::npos)
+      << later.reason;
+}
+
 TEST(ElasticReduction, NoiseCostsWhatItMust) {
   const ElasticShpb model;
   const auto records = model.solve();
