@@ -152,21 +152,36 @@ Rise rise_after_foot(std::span<const double> record, double foot, std::size_t re
   return {at > 0 ? at - 1 : 0, sense};
 }
 
-Foot foot_of(std::span<const double> record, std::size_t half, double peak, double noise_rms) {
-  const Crossing at40 = crossing_before(record, half, 0.4 * peak);
-  const Crossing at20 = crossing_before(record, static_cast<std::size_t>(at40.index), 0.2 * peak);
-  const Crossing at10 = crossing_before(record, static_cast<std::size_t>(at20.index), 0.1 * peak);
-  const double lower = at20.index - at10.index;
-  const double upper = at40.index - at20.index;
+namespace {
+
+/// As `foot_of`, from the times at which the rise passes this share of the peak, half and a quarter
+/// of it. @param sigma  from the noise alone
+Foot foot_by_levels(std::span<const double> record, std::size_t half, double highest,
+                    double noise_rms) {
+  const Crossing high = crossing_before(record, half, highest);
+  const Crossing middle =
+      crossing_before(record, static_cast<std::size_t>(high.index), 0.5 * highest);
+  const Crossing low =
+      crossing_before(record, static_cast<std::size_t>(middle.index), 0.25 * highest);
+  const double lower = middle.index - low.index;
+  const double upper = high.index - middle.index;
   // Distances from the foot grow by q = 2^(1/p) from level to level.
   const double q_of_cube = std::pow(2.0, 1.0 / 3.0);
   const double q = std::clamp(lower > 0.0 ? upper / lower : 2.0, q_of_cube, 2.0);
-  Foot foot;
-  foot.index = std::max(0.0, at10.index - lower / (q - 1.0));
   const double lever = 1.0 / (q - 1.0);
-  const double sigma10 = noise_rms / std::max(std::abs(at10.slope), 1e-300);
-  const double sigma20 = noise_rms / std::max(std::abs(at20.slope), 1e-300);
-  foot.sigma = std::hypot((1.0 + lever) * sigma10, lever * sigma20);
+  const double sigma_of_low = noise_rms / std::max(std::abs(low.slope), 1e-300);
+  const double sigma_of_middle = noise_rms / std::max(std::abs(middle.slope), 1e-300);
+  return {std::max(0.0, low.index - lower * lever),
+          std::hypot((1.0 + lever) * sigma_of_low, lever * sigma_of_middle)};
+}
+
+}  // namespace
+
+Foot foot_of(std::span<const double> record, std::size_t half, double peak, double noise_rms) {
+  Foot foot = foot_by_levels(record, half, 0.4 * peak, noise_rms);
+  const Foot nearer = foot_by_levels(record, half, 0.2 * peak, noise_rms);
+  // What is off for the shape halves with the levels: both differ by half of it.
+  foot.sigma = std::hypot(foot.sigma, 2.0 * (foot.index - nearer.index));
   return foot;
 }
 
