@@ -8,6 +8,7 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/identification/bar_judge.hpp"
+#include "processing/identification/better_solid.hpp"
 #include "processing/identification/explanations.hpp"
 
 namespace kolsky {
@@ -173,16 +174,8 @@ void warn_of_choices(const BarIdentification& result, std::vector<std::string>& 
     warnings.push_back("the far end is neither free nor silent: it returns " +
                        rounded(result.fit.reflection->value) + " of the stress");
   }
-  for (const Alternative& other : result.alternatives) {
-    if (other.failed.empty() && other.theory.solid != SolidKind::three_element &&
-        other.theory.waves == result.three_element.theory &&
-        other.theory.far_end == result.three_element.far_end &&
-        other.log_evidence > result.three_element.log_evidence + kPartialAhead) {
-      warnings.push_back("a " + name_of(other.theory.solid) +
-                         " solid explains the records better than three elements, by a log "
-                         "evidence of " +
-                         rounded(other.log_evidence - result.three_element.log_evidence));
-    }
+  if (const auto better = better_solid(result)) {
+    warnings.push_back(cost_of_three_elements(*better, result.three_element));
   }
 }
 

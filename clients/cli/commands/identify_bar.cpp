@@ -13,6 +13,7 @@
 #include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
+#include "processing/identification/better_solid.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -85,9 +86,10 @@ void write_material(const std::string& path, const BarIdentification& result,
                            : "file an elastic bar by bars.*.youngs_modulus_Pa in the bench "
                              "instead");
   }
+  const auto better = better_solid(result);
   NewFile file(path);
-  file.write(
-      format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced, !grows}));
+  file.write(format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced, !grows,
+                                        better ? cost_of_three_elements(*better, fit) : ""}));
   file.publish(kReadableByAll);
 }
 
@@ -110,7 +112,21 @@ BarIdentification identify(const std::vector<Shot>& shots, const Settings& setti
   }
 }
 
+/// Three elements are filed whatever is ahead, but not in place of what was asked for by name.
+void require_fileable_solid(const Settings& settings) {
+  const bool filed = !settings.solid || *settings.solid == "auto" ||
+                     solid_kind(*settings.solid) == SolidKind::three_element;
+  if (settings.model_out && !filed) {
+    throw InputError(
+        std::string(kName) + ": --model-out",
+        "writes a material file, which is a three-element solid, not a " + *settings.solid + " one",
+        "leave --model-out out for that solid, or --solid (or give auto) to file three "
+        "elements");
+  }
+}
+
 int run(const Settings& settings, Context& context) {
+  require_fileable_solid(settings);
   if (settings.draws) {
     require_draws(kName, *settings.draws);
   }
@@ -162,7 +178,8 @@ Command identify_bar_command() {
   command.arguments = {
       needed("CAPTURE", "", "captures of shots on one bar, or folders of them", &s.captures),
       option("--model-out", "M.toml",
-             "material file to write, for --bar-model: values, deviations, covariance",
+             "material file of three elements to write, for --bar-model: values, deviations,\n"
+             "covariance",
              &s.model_out),
       Argument{"--solid",
                "FAMILY",

@@ -3,6 +3,7 @@
 #include "clients/cli/reports/bar_report.hpp"
 #include "clients/cli/reports/budget.hpp"
 #include "clients/cli/reports/fit_draws.hpp"
+#include "processing/identification/better_solid.hpp"
 #include "processing/identification/parameter_budget.hpp"
 
 namespace kolsky::cli {
@@ -87,6 +88,16 @@ JsonValue describe(const std::optional<CommonMisfit>& misfit) {
                     {"deviations_from_chance", misfit->deviations}};
 }
 
+/// null where nothing is clearly ahead of three elements.
+JsonValue describe(const std::optional<BetterSolid>& better) {
+  if (!better) {
+    return nullptr;
+  }
+  return JsonObject{{"solid", name_of(better->solid)},
+                    {"log_evidence_ahead", better->log_evidence_ahead},
+                    {"chi2_reduced", better->chi2_reduced}};
+}
+
 JsonList shots_of(const BarIdentification& result) {
   JsonList list;
   for (std::size_t i = 0; i < result.three_element.shots.size(); ++i) {
@@ -150,6 +161,7 @@ JsonValue describe(const BarIdentification& result, const std::vector<ForetoldSh
                             {"far_end", describe(result.far_end)},
                             {"solid", describe(result.solid)}}},
       {"alternatives", describe(result.alternatives)},
+      {"better_solid", describe(better_solid(result))},
       {"solid", describe(result.fit)},
       {"bench", numbers(three.bench)},
       {"budget", budget_json(parameter_budget(three.parameters, three.by_bench, three.bench),

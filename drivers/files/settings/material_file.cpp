@@ -132,7 +132,10 @@ std::string format_material(const Material& material, const Identified& identifi
   return format_material(from_waves) + "shots = " + std::to_string(identified.shots) +
          "\ndispersion = " + quoted(identified.dispersion) +
          "\nchi2_reduced = " + digits(identified.chi2_reduced) +
-         "\npassive = " + (identified.passive ? "true" : "false") + "\n";
+         "\npassive = " + (identified.passive ? "true" : "false") + "\n" +
+         (identified.better_solid.empty()
+              ? ""
+              : "better_solid = " + quoted(identified.better_solid) + "\n");
 }
 
 }  // namespace kolsky

@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "drivers/files/settings/material_file.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/generators/bar_shots.hpp"
+#include "tests/generators/campaign.hpp"
+#include "tests/generators/campaign_files.hpp"
 
 namespace kolsky {
 namespace {
@@ -128,6 +132,46 @@ TEST_F(IdentifyBar, ASolidThatIsAskedForIsSaidToBe) {
   EXPECT_EQ(result["choice"]["solid"]["asked"], true);
 }
 
+/// Creep over two times, which three elements cannot hold; reductions go by three all the same.
+TEST_F(IdentifyBar, SaysWhatThreeElementsCostWhereAnotherSolidIsAhead) {
+  testing::Campaign campaign = testing::draw_campaign({.seed = 71, .noise_strain = 1e-6});
+  testing::plant(campaign.world, testing::parse_effect("second-relaxation=6e-12,tau=3e-4"));
+  const std::string capture =
+      testing::write_campaign({folder_ / "two", false}, {testing::shots_of(campaign).front()})
+          .front()
+          .string();
+  const std::string model = folder_ / "two.toml";
+  const json told = json_of(scene::kolsky(
+      {"identify", "bar", capture, "--solid", "auto", "--model-out", model, "--json"}));
+  const json& better = told["better_solid"];
+  EXPECT_EQ(better["solid"], "two-kelvin");
+  const auto evidence_of = [&](const char* solid) {
+    for (const json& other : told["alternatives"]) {
+      if (other["solid"] == solid && other["dispersion"] == told["dispersion"] &&
+          other["far_end"] == told["far_end"]) {
+        return other["log_evidence"].get<double>();
+      }
+    }
+    return std::nan("");
+  };
+  const double ahead = evidence_of("two-kelvin") - evidence_of("three-element");
+  EXPECT_NEAR(better["log_evidence_ahead"].get<double>(), ahead, 0.02 * ahead);
+  EXPECT_LT(better["chi2_reduced"], told["chi2_reduced"]);
+  std::stringstream file;
+  file << std::ifstream(model).rdbuf();
+  const std::string sentence = "reductions carry waves by three elements";
+  EXPECT_NE(file.str().find("better_solid = \"" + sentence), std::string::npos) << file.str();
+  EXPECT_NE(told["warnings"].dump().find(sentence), std::string::npos) << told["warnings"];
+}
+
+TEST_F(IdentifyBar, RefusesToFileThreeElementsForASolidThatIsAskedForByName) {
+  const std::string model = folder_ / "fractional.toml";
+  const scene::Answer answer = scene::kolsky(
+      {"identify", "bar", folder_ / "none.h5", "--solid", "fractional", "--model-out", model});
+  EXPECT_TRUE(refused(answer, {"--model-out", "not a fractional", "auto"}));
+  EXPECT_FALSE(std::filesystem::exists(model));
+}
+
 TEST_F(IdentifyBar, IsDrawnThroughItsFit) {
   const scene::Answer text =
       scene::kolsky({"identify", "bar", captures_[0], captures_[1], "--draws", "20"});
@@ -155,6 +199,7 @@ TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
     EXPECT_LT(p["sd"].get<double>(), 2e-3 * truth[i]);
   }
   EXPECT_EQ(result["dispersion"], "elementary");
+  EXPECT_TRUE(result["better_solid"].is_null()) << result["better_solid"];
   EXPECT_EQ(result["far_end"], "free");
   EXPECT_GE(result["alternatives"].size(), 5U);
   const std::size_t bins = result["spectrum"]["frequency_Hz"].size();

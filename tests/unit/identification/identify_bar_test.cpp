@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "processing/base/error.hpp"
+#include "processing/identification/better_solid.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/spectrum_coverage.hpp"
@@ -529,6 +530,39 @@ TEST(IdentifyBar, TwoBranchesAreNotTakenForThree) {
   const std::vector<Shot> shots = spread_creep("second-relaxation=6e-12,tau=3e-4");
   const BarIdentification result = identify_bar(shots, {.solid = std::nullopt});
   EXPECT_EQ(result.fit.solid, SolidKind::two_kelvin);
+  EXPECT_TRUE(says(result, "a two-kelvin solid is ahead of them"));
+}
+
+/// Of four that were compared: under other waves, without a fit, behind, and ahead by 40 and by 12.
+TEST(BetterSolid, IsTheOneFurthestAheadUnderTheSameWaves) {
+  BarIdentification result;
+  result.three_element.log_evidence = -100.0;
+  result.three_element.chi2_reduced = 3.0;
+  const auto compare = [&](WaveTheory waves, SolidKind solid, double log_evidence, double chi2) {
+    Alternative other;
+    other.theory = {waves, solid, result.three_element.far_end};
+    other.log_evidence = log_evidence;
+    other.chi2_reduced = chi2;
+    result.alternatives.push_back(other);
+  };
+  const WaveTheory same = result.three_element.theory;
+  const WaveTheory another = same == WaveTheory::exact ? WaveTheory::love : WaveTheory::exact;
+  compare(another, SolidKind::fractional, 0.0, 1.0);
+  compare(same, SolidKind::three_kelvin, 0.0, 1.0);
+  result.alternatives.back().failed = "does not converge";
+  compare(same, SolidKind::four_element_fluid, -91.0, 2.9);
+  EXPECT_FALSE(better_solid(result));
+  compare(same, SolidKind::fractional, -60.0, 1.2);
+  compare(same, SolidKind::two_kelvin, -88.0, 2.8);
+  const auto better = better_solid(result);
+  ASSERT_TRUE(better);
+  EXPECT_EQ(better->solid, SolidKind::fractional);
+  EXPECT_EQ(better->log_evidence_ahead, 40.0);
+  const std::string cost = cost_of_three_elements(*better, result.three_element);
+  EXPECT_NE(cost.find("fractional solid is ahead of them by a log evidence of 40"),
+            std::string::npos)
+      << cost;
+  EXPECT_NE(cost.find("they leave a reduced chi2 of 3, it 1.2"), std::string::npos) << cost;
 }
 
 /// Each is what makes the records, and has two numbers fewer than two Kelvin branches or none more.

@@ -76,6 +76,11 @@ TEST(MaterialFile, WhatIsWrittenReadsBackToTheBit) {
   odd.identified->passive = false;
   EXPECT_NE(with_more.find("dispersion = \"exact\""), std::string::npos);
   expect_same(parse_material(with_more, "m.toml"), odd);
+  EXPECT_EQ(with_more.find("better_solid"), std::string::npos);
+  const std::string outdone = format_material(odd, {10, "exact", 1.01, false, "a \"better\" one"});
+  EXPECT_NE(outdone.find("better_solid = \"a \\\"better\\\" one\"\n"), std::string::npos)
+      << outdone;
+  expect_same(parse_material(outdone, "m.toml"), odd);
 }
 
 struct MaterialRefusal {
