@@ -28,6 +28,13 @@ const char* surplus_of(SolidKind solid) {
 
 }  // namespace
 
+bool leaves_more_than_noise(const SpecimenFit& fit) {
+  constexpr double kDeviations = 4.0;
+  constexpr double kMost = 0.5;
+  const double chance = std::sqrt(2.0 / static_cast<double>(fit.degrees_of_freedom));
+  return fit.chi2_reduced > 1.0 + std::min(kMost, kDeviations * chance);
+}
+
 std::vector<std::string> warnings_of(const std::vector<FittedNumber>& parameters) {
   constexpr double kHardly = 0.3;
   std::vector<std::string> warnings;
@@ -92,7 +99,7 @@ std::vector<std::string> contradiction(const SpecimenFit& fit,
                            spectral[i].name.c_str(), spectral[i].value, off, direct[i].value) +
                  "strain over stress is biased by the pulse's foot, the window and the specimen's "
                  "mass, of which its deviations know nothing; " +
-                 (fit.chi2_reduced > kPoorChi2
+                 (leaves_more_than_noise(fit)
                       ? "the direct fit's model leaves more than noise: quote neither"
                       : "quote the direct fit")};
     }

@@ -7,8 +7,9 @@
 
 namespace kolsky {
 
-/// Above so much chi2 per degree of freedom a model leaves more than noise.
-inline constexpr double kPoorChi2 = 1.5;
+/// Four deviations above 1, the deviation being chance's of so many degrees of freedom, or half
+/// above it where that is less. Modest misfits of many shots can hide large errors along a number.
+[[nodiscard]] bool leaves_more_than_noise(const SpecimenFit& fit);
 
 /// What keeps numbers of a solid from being taken at their word: those that the shots hardly
 /// determine, or not at all.

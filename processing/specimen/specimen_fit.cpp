@@ -396,10 +396,11 @@ void warn(SpecimenFit& fit) {
   if (fit.three_element && fit.three_element->chi2_gain < kWorthwhile) {
     fit.warnings.push_back(no_more_than_three_elements(fit));
   }
-  if (fit.chi2_reduced > kPoorChi2) {
+  if (leaves_more_than_noise(fit)) {
     fit.warnings.push_back(
-        formatted("the model leaves more than noise (chi2 per degree of freedom %.3g): the "
-                  "deviations are widened accordingly",
+        formatted("the model leaves more than noise (chi2 per degree of freedom %.3g): deviations "
+                  "are widened for what is left, which does not cover what the model lacks, nor "
+                  "what is not as filed",
                   fit.chi2_reduced));
   }
   for (std::string& warning : warnings_of(fit.spectrum)) {
