@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "processing/reduction/formatted.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -69,6 +71,46 @@ std::size_t first_at(std::span<const double> history, double level) {
       history.begin());
 }
 
+/// Where the histories hold the stretch over which a loading is measured.
+struct Loading {
+  std::size_t begin = 0, end = 0;
+  std::string missing;  ///< why they do not; empty where they do
+};
+
+bool push_hidden(const Quality& quality) {
+  const Check* overlap = quality.find("window_overlap");
+  return overlap != nullptr && overlap->verdict == Verdict::fail;
+}
+
+Loading loading_of(const Reduction& r) {
+  const std::size_t pass = first_pass(r, 1.0);
+  const auto stress_Pa = std::span(r.stress_Pa).first(pass);
+  const auto strain = std::span(r.strain).first(pass);
+  if (pass == 0) {
+    return {0, 0, "the specimen is nowhere loaded"};
+  }
+  const double peak_Pa = stress_Pa[index_of_largest(stress_Pa)];
+  const double most = strain[index_of_largest(strain)];
+  if (peak_Pa <= 0.0) {
+    return {0, 0, "the stress is nowhere compressive"};
+  }
+  if (most <= 0.0) {
+    return {0, 0, "the specimen is nowhere shortened"};
+  }
+  // A step may begin so; of a hidden push it is what the separation made of it.
+  if (push_hidden(r.quality) && stress_Pa.front() > kRisen * peak_Pa) {
+    return {0, 0,
+            formatted("the histories begin at %.0f %% of the largest stress",
+                      100.0 * stress_Pa.front() / peak_Pa)};
+  }
+  Loading loading{rise_before(stress_Pa, index_of_largest(stress_Pa), kLoadingStart * peak_Pa),
+                  first_at(strain, kLoadingEnd * most), ""};
+  if (loading.end <= loading.begin) {
+    loading.missing = "the strain is largest before the stress rises";
+  }
+  return loading;
+}
+
 }  // namespace
 
 std::size_t loading_end(const Reduction& reduction) {
@@ -84,23 +126,24 @@ std::size_t loading_end(const Reduction& reduction) {
 
 LoopSummary summarise(const Reduction& reduction) {
   if (reduction.stress_Pa.empty()) {
-    return {};
+    return {.no_loading = "there are no histories"};
   }
   const std::size_t peak = index_of_largest(reduction.stress_Pa);
   LoopSummary summary;
   summary.peak_stress_Pa = reduction.stress_Pa[peak];
   summary.strain_at_peak = reduction.strain[peak];
   summary.peak_strain = reduction.strain[index_of_largest(reduction.strain)];
-  const std::size_t pass = first_pass(reduction, 1.0);
-  const auto stress_Pa = std::span(reduction.stress_Pa).first(pass);
-  const auto strain = std::span(reduction.strain).first(pass);
-  const std::size_t most = index_of_largest(stress_Pa);
-  const std::size_t begin = rise_before(stress_Pa, most, kLoadingStart * stress_Pa[most]);
-  const std::size_t end = first_at(strain, kLoadingEnd * strain[index_of_largest(strain)]);
-  if (end > begin && end < strain.size()) {
-    summary.loading_s = reduction.time_s[end] - reduction.time_s[begin];
-    summary.mean_strain_rate_per_s = (strain[end] - strain[begin]) / summary.loading_s;
+  const Loading loading = loading_of(reduction);
+  if (!loading.missing.empty()) {
+    summary.no_loading = loading.missing;
+    if (push_hidden(reduction.quality)) {
+      summary.no_loading += "; the reflection hides the striker's push (window_overlap)";
+    }
+    return summary;
   }
+  summary.loading_s = reduction.time_s[loading.end] - reduction.time_s[loading.begin];
+  summary.mean_strain_rate_per_s =
+      (reduction.strain[loading.end] - reduction.strain[loading.begin]) / summary.loading_s;
   return summary;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "processing/reduction/reduction.hpp"
 
 namespace kolsky {
@@ -12,6 +14,9 @@ struct LoopSummary {
   /// Of the first loading: from 5 % of its peak stress to 98 % of its largest strain.
   double loading_s = 0.0;
   double mean_strain_rate_per_s = 0.0;  ///< over the loading
+  /// Why there is no loading to give numbers of: those above are not to be shown then. Empty where
+  /// there is one.
+  std::string no_loading;
 };
 
 /// Samples up to the largest strain of the first loading, in its sense: what follows, the specimen
@@ -20,7 +25,7 @@ struct LoopSummary {
 /// the strain grows no more.
 [[nodiscard]] std::size_t loading_end(const Reduction& reduction);
 
-/// All zero for an empty reduction.
+/// All numbers zero for an empty reduction.
 [[nodiscard]] LoopSummary summarise(const Reduction& reduction);
 
 }  // namespace kolsky

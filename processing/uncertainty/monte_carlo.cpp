@@ -292,6 +292,9 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   workers.run(kHistories, [&](std::size_t h, std::size_t) {
     *bands[h] = band_of(joint, h, reduction.time_s.size());
   });
+  if (!summarise(reduction).no_loading.empty()) {
+    return result;
+  }
   const Figures nominal = figures_of(reduction);
   for (std::size_t f = 0; f < kFigures.size(); ++f) {
     result.figures.push_back(

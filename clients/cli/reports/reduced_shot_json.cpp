@@ -8,11 +8,17 @@ namespace kolsky::cli {
 namespace {
 
 JsonValue describe(const LoopSummary& summary) {
+  if (!summary.no_loading.empty()) {
+    return JsonObject{{"peak_stress_Pa", nullptr}, {"strain_at_peak", nullptr},
+                      {"peak_strain", nullptr},    {"mean_strain_rate_per_s", nullptr},
+                      {"loading_s", nullptr},      {"no_loading", summary.no_loading}};
+  }
   return JsonObject{{"peak_stress_Pa", summary.peak_stress_Pa},
                     {"strain_at_peak", summary.strain_at_peak},
                     {"peak_strain", summary.peak_strain},
                     {"mean_strain_rate_per_s", summary.mean_strain_rate_per_s},
-                    {"loading_s", summary.loading_s}};
+                    {"loading_s", summary.loading_s},
+                    {"no_loading", nullptr}};
 }
 
 JsonValue describe(const Quotable& part) {

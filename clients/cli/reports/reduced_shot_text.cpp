@@ -36,16 +36,24 @@ std::string arrival_text(const Reduction& reduction) {
                      unit.name);
 }
 
-std::string numbers(const Reduction& reduction) {
-  const LoopSummary loop = summarise(reduction);
-  return report_row("peak stress",
-                    fmt::format("{} at a strain of {}", with_unit(loop.peak_stress_Pa, "Pa"),
-                                with_unit(loop.strain_at_peak, "strain"))) +
+std::string peaks_text(const LoopSummary& loop) {
+  return fmt::format("{} at a strain of {}", with_unit(loop.peak_stress_Pa, "Pa"),
+                     with_unit(loop.strain_at_peak, "strain"));
+}
+
+std::string loop_text(const LoopSummary& loop) {
+  if (!loop.no_loading.empty()) {
+    return report_row("summary", "none, for there is no loading: " + loop.no_loading);
+  }
+  return report_row("peak stress", peaks_text(loop)) +
          report_row("largest strain", with_unit(loop.peak_strain, "strain")) +
          report_row("mean strain rate", fmt::format("{} over the {} of loading",
                                                     with_unit(loop.mean_strain_rate_per_s, "1/s"),
-                                                    with_unit(loop.loading_s, "s"))) +
-         report_row("arrival", arrival_text(reduction)) +
+                                                    with_unit(loop.loading_s, "s")));
+}
+
+std::string numbers(const Reduction& reduction) {
+  return loop_text(summarise(reduction)) + report_row("arrival", arrival_text(reduction)) +
          report_row("band", "up to " + with_unit(reduction.band_limit_Hz, "Hz"));
 }
 
@@ -94,10 +102,9 @@ std::string how_reduced(const Reduction& reduction) {
 
 std::string as_filed(const Reduction& before) {
   const LoopSummary loop = summarise(before);
-  return report_row(
-      "as filed",
-      fmt::format("{} at a strain of {}, largest strain {}", with_unit(loop.peak_stress_Pa, "Pa"),
-                  with_unit(loop.strain_at_peak, "strain"), with_unit(loop.peak_strain, "strain")));
+  return report_row("as filed", loop.no_loading.empty() ? peaks_text(loop) + ", largest strain " +
+                                                              with_unit(loop.peak_strain, "strain")
+                                                        : "no loading: " + loop.no_loading);
 }
 
 std::string plots(const Reduction& reduction, const Terminal& terminal) {

@@ -85,11 +85,14 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
                         with_deviation(figure.value, figure.sd, unit), with_unit(figure.low, unit),
                         with_unit(figure.high, unit));
   }
+  if (uncertainty.figures.empty()) {
+    text += "    of the curve alone: there is no loading to give numbers of\n";
+  }
   std::vector<std::string> heads;
   for (const UncertainFigure& figure : uncertainty.figures) {
     heads.push_back(short_name(figure.name));
   }
-  text += budget_table(uncertainty.budget, heads);
+  text += heads.empty() ? "" : budget_table(uncertainty.budget, heads);
   for (const std::string& name : uncertainty.uncounted) {
     text +=
         "    not counted: " + name + ", for moved by its deviation the shot cannot be reduced\n";

@@ -29,12 +29,49 @@ TEST(LoopSummary, DescribesALoop) {
   EXPECT_NEAR(loop.mean_strain_rate_per_s, 1000.0, 1e-6);
   // From 5 % of the stress, at 5 us, to 98 % of the strain, at 98 us.
   EXPECT_NEAR(loop.loading_s, 93e-6, 2e-6);
+  EXPECT_EQ(loop.no_loading, "");
+}
+
+/// As bars leave it that are too short for the pulse.
+TEST(LoopSummary, IsNoneWhereThereIsNoLoading) {
+  const auto summary_of = [](const Reduction& reduction) {
+    ReducedShot reduced;
+    reduced.reduction = reduction;
+    const std::string text = report(reduced, Terminal{});
+    EXPECT_NE(text.find("no loading: " + summarise(reduction).no_loading), std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("mean strain rate"), std::string::npos) << text;
+    return nlohmann::json::parse(to_text(describe(reduced)))["summary"];
+  };
+  Reduction pulled = ramp();
+  for (double& strain : pulled.strain) {
+    strain = -strain - 1e-3;
+  }
+  const auto pulled_told = summary_of(pulled);
+  for (const char* name :
+       {"peak_stress_Pa", "strain_at_peak", "peak_strain", "mean_strain_rate_per_s", "loading_s"}) {
+    EXPECT_TRUE(pulled_told.at(name).is_null()) << name;
+  }
+  const std::string why = pulled_told["no_loading"];
+  EXPECT_NE(why.find("nowhere shortened"), std::string::npos) << why;
+  EXPECT_EQ(why.find("window_overlap"), std::string::npos) << why;
+
+  Reduction begun = ramp();
+  for (auto* history : {&begun.time_s, &begun.strain, &begun.stress_Pa}) {
+    history->erase(history->begin(), history->begin() + 40);
+  }
+  EXPECT_EQ(summarise(begun).no_loading, "");
+  begun.quality.checks.push_back({.name = "window_overlap", .verdict = Verdict::fail});
+  const std::string midway = summary_of(begun)["no_loading"];
+  EXPECT_NE(midway.find("begin at 40 % of the largest stress"), std::string::npos) << midway;
+  EXPECT_NE(midway.find("window_overlap"), std::string::npos) << midway;
 }
 
 TEST(LoopSummary, IsZeroWhereThereIsNoLoop) {
   const LoopSummary loop = summarise({});
   EXPECT_EQ(loop.peak_stress_Pa, 0.0);
   EXPECT_EQ(loop.loading_s, 0.0);
+  EXPECT_FALSE(loop.no_loading.empty());
 }
 
 TEST(TrueValues, AreNullWhereTheSpecimenWouldHaveNoLengthLeft) {
