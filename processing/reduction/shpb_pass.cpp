@@ -85,10 +85,11 @@ class Pass {
   /// The push still rises when it is hidden: of a short bar, or after an arrival that is not its
   /// foot.
   [[nodiscard]] Reduction push_not_seen() const {
-    if (arrival_late_s_ && *arrival_late_s_ > kArrivalLimit_s) {
+    if (arrival_late_s_ && std::abs(*arrival_late_s_) > kArrivalLimit_s) {
       return not_reducible(
-          formatted("the arrival given is %.1f us later than the foot of the first pulse at %s",
-                    1e6 * *arrival_late_s_, first_gauge().c_str()),
+          formatted("the arrival given is %.1f us %s than the foot of the first pulse at %s",
+                    1e6 * std::abs(*arrival_late_s_), *arrival_late_s_ > 0.0 ? "later" : "earlier",
+                    first_gauge().c_str()),
           "give the foot at that gauge: the arrival that is printed is at the specimen");
     }
     return not_reducible(

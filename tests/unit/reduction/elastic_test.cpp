@@ -181,6 +181,9 @@ TEST(ElasticReduction, AnArrivalThatIsNotThePulsesFootIsNamed) {
   const Quality later = given(49e-6).quality;
   EXPECT_NE(later.reason.find("later than the foot of the first pulse"), std::string::npos)
       << later.reason;
+  const Quality earlier = given(-150e-6).quality;
+  EXPECT_NE(earlier.reason.find("earlier than the foot of the first pulse"), std::string::npos)
+      << earlier.reason;
 }
 
 TEST(ElasticReduction, NoiseCostsWhatItMust) {
