@@ -100,6 +100,7 @@ class Diagnostician {
     diagnosis_.before = first.misfit;
     Studied current = first;
     const bool settled = seek(current);
+    first = let_out_.value_or(first);
     if (trodden_) {
       led_nowhere_ = outweighed_by(trail_.excess) ? std::optional(begun_with_) : std::nullopt;
       diagnosis_.effects.clear();
@@ -185,6 +186,20 @@ class Diagnostician {
     diagnosis_.effects.push_back(choice->id);
     start_ = with(start_, search.candidates()[choice->candidate], true);
     take(*choice, current);
+    return !first || let_out_ || !was_astray(current) || add_one(current);
+  }
+
+  /// A fit that has gone astray gains by whatever lets it out, and keeps the gain without it: then
+  /// nothing was found, and the search begins from where the fit is now.
+  bool was_astray(Studied& current) {
+    Studied left = without(current, diagnosis_.effects.front());
+    if (!options_.safeguards.backward || missed_in(left, current)) {
+      return false;
+    }
+    drop(0, "not needed", std::move(left), current);
+    diagnosis_.candidates.clear();
+    on_trial_.reset();
+    let_out_ = current;
     return true;
   }
 
@@ -618,6 +633,7 @@ class Diagnostician {
   std::string begun_with_;
   std::optional<double> lead_over_next_;  ///< of that
   std::optional<std::string> led_nowhere_;
+  std::optional<Studied> let_out_;       ///< the model, where its first fit had gone astray
   std::optional<std::string> on_trial_;  ///< of these, what is to be certified beside others yet
   Diagnosis diagnosis_;
   Chooser chooser_{study_, options_, diagnosis_};

@@ -45,5 +45,19 @@ TEST(GaugeLength, LeavesSlowNoiseThatLeaksAdequate) {
   }
 }
 
+// Of a rubber whose moduli are a tenth of those that the fit begins with it ended beside its least,
+// and what let it out was claimed: a delay of 0.02 us that is known to 0.19.
+TEST(SoftSpecimens, AreNotLeftWhereAFitHasGoneAstray) {
+  scoring::Plan plan;
+  plan.seed = 143143;
+  plan.split = plan.soft = true;
+  plan.singles_per_bench = plan.tied_per_bench = plan.doubles_per_bench = 0;
+  plan.absorbed_per_bench = plan.withheld_per_bench = 0;
+  for (const int bench : {8, 42}) {
+    const testing::Campaign truth = scoring::draw_cases(plan, bench).at(0).campaign;
+    EXPECT_EQ(diagnosed(truth).verdict, DiagnosisVerdict::adequate) << bench;
+  }
+}
+
 }  // namespace
 }  // namespace kolsky
