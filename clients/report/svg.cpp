@@ -15,7 +15,8 @@ namespace kolsky {
 namespace {
 
 // Okabe and Ito's colours: told apart with any colour vision.
-constexpr std::array<std::string_view, 4> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};
+constexpr std::array<std::string_view, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
+                                                      "#cc79a7", "#56b4e9", "#e69f00"};
 
 constexpr double kPageMargin = 28.0;
 constexpr double kPanelWidth = 560.0;
@@ -28,6 +29,8 @@ constexpr double kLegendHeight = 17.0;
 constexpr double kCharacterWidth = 6.6;  // of the legend's font, about
 constexpr double kTitleCharacter = 8.0;  // of the title's
 constexpr double kResolution = 0.25;     // of a line, in page units
+constexpr double kBesideFrame = 86.0;    // on its left: marks as long as 1.75e-10, and a title
+constexpr double kBeyondFrame = 20.0;    // on its right
 constexpr double kPadding = 0.04;        // of the data's span, round the data
 
 struct Frame {
@@ -79,9 +82,9 @@ class PanelDrawing {
  public:
   PanelDrawing(const Panel& panel, Frame outer)
       : panel_(panel),
-        legend_(legend_lines(panel, outer.width - 92.0)),
-        frame_{outer.left + 72.0, outer.top + 34.0 + below_title(), outer.width - 92.0,
-               outer.height - 90.0 - below_title()},
+        legend_(legend_lines(panel, outer.width - kBesideFrame - kBeyondFrame)),
+        frame_{outer.left + kBesideFrame, outer.top + 34.0 + below_title(),
+               outer.width - kBesideFrame - kBeyondFrame, outer.height - 90.0 - below_title()},
         x_(lay_out(panel.x, padded(x_range(panel)), 8)),
         y_(lay_out(panel.y, padded(y_range(panel)), 7)) {}
 
@@ -141,7 +144,7 @@ class PanelDrawing {
   [[nodiscard]] std::string axis_titles() const {
     const double x = frame_.left + 0.5 * frame_.width;
     const double y = frame_.top + 0.5 * frame_.height;
-    const double side = frame_.left - 54.0;
+    const double side = frame_.left - 70.0;
     return fmt::format(
         "<text class=\"axis\" x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"middle\">{}</text>\n"
         "<text class=\"axis\" x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"middle\" "
