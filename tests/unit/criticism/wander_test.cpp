@@ -93,12 +93,16 @@ Diagnosis diagnosed(const testing::Campaign& truth, const std::vector<Shot>& sho
       study, truth.filed_bars ? filed_split_bar(truth) : paper_model(BenchKind::shpb, true), {});
 }
 
-bool says_hum(const Diagnosis& diagnosis) {
-  return std::ranges::any_of(diagnosis.effects, [&](const std::string& id) {
-    const auto ties = diagnosis.tied_with.find(id);
-    return id == "mains-hum" ||
-           (ties != diagnosis.tied_with.end() && std::ranges::count(ties->second, "mains-hum") > 0);
+bool says(const Diagnosis& diagnosis, const std::string& id) {
+  return std::ranges::any_of(diagnosis.effects, [&](const std::string& own) {
+    const auto ties = diagnosis.tied_with.find(own);
+    return own == id ||
+           (ties != diagnosis.tied_with.end() && std::ranges::count(ties->second, id) > 0);
   });
+}
+
+bool says_hum(const Diagnosis& diagnosis) {
+  return says(diagnosis, "mains-hum");
 }
 
 // Its phase is another in every shot, so that it does not repeat; a fit that takes for noise what
@@ -116,34 +120,33 @@ TEST(MainsHum, OfFourTimesWhiteNoiseIsFoundOnSplitBars) {
   EXPECT_GE(found, 6U);
 }
 
+testing::Campaign elastic_bar(std::uint64_t seed, int shots, int gauges, double noise_strain) {
+  testing::CampaignWishes wishes{
+      .seed = seed, .shots = shots, .gauges = gauges, .noise_strain = noise_strain};
+  wishes.samples = 2048;
+  wishes.rate_Hz = 1e6;
+  wishes.elastic = true;
+  return testing::draw_campaign(wishes);
+}
+
+Diagnosis diagnosed_elastic(const std::vector<Shot>& shots) {
+  const Campaign campaign = read_campaign(shots);
+  Study study(campaign, 0.0, Workers{});
+  return diagnose(study, paper_model(BenchKind::bar, true), {});
+}
+
 // In records of a tenth of a period what one gauge picks up is a slope of its own in every shot.
 TEST(MainsHum, OfOneGaugeIsNoDriftByItself) {
   int claimed = 0;
   for (std::uint64_t seed = 41; seed < 45; ++seed) {
-    testing::Campaign campaign = testing::draw_campaign({.seed = seed,
-                                                         .shots = 5,
-                                                         .gauges = 2,
-                                                         .noise_strain = 1.5e-6,
-                                                         .samples = 2048,
-                                                         .rate_Hz = 1e6,
-                                                         .elastic = true});
+    testing::Campaign campaign = elastic_bar(seed, 5, 2, 1.5e-6);
     testing::hide(campaign, testing::parse_effect("mains-hum=20e-6"));
     campaign.world.hum.share = {0.0, 1.0};
-    const Campaign read = read_campaign(testing::shots_of(campaign));
-    Study study(read, 0.0, Workers{});
-    const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, true), {});
+    const Diagnosis diagnosis = diagnosed_elastic(testing::shots_of(campaign));
     claimed += diagnosis.effects.empty() ? 0 : 1;
     EXPECT_TRUE(diagnosis.effects.empty() || says_hum(diagnosis)) << seed;
   }
   EXPECT_GE(claimed, 3);
-}
-
-bool says(const Diagnosis& diagnosis, const std::string& id) {
-  return std::ranges::any_of(diagnosis.effects, [&](const std::string& own) {
-    const auto ties = diagnosis.tied_with.find(own);
-    return own == id ||
-           (ties != diagnosis.tied_with.end() && std::ranges::count(ties->second, id) > 0);
-  });
 }
 
 /// Another slope in every shot and at each of these gauges.
@@ -170,17 +173,9 @@ testing::Readings sloping(const testing::Campaign& campaign, const std::vector<s
 TEST(Drifts, OfTwoGaugesAreFoundBesideEachOther) {
   int found = 0;
   for (const std::uint64_t seed : {52U, 53U, 54U, 56U}) {
-    const testing::Campaign campaign = testing::draw_campaign({.seed = seed,
-                                                               .shots = 7,
-                                                               .gauges = 4,
-                                                               .noise_strain = 5e-6,
-                                                               .samples = 2048,
-                                                               .rate_Hz = 1e6,
-                                                               .elastic = true});
-    const Campaign read =
-        read_campaign(testing::shots_of(campaign, sloping(campaign, {0, 2}, seed)));
-    Study study(read, 0.0, Workers{});
-    const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, true), {});
+    const testing::Campaign campaign = elastic_bar(seed, 7, 4, 5e-6);
+    const Diagnosis diagnosis =
+        diagnosed_elastic(testing::shots_of(campaign, sloping(campaign, {0, 2}, seed)));
     EXPECT_TRUE(diagnosis.effects.empty() || says(diagnosis, "baseline-drift:g1") ||
                 says(diagnosis, "baseline-drift:g3"))
         << seed;

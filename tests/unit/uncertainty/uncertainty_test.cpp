@@ -267,6 +267,7 @@ TEST(Uncertainty, HoldsWhatABandLeavesOut) {
   const UncertainFigure& strain = figure(u, "peak_strain");
   EXPECT_LT(strain.low, truth);
   EXPECT_GT(strain.high, truth);
+  EXPECT_LT(strain.high - strain.low, 2.0 * (truth - strain.value));
   const Uncertainty whole = propagated(shot, 40);
   EXPECT_TRUE(std::ranges::none_of(
       whole.budget, [](const BudgetLine& line) { return line.source == "band limit"; }));
