@@ -14,6 +14,7 @@
 #include "processing/criticism/search/own_strengths.hpp"
 #include "processing/criticism/search/search_trials.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
+#include "processing/criticism/search/slow_weights.hpp"
 
 namespace kolsky {
 
@@ -146,25 +147,27 @@ std::vector<Refit> Search::refits() {
 
 /// What would be named must gain as much where slow noise counts no more than it tells. Additions
 /// are judged by that noise already.
-void Search::weigh_beside_slow_noise(std::vector<Refit>& list) {
+void Search::weigh_beside_slow_noise(std::vector<Refit>& list) const {
   constexpr double kOrdinary = -3.0;
-  if (!safeguards_.slow_noise || base_.misfit.chi2_reduced > kFarOff) {
+  const auto weighed = [&](const Refit& refit) {
+    return with_search(refit.log_p) <= kOrdinary &&
+           !is_addition(*candidates_[refit.candidate].use.effect);
+  };
+  if (!safeguards_.slow_noise || base_.misfit.chi2_reduced > kFarOff ||
+      std::ranges::none_of(list, weighed)) {
     return;
   }
   const std::size_t per_shot = study_.residuals().per_shot();
-  for (Refit& refit : list) {
-    if (with_search(refit.log_p) > kOrdinary ||
-        is_addition(*candidates_[refit.candidate].use.effect)) {
-      continue;
-    }
-    if (!slow_weights_) {
-      slow_weights_ = slow_weights(study_, base_);
-    }
-    for (const SlowWeights& slow : *slow_weights_) {
-      const Studied with = slow.refitted(refit.studied, per_shot);
-      const double gain = slow.refitted(base_, per_shot).fit.objective() - with.fit.objective();
-      const double scatter = scatter_over_noise(with, candidates_[refit.candidate].id(), per_shot);
-      refit.log_p = std::max(refit.log_p, chance_of(refit, gain / refit.noise / scatter));
+  for (const SlowWeights& slow : slow_weights(study_, base_)) {
+    const double without = slow.refitted(base_, per_shot).fit.objective();
+    for (Refit& refit : list) {
+      if (weighed(refit)) {
+        const Studied with = slow.refitted(refit.studied, per_shot);
+        const double scatter =
+            scatter_over_noise(with, candidates_[refit.candidate].id(), per_shot);
+        const double gain = (without - with.fit.objective()) / refit.noise / scatter;
+        refit.log_p = std::max(refit.log_p, chance_of(refit, gain));
+      }
     }
   }
 }

@@ -11,7 +11,6 @@
 #include "processing/criticism/search/product_test.hpp"
 #include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/slow_noise.hpp"
-#include "processing/criticism/search/slow_weights.hpp"
 
 namespace kolsky {
 
@@ -119,7 +118,7 @@ class Search {
   [[nodiscard]] std::vector<SlowNoise::Addition> at_other_gauges(const Candidate& own) const;
   [[nodiscard]] bool stands_out(const Refit& refit) const;
   [[nodiscard]] bool fits_the_signal(const Refit& refit) const;
-  void weigh_beside_slow_noise(std::vector<Refit>& list);
+  void weigh_beside_slow_noise(std::vector<Refit>& list) const;
   void rate_in_order(std::vector<Refit>& list) const;
   void rate(std::vector<Refit>& list) const;
   void dismiss(const Refit& refit);
@@ -134,9 +133,8 @@ class Search {
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   double trials_ = 1.0;
-  std::optional<SlowNoise> slow_noise_;                   ///< once it is asked for
-  std::map<std::size_t, SlowChance> slow_chances_;        ///< by candidate
-  std::optional<std::vector<SlowWeights>> slow_weights_;  ///< likewise
+  std::optional<SlowNoise> slow_noise_;             ///< once it is asked for
+  std::map<std::size_t, SlowChance> slow_chances_;  ///< by candidate
   /// Strengths of single shots that explain most of all and that nothing confirms: slow noise, or
   /// something slow that the library lacks.
   struct Unconfirmed {

@@ -241,7 +241,7 @@ SlowNoise::Columns SlowNoise::turned(const Form& form, Columns columns) {
 }
 
 double SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen, const Columns& columns,
-                       const Columns& beside) const {
+                       const Columns& beside) {
   const Fitted without = fitted(form, seen, beside, {});
   const Fitted with = fitted(form, seen, columns, without.levels);
   return std::max(0.0, with.twice_log_likelihood - without.twice_log_likelihood);
@@ -250,7 +250,10 @@ double SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen, const Colu
 double SlowNoise::log_chance(const Form& form, Columns columns) const {
   columns = turned(form, std::move(columns));
   const Eigen::MatrixXd seen = form.turn * seen_;
-  const double found = gain(form, seen, columns, none());
+  const Columns nothing = none();
+  const Fitted without = fitted(form, seen, nothing, {});
+  const Fitted with = fitted(form, seen, columns, without.levels);
+  const double found = std::max(0.0, with.twice_log_likelihood - without.twice_log_likelihood);
   // Even if the levels of noise were known.
   constexpr double kOrdinary = -5.0;
   const double known = log_chi2_tail(found, strengths_of(columns));
@@ -259,11 +262,11 @@ double SlowNoise::log_chance(const Form& form, Columns columns) const {
   }
   // Of what is named nothing stays: what wanders as quickly as it turns is something else.
   constexpr double kStays = 0.1;
-  const Levels without = fitted(form, seen, none(), {}).levels;
-  if (form.own && fitted(form, seen, columns, without).levels.slow > kStays * without.slow) {
+  if (form.own && with.levels.slow > kStays * without.levels.slow) {
     return 0.0;
   }
-  const Eigen::VectorXd deviation = (without.white + without.slow * form.slow.array()).sqrt();
+  const Eigen::VectorXd deviation =
+      (without.levels.white + without.levels.slow * form.slow.array()).sqrt();
   std::mt19937_64 random(kSearchSeed);
   std::normal_distribution<double> normal;
   Eigen::MatrixXd drawn(seen_.rows(), seen_.cols());
@@ -273,7 +276,7 @@ double SlowNoise::log_chance(const Form& form, Columns columns) const {
     for (double& value : drawn.reshaped()) {
       value = normal(random);
     }
-    const double gained = gain(form, deviation.asDiagonal() * drawn, columns, none());
+    const double gained = gain(form, deviation.asDiagonal() * drawn, columns, nothing);
     mean += gained / kRepeats;
     square += gained * gained / kRepeats;
   }

@@ -67,8 +67,8 @@ class SlowNoise {
   void add_columns(const Addition& addition, Columns& columns) const;
   [[nodiscard]] double log_chance(const Form& form, Columns columns) const;
   /// @param beside  a part of the columns: by how much these gain over it
-  [[nodiscard]] double gain(const Form& form, const Eigen::MatrixXd& seen, const Columns& columns,
-                            const Columns& beside) const;
+  [[nodiscard]] static double gain(const Form& form, const Eigen::MatrixXd& seen,
+                                   const Columns& columns, const Columns& beside);
   [[nodiscard]] static Fitted fitted(const Form& form, const Eigen::MatrixXd& seen,
                                      const Columns& columns, Levels levels);
   /// @param slow  variances as in `Form`

@@ -192,13 +192,17 @@ class Diagnostician {
   /// A fit that has gone astray gains by whatever lets it out, and keeps the gain without it: then
   /// nothing was found, and the search begins from where the fit is now.
   bool was_astray(Studied& current) {
+    if (!options_.safeguards.backward) {
+      return false;
+    }
     Studied left = without(current, diagnosis_.effects.front());
-    if (!options_.safeguards.backward || missed_in(left, current)) {
+    if (missed_in(left, current)) {
       return false;
     }
     drop(0, "not needed", std::move(left), current);
     diagnosis_.candidates.clear();
     on_trial_.reset();
+    lead_over_next_.reset();
     let_out_ = current;
     return true;
   }
