@@ -88,12 +88,47 @@ Measured decode(const v1::Measured& message) {
   return {message.value(), message.sd()};
 }
 
+void encode_solid(const Material& material, v1::Material& message) {
+  if (material.solid == SolidKind::three_element) {
+    encode(material.E1_Pa(), *message.mutable_e1_pa());
+    encode(material.E2_Pa(), *message.mutable_e2_pa());
+    encode(material.eta2_Pa_s(), *message.mutable_eta2_pa_s());
+    return;
+  }
+  message.set_solid(name_of(material.solid));
+  for (const Measured& number : material.parameters) {
+    encode(number, *message.add_parameters());
+  }
+}
+
+void decode_solid(const v1::Material& message, Material& material) {
+  if (message.solid().empty()) {
+    material.parameters = {decode(message.e1_pa()), decode(message.e2_pa()),
+                           decode(message.eta2_pa_s())};
+    return;
+  }
+  try {
+    material.solid = solid_kind(message.solid());
+  } catch (const InputError& error) {
+    throw error.inside("bar_model");
+  }
+  const std::size_t count = parameters_of(material.solid).size();
+  if (static_cast<std::size_t>(message.parameters_size()) != count) {
+    throw InputError(
+        "bar_model.parameters",
+        "are " + std::to_string(message.parameters_size()) + " of a " + message.solid() + " solid",
+        "send " + std::to_string(count) + ", in the order of a material file");
+  }
+  material.parameters.clear();
+  for (const v1::Measured& number : message.parameters()) {
+    material.parameters.push_back(decode(number));
+  }
+}
+
 void encode(const Material& material, v1::Material& message) {
   encode(material.density_kg_m3, *message.mutable_density_kg_m3());
   encode(material.poisson_ratio, *message.mutable_poisson_ratio());
-  encode(material.E1_Pa, *message.mutable_e1_pa());
-  encode(material.E2_Pa, *message.mutable_e2_pa());
-  encode(material.eta2_Pa_s, *message.mutable_eta2_pa_s());
+  encode_solid(material, message);
   message.set_source(material.source);
   if (material.covariance) {
     message.mutable_covariance()->Add(material.covariance->begin(), material.covariance->end());
@@ -113,18 +148,16 @@ Material decode(const v1::Material& message) {
   Material material;
   material.density_kg_m3 = decode(message.density_kg_m3());
   material.poisson_ratio = decode(message.poisson_ratio());
-  material.E1_Pa = decode(message.e1_pa());
-  material.E2_Pa = decode(message.e2_pa());
-  material.eta2_Pa_s = decode(message.eta2_pa_s());
+  decode_solid(message, material);
   material.source = message.source();
   if (message.covariance_size() > 0) {
-    auto& covariance = material.covariance.emplace();
-    if (static_cast<std::size_t>(message.covariance_size()) != covariance.size()) {
+    const std::size_t numbers = material.parameters.size() * material.parameters.size();
+    if (static_cast<std::size_t>(message.covariance_size()) != numbers) {
       throw InputError("bar_model.covariance",
                        "has " + std::to_string(message.covariance_size()) + " numbers",
-                       "send nine, row by row, or none");
+                       "send " + std::to_string(numbers) + ", row by row, or none");
     }
-    std::copy(message.covariance().begin(), message.covariance().end(), covariance.begin());
+    material.covariance.emplace(message.covariance().begin(), message.covariance().end());
   }
   if (message.has_identified()) {
     // Not emplace(): what it requires is asked for before a nested class has its defaults.

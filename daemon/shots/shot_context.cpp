@@ -16,7 +16,7 @@ namespace {
 
 double wave_speed_m_per_s(const Bar& bar, const std::optional<Material>& model) {
   const double modulus_Pa = bar.youngs_modulus_Pa ? bar.youngs_modulus_Pa->value
-                                                  : model.value_or(paper_pmma()).E1_Pa.value;
+                                                  : model.value_or(paper_pmma()).E1_Pa().value;
   return std::sqrt(modulus_Pa / bar.density_kg_m3);
 }
 

@@ -18,7 +18,7 @@ double circle_m2(double diameter_m) {
 }
 
 RodMaterial solid(const Material& material) {
-  return {material.density_kg_m3, material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+  return {material.density_kg_m3, material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s()};
 }
 
 // The paper's specimens (Table 4).
@@ -148,8 +148,8 @@ Scenario steel() {
 constexpr RodMaterial kTitanium{4420.0, 113e9, 0.0, 0.0};
 
 Material rubber(const RodMaterial& solid, double poisson_ratio) {
-  return {{solid.density_kg_m3}, {poisson_ratio},   {solid.E1_Pa},
-          {solid.E2_Pa},         {solid.eta2_Pa_s}, "the paper"};
+  return three_element_material({solid.density_kg_m3}, {poisson_ratio}, {solid.E1_Pa},
+                                {solid.E2_Pa}, {solid.eta2_Pa_s}, "the paper");
 }
 
 /// The paper's ball on its titanium bar, a gauge 250 mm from the face, two beams on the ball's way.

@@ -316,11 +316,11 @@ BarPrior bars_to_begin_with(const std::vector<Shot>& shots) {
       continue;
     }
     const Material pmma = bars.material;
-    const double stiffer = shot.bench.input.density_kg_m3 * *speed * *speed / pmma.E1_Pa;
+    const double stiffer = shot.bench.input.density_kg_m3 * *speed * *speed / pmma.E1_Pa();
     if (stiffer > 1.0 / kMostTimesStiffer && stiffer < kMostTimesStiffer) {
-      bars.material.E1_Pa.value *= stiffer;
-      bars.material.E2_Pa.value *= stiffer;
-      bars.material.eta2_Pa_s.value *= stiffer;
+      for (Measured& number : bars.material.parameters) {
+        number.value *= stiffer;
+      }
     }
     break;
   }

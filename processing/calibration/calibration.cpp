@@ -50,13 +50,13 @@ BarPrior as_found(const PartResult& part, BarPrior bars) {
   for (const CalibratedNumber& number : part.numbers) {
     switch (number.of) {
       case CalibratedNumber::Of::E1:
-        bars.material.E1_Pa = number.combined;
+        bars.material.E1_Pa() = number.combined;
         break;
       case CalibratedNumber::Of::E2:
-        bars.material.E2_Pa = number.combined;
+        bars.material.E2_Pa() = number.combined;
         break;
       case CalibratedNumber::Of::eta2:
-        bars.material.eta2_Pa_s = number.combined;
+        bars.material.eta2_Pa_s() = number.combined;
         break;
       default:
         break;

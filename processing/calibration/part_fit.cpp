@@ -390,13 +390,13 @@ class PartFit {
           bar.youngs_modulus_Pa->value = values[m++];
           break;
         case CalibratedNumber::Of::E1:
-          material.E1_Pa.value = values[m++];
+          material.E1_Pa().value = values[m++];
           break;
         case CalibratedNumber::Of::E2:
-          material.E2_Pa.value = values[m++];
+          material.E2_Pa().value = values[m++];
           break;
         case CalibratedNumber::Of::eta2:
-          material.eta2_Pa_s.value = values[m++];
+          material.eta2_Pa_s().value = values[m++];
           break;
         default:
           break;

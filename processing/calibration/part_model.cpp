@@ -66,10 +66,10 @@ bool each_bar_has_moduli(const Bench& bench, const CalibrationOptions& options) 
 void add_moduli(const std::string& effect, const std::string& prefix, const Material& material,
                 bool believed, std::vector<ModelNumber>& list) {
   using Of = CalibratedNumber::Of;
-  list.push_back(of_material(Of::E1, 0, effect, prefix + "E1_Pa", material.E1_Pa, believed));
-  list.push_back(of_material(Of::E2, 1, effect, prefix + "E2_Pa", material.E2_Pa, believed));
+  list.push_back(of_material(Of::E1, 0, effect, prefix + "E1_Pa", material.E1_Pa(), believed));
+  list.push_back(of_material(Of::E2, 1, effect, prefix + "E2_Pa", material.E2_Pa(), believed));
   list.push_back(
-      of_material(Of::eta2, 2, effect, prefix + "eta2_Pa_s", material.eta2_Pa_s, believed));
+      of_material(Of::eta2, 2, effect, prefix + "eta2_Pa_s", material.eta2_Pa_s(), believed));
 }
 
 void hold(EffectUse& use) {
@@ -84,9 +84,9 @@ EffectUse specimen_use(const Bench& bench, const BarPrior& bars) {
   const bool slice = specimen_is_slice_of_bar(bench);
   const Material& material = bars.material;
   const double E = bench.input.youngs_modulus_Pa ? bench.input.youngs_modulus_Pa->value : 0.0;
-  use.values[0].value = !slice ? kRigid_Pa : E > 0.0 ? E : material.E1_Pa.value;
-  use.values[1].value = !slice || E > 0.0 ? kRigid_Pa : material.E2_Pa.value;
-  use.values[2].value = !slice || E > 0.0 ? 1.0 : material.eta2_Pa_s.value;
+  use.values[0].value = !slice ? kRigid_Pa : E > 0.0 ? E : material.E1_Pa().value;
+  use.values[1].value = !slice || E > 0.0 ? kRigid_Pa : material.E2_Pa().value;
+  use.values[2].value = !slice || E > 0.0 ? 1.0 : material.eta2_Pa_s().value;
   return use;
 }
 

@@ -102,13 +102,21 @@ double modulus_at_rest(const Bar& bar, const BarPrior& bars) {
   if (bar.youngs_modulus_Pa) {
     return *bar.youngs_modulus_Pa;
   }
-  return 1.0 / (1.0 / bars.material.E1_Pa + 1.0 / bars.material.E2_Pa);
+  return relaxed_modulus_Pa(bars.material);
 }
 
 double relative_sd_at_rest(const Bar& bar, const BarPrior& bars) {
-  return bar.youngs_modulus_Pa
-             ? relative_sd(*bar.youngs_modulus_Pa)
-             : std::max(relative_sd(bars.material.E1_Pa), relative_sd(bars.material.E2_Pa));
+  if (bar.youngs_modulus_Pa) {
+    return relative_sd(*bar.youngs_modulus_Pa);
+  }
+  const auto& family = parameters_of(bars.material.solid);
+  double most = 0.0;
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    if (family[i].is == SolidParameter::Is::modulus) {
+      most = std::max(most, relative_sd(bars.material.parameters[i]));
+    }
+  }
+  return most;
 }
 
 /// Absolute gain of the first gauge from its areas and the strikers' momenta.

@@ -36,6 +36,22 @@ std::vector<std::string> names_of(const std::vector<FittedNumber>& numbers) {
   return names;
 }
 
+std::vector<Measured> measured_of(const std::vector<FittedNumber>& numbers) {
+  std::vector<Measured> measured;
+  for (const FittedNumber& number : numbers) {
+    measured.push_back({number.value, number.sd});
+  }
+  return measured;
+}
+
+std::vector<double> row_by_row(const std::vector<std::vector<double>>& matrix) {
+  std::vector<double> numbers;
+  for (const std::vector<double>& row : matrix) {
+    numbers.insert(numbers.end(), row.begin(), row.end());
+  }
+  return numbers;
+}
+
 std::vector<double> first_guess(const BarData& data, SolidKind solid) {
   constexpr double kLeastTangent = 1e-4;
   constexpr double kMostTangent = 0.3;

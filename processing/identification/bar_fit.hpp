@@ -27,6 +27,11 @@ struct FittedNumber {
 
 [[nodiscard]] std::vector<double> values_of(const std::vector<FittedNumber>& numbers);
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<FittedNumber>& numbers);
+/// With their deviations.
+[[nodiscard]] std::vector<Measured> measured_of(const std::vector<FittedNumber>& numbers);
+
+/// As a material file has a covariance.
+[[nodiscard]] std::vector<double> row_by_row(const std::vector<std::vector<double>>& matrix);
 
 /// What one shot by itself says of the solid, the bench as all shots together have it.
 struct ShotEstimate {

@@ -118,21 +118,30 @@ std::string rounded(double value) {
   return in_words(value, "");
 }
 
-void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warnings) {
-  const BarFit& three = result.three_element;
-  if (three.misfit) {
-    warnings.push_back(
-        "the model does not fit (three elements, " + name_of(three.theory) +
-        " waves): what all shots leave alike is " + rounded(three.misfit->power) +
-        " times the noise from " + in_words(three.misfit->low_Hz, "Hz") + " to " +
-        in_words(three.misfit->high_Hz, "Hz") + ", " + rounded(three.misfit->deviations) +
-        " deviations from chance; deviations are widened as if it were noise, but do "
-        "not count on them to hold the truth");
-  } else if (three.chi2_reduced > kMoreThanNoise) {
-    warnings.push_back("the three-element solid leaves more than noise: reduced chi2 " +
-                       rounded(three.chi2_reduced) +
+/// @param name  of the solid in words
+void warn_of_misfit(const BarFit& fit, const std::string& name,
+                    std::vector<std::string>& warnings) {
+  if (fit.misfit) {
+    warnings.push_back("the model does not fit (" + name + ", " + name_of(fit.theory) +
+                       " waves): what all shots leave alike is " + rounded(fit.misfit->power) +
+                       " times the noise from " + in_words(fit.misfit->low_Hz, "Hz") + " to " +
+                       in_words(fit.misfit->high_Hz, "Hz") + ", " +
+                       rounded(fit.misfit->deviations) +
+                       " deviations from chance; deviations are widened as if it were noise, but "
+                       "do not count on them to hold the truth");
+  } else if (fit.chi2_reduced > kMoreThanNoise) {
+    warnings.push_back("the " + name_of(fit.solid) +
+                       " solid leaves more than noise: reduced chi2 " + rounded(fit.chi2_reduced) +
                        "; deviations are widened for what is left, which does not cover what the "
                        "model lacks");
+  }
+}
+
+void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warnings) {
+  const BarFit& three = result.three_element;
+  warn_of_misfit(three, "three elements", warnings);
+  if (result.fit.solid != SolidKind::three_element) {
+    warn_of_misfit(result.fit, name_of(result.fit.solid), warnings);
   }
   const FittedNumber& E2 = three.parameters[1];
   if (three.lossless || E2.sd > 0.3 * E2.value) {
@@ -175,7 +184,7 @@ void warn_of_choices(const BarIdentification& result, std::vector<std::string>& 
                        rounded(result.fit.reflection->value) + " of the stress");
   }
   if (const auto better = better_solid(result)) {
-    warnings.push_back(cost_of_three_elements(*better, result.three_element));
+    warnings.push_back(cost_of_filing(fit_to_file(result), *better));
   }
 }
 

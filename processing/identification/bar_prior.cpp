@@ -6,19 +6,41 @@
 
 namespace kolsky {
 
+namespace {
+
+/// 1 for each parameter that is so, else 0.
+template <class Is>
+Eigen::VectorXd ones_where(const Material& material, const Is& is) {
+  const auto& family = parameters_of(material.solid);
+  Eigen::VectorXd ones(static_cast<Eigen::Index>(family.size()));
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    ones[static_cast<Eigen::Index>(i)] = is(family[i]) ? 1.0 : 0.0;
+  }
+  return ones;
+}
+
+template <class Matrix>
+Eigen::MatrixXd scaled_eigenvectors(const Matrix& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(covariance);
+  Eigen::MatrixXd root = solver.eigenvectors();
+  for (Eigen::Index j = 0; j < root.cols(); ++j) {
+    root.col(j) *= std::sqrt(std::max(0.0, solver.eigenvalues()[j]));
+  }
+  return root;
+}
+
+}  // namespace
+
 BarPrior::BarPrior(const Material& m) : material(m) {
   from_waves = m.identified.has_value();
-  if (m.covariance) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        covariance[i][j] = (*m.covariance)[3 * i + j];
-      }
+  const std::size_t count = m.parameters.size();
+  covariance.assign(count, std::vector<double>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    covariance[i][i] = m.parameters[i].sd * m.parameters[i].sd;
+    for (std::size_t j = 0; m.covariance && j < count; ++j) {
+      covariance[i][j] = (*m.covariance)[count * i + j];
     }
-    return;
   }
-  covariance[0][0] = m.E1_Pa.sd * m.E1_Pa.sd;
-  covariance[1][1] = m.E2_Pa.sd * m.E2_Pa.sd;
-  covariance[2][2] = m.eta2_Pa_s.sd * m.eta2_Pa_s.sd;
 }
 
 double sd_by_temperature(const Bench& bench, const BarPrior& bars) {
@@ -35,25 +57,39 @@ std::optional<std::size_t> bar_of_density(const Bench& bench, const BarPrior& ba
   return goes ? std::optional(first) : std::nullopt;
 }
 
-Eigen::Matrix3d moduli_directions(const Bench& bench, const BarPrior& bars) {
-  const std::array<double, 3> scale = {bars.material.E1_Pa, bars.material.E2_Pa,
-                                       bars.material.eta2_Pa_s};
+Eigen::MatrixXd moduli_directions(const Bench& bench, const BarPrior& bars) {
   const double density =
       bar_of_density(bench, bars) ? std::pow(relative_sd(bars.material.density_kg_m3), 2) : 0.0;
-  Eigen::Matrix3d covariance;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
+  const Eigen::VectorXd with_density = moves_with_density(bars.material);
+  const Eigen::Index count = with_density.size();
+  Eigen::MatrixXd covariance(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
       const auto a = static_cast<std::size_t>(i);
       const auto b = static_cast<std::size_t>(j);
-      covariance(i, j) = bars.covariance[a][b] / (scale[a] * scale[b]) - density;
+      covariance(i, j) =
+          bars.covariance[a][b] / (bars.material.parameters[a] * bars.material.parameters[b]) -
+          density * with_density[i] * with_density[j];
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  Eigen::Matrix3d root = solver.eigenvectors();
-  for (int j = 0; j < 3; ++j) {
-    root.col(j) *= std::sqrt(std::max(0.0, solver.eigenvalues()[j]));
+  // Three by three has a solver of its own, and results of three elements are on file to the bit.
+  return count == 3 ? scaled_eigenvectors<Eigen::Matrix3d>(covariance)
+                    : scaled_eigenvectors(covariance);
+}
+
+Eigen::VectorXd moves_with_density(const Material& material) {
+  return ones_where(material, [](const SolidParameter& own) { return own.stiffens(); });
+}
+
+Eigen::VectorXd moves_with_temperature(const Material& material) {
+  return ones_where(
+      material, [](const SolidParameter& own) { return own.is == SolidParameter::Is::modulus; });
+}
+
+void move_parameters(Material& material, const Eigen::VectorXd& relative) {
+  for (std::size_t i = 0; i < material.parameters.size(); ++i) {
+    material.parameters[i].value *= 1.0 + relative[static_cast<Eigen::Index>(i)];
   }
-  return root;
 }
 
 }  // namespace kolsky

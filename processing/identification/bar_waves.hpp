@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "processing/identification/known_unknowns.hpp"
-#include "processing/identification/solids.hpp"
 #include "processing/waves/bar_modes.hpp"
+#include "processing/waves/solids.hpp"
 
 namespace kolsky {
 

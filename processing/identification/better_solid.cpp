@@ -10,16 +10,20 @@ constexpr double kClearlyAhead = 10.0;
 
 }  // namespace
 
+const BarFit& fit_to_file(const BarIdentification& result) {
+  return result.fit.solid == SolidKind::three_element ? result.three_element : result.fit;
+}
+
 std::optional<BetterSolid> better_solid(const BarIdentification& result) {
-  const BarFit& three = result.three_element;
+  const BarFit& filed = fit_to_file(result);
   std::optional<BetterSolid> better;
   for (const Alternative& other : result.alternatives) {
     const BarTheory& theory = other.theory;
-    if (!other.failed.empty() || theory.solid == SolidKind::three_element ||
-        theory.waves != three.theory || theory.far_end != three.far_end) {
+    if (!other.failed.empty() || theory.solid == filed.solid || theory.waves != filed.theory ||
+        theory.far_end != filed.far_end) {
       continue;
     }
-    const double ahead = other.log_evidence - three.log_evidence;
+    const double ahead = other.log_evidence - filed.log_evidence;
     if (ahead > (better ? better->log_evidence_ahead : kClearlyAhead)) {
       better = BetterSolid{theory.solid, ahead, other.chi2_reduced};
     }
@@ -27,13 +31,13 @@ std::optional<BetterSolid> better_solid(const BarIdentification& result) {
   return better;
 }
 
-std::string cost_of_three_elements(const BetterSolid& better, const BarFit& three_element) {
+std::string cost_of_filing(const BarFit& filed, const BetterSolid& better) {
+  const std::string name = name_of(better.solid);
   return formatted(
-      "reductions carry waves by three elements, the only ones a material file holds, but a %s "
-      "solid is ahead of them by a log evidence of %.0f: they leave a reduced chi2 of %.3g, it "
-      "%.3g",
-      name_of(better.solid).c_str(), better.log_evidence_ahead, three_element.chi2_reduced,
-      better.chi2_reduced);
+      "a %s solid is ahead of the %s one that reductions would go by, by a log evidence of %.0f: "
+      "that leaves a reduced chi2 of %.3g, it %.3g; --solid %s files it",
+      name.c_str(), name_of(filed.solid).c_str(), better.log_evidence_ahead, filed.chi2_reduced,
+      better.chi2_reduced, name.c_str());
 }
 
 }  // namespace kolsky

@@ -7,8 +7,11 @@
 
 namespace kolsky {
 
-/// A family of solids that the records prefer to the three elements by which reductions carry
-/// waves, and which a material file holds, too.
+/// What a material file takes: the solid that was asked for or that the evidence chose, three
+/// elements with what their choice of waves leaves open in their deviations.
+[[nodiscard]] const BarFit& fit_to_file(const BarIdentification& result);
+
+/// A family of solids that the records prefer to the one that is to be filed.
 struct BetterSolid {
   SolidKind solid = SolidKind::three_element;
   double log_evidence_ahead = 0.0;
@@ -18,8 +21,7 @@ struct BetterSolid {
 /// The one furthest ahead under the same waves and far end; none by less than a log evidence of 10.
 [[nodiscard]] std::optional<BetterSolid> better_solid(const BarIdentification& result);
 
-/// What it costs to go on with three elements, in one sentence.
-[[nodiscard]] std::string cost_of_three_elements(const BetterSolid& better,
-                                                 const BarFit& three_element);
+/// What it costs to go on with the one that is to be filed, in one sentence.
+[[nodiscard]] std::string cost_of_filing(const BarFit& filed, const BetterSolid& better);
 
 }  // namespace kolsky

@@ -189,11 +189,23 @@ RelaxationLaw relaxation_of(const CreepLaw& creep) {
 }
 
 CreepLaw creep_of(const Material& material, KelvinUnit second) {
-  require_positive("E1_Pa", material.E1_Pa, "Pa");
-  require_positive("E2_Pa", material.E2_Pa, "Pa");
-  require_positive("eta2_Pa_s", material.eta2_Pa_s, "Pa s");
-  CreepLaw creep{1.0 / material.E1_Pa,
-                 {{1.0 / material.E2_Pa, material.eta2_Pa_s / material.E2_Pa}}};
+  if (material.solid == SolidKind::four_element_fluid || material.solid == SolidKind::fractional) {
+    throw InputError("solid",
+                     "is " + name_of(material.solid) +
+                         ", and finite elements carry a spring and Kelvin units in line",
+                     "file three-element, two-kelvin or three-kelvin, as `kolsky identify "
+                     "specimen --solid` fits them");
+  }
+  const auto& family = parameters_of(material.solid);
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    require_positive(family[i].name, material.parameters[i],
+                     family[i].is == SolidParameter::Is::modulus ? "Pa" : "Pa s");
+  }
+  const std::vector<double> p = values_of(material.parameters);
+  CreepLaw creep{1.0 / p[0], {}};
+  for (std::size_t i = 1; i < p.size(); i += 2) {
+    creep.units.push_back({1.0 / p[i], p[i + 1] / p[i]});
+  }
   creep.units.push_back(second);
   return creep;
 }

@@ -52,6 +52,7 @@ struct RelaxationLaw {
 [[nodiscard]] RelaxationLaw relaxation_of(const CreepLaw& creep);
 
 /// The creep of a material file, with a further Kelvin unit where `second` has a compliance.
+/// @throws InputError at "solid": a family that is no chain of Kelvin units
 [[nodiscard]] CreepLaw creep_of(const Material& material, KelvinUnit second = {});
 
 /// Which stress the linear law gives, from Hencky's strain. They part with the change of volume, at

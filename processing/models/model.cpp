@@ -134,13 +134,13 @@ void take_filed(const Material& material, std::span<const Measured> numbers, Eff
     value.free = numbers[p].sd > 0.0;
   }
   use.prior_correlation.clear();
-  constexpr std::size_t kModuli = 3;
   if (!material.covariance) {
     return;
   }
-  const std::array<double, kModuli* kModuli>& covariance = *material.covariance;
-  for (std::size_t a = 0; a < kModuli; ++a) {
-    const double variance = covariance[a * kModuli + a];
+  const std::vector<double>& covariance = *material.covariance;
+  const std::size_t moduli = material.parameters.size();
+  for (std::size_t a = 0; a < moduli; ++a) {
+    const double variance = covariance[a * moduli + a];
     if (!(variance > 0.0)) {
       return;
     }
@@ -152,8 +152,8 @@ void take_filed(const Material& material, std::span<const Measured> numbers, Eff
   for (std::size_t a = 0; a < count; ++a) {
     for (std::size_t b = 0; b < count; ++b) {
       use.prior_correlation[a * count + b] =
-          a < kModuli && b < kModuli
-              ? covariance[a * kModuli + b] / use.values[a].prior_sd / use.values[b].prior_sd
+          a < moduli && b < moduli
+              ? covariance[a * moduli + b] / use.values[a].prior_sd / use.values[b].prior_sd
               : (a == b ? 1.0 : 0.0);
     }
   }
@@ -163,13 +163,14 @@ void take_filed(const Material& material, std::span<const Measured> numbers, Eff
 
 void take_layer(const Material& material, EffectUse& layer) {
   take_filed(material,
-             std::array<Measured, 5>{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s,
+             std::array<Measured, 5>{material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s(),
                                      material.density_kg_m3, material.poisson_ratio},
              layer);
 }
 
 void take_bars(const Material& material, EffectUse& bars) {
-  take_filed(material, std::array<Measured, 3>{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s},
+  take_filed(material,
+             std::array<Measured, 3>{material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s()},
              bars);
 }
 
@@ -182,9 +183,9 @@ Model paper_model(BenchKind kind, bool elastic) {
   if (!elastic) {
     EffectUse bar = use_named("three-element-bar");
     const Material pmma = paper_pmma();
-    bar.values[0].value = pmma.E1_Pa;
-    bar.values[1].value = pmma.E2_Pa;
-    bar.values[2].value = pmma.eta2_Pa_s;
+    bar.values[0].value = pmma.E1_Pa();
+    bar.values[1].value = pmma.E2_Pa();
+    bar.values[2].value = pmma.eta2_Pa_s();
     for (ModelValue& value : bar.values) {
       value.free = kind == BenchKind::bar;
     }

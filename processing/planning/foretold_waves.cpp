@@ -118,8 +118,7 @@ ForetoldWaves foretell_waves(const Bench& bench, const Material& bars, const Mat
   theory.specimen = bench.specimen->density_kg_m3 ? SpecimenWaves::rod : SpecimenWaves::massless;
   std::vector<std::vector<Complex>> transfers;
   ShpbPerForce per_N;
-  model.evaluate(theory, moved, ThreeElementSolid(specimen), transform.path(), 0, transfers,
-                 &per_N);
+  model.evaluate(theory, moved, *compliance_of(specimen), transform.path(), 0, transfers, &per_N);
 
   foretold.gauge_strain.resize(bench.gauges.size());
   std::vector<Complex> reading(transform.path().size());

@@ -98,8 +98,8 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
   plan.quotable = quotable_part(plan.reduction);
 
   const double density = bench.specimen->density_kg_m3.value_or(specimen.density_kg_m3);
-  const double settled_Pa = specimen.E1_Pa * specimen.E2_Pa / (specimen.E1_Pa + specimen.E2_Pa);
-  plan.specimen_transit_s = bench.specimen->length_m / std::sqrt(settled_Pa / density);
+  plan.specimen_transit_s =
+      bench.specimen->length_m / std::sqrt(relaxed_modulus_Pa(specimen) / density);
   return plan;
 }
 

@@ -45,7 +45,7 @@ constexpr std::size_t kModuli = 3;
 using Moduli = std::array<double, kModuli>;
 
 Moduli moduli_of(const Material& material) {
-  return {material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+  return {material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s()};
 }
 
 /// Draws of log moduli: they stay positive, and a per cent is a per cent.
@@ -78,9 +78,9 @@ class MaterialDraws {
     Draw draw{ball_.core.material, ball_.cover.material, numbers()};
     Eigen::Index at = 0;
     for (Material* material : {&draw.core, &draw.cover}) {
-      material->E1_Pa.value *= std::exp(move[at++]);
-      material->E2_Pa.value *= std::exp(move[at++]);
-      material->eta2_Pa_s.value *= std::exp(move[at++]);
+      material->E1_Pa().value *= std::exp(move[at++]);
+      material->E2_Pa().value *= std::exp(move[at++]);
+      material->eta2_Pa_s().value *= std::exp(move[at++]);
     }
     return draw;
   }

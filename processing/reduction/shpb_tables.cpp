@@ -40,26 +40,26 @@ double ShpbBar::front_time_s(double distance_m) const {
 
 std::vector<double> shpb_numbers(const Bench& b, const Material& m, WaveTheory theory,
                                  const Station& in, const Station& out) {
-  return {static_cast<double>(theory),
-          m.E1_Pa,
-          m.E2_Pa,
-          m.eta2_Pa_s,
-          b.input.area_m2(),
-          b.input.density_kg_m3,
-          b.input.youngs_modulus_Pa.value_or(Measured{}),
-          b.input.poisson_ratio,
-          b.input.dispersion_radius_m(),
-          b.output->poisson_ratio,
-          b.output->dispersion_radius_m(),
-          b.output->area_m2(),
-          b.output->density_kg_m3,
-          b.output->youngs_modulus_Pa.value_or(Measured{}),
-          in.gauge_to_specimen_m,
-          in.gauge_to_far_end_m,
-          out.gauge_to_specimen_m,
-          out.gauge_to_far_end_m,
-          static_cast<double>(b.output->far_end),
-          b.specimen->length_m};
+  std::vector<double> numbers = {static_cast<double>(theory),
+                                 b.input.area_m2(),
+                                 b.input.density_kg_m3,
+                                 b.input.youngs_modulus_Pa.value_or(Measured{}),
+                                 b.input.poisson_ratio,
+                                 b.input.dispersion_radius_m(),
+                                 b.output->poisson_ratio,
+                                 b.output->dispersion_radius_m(),
+                                 b.output->area_m2(),
+                                 b.output->density_kg_m3,
+                                 b.output->youngs_modulus_Pa.value_or(Measured{}),
+                                 in.gauge_to_specimen_m,
+                                 in.gauge_to_far_end_m,
+                                 out.gauge_to_specimen_m,
+                                 out.gauge_to_far_end_m,
+                                 static_cast<double>(b.output->far_end),
+                                 b.specimen->length_m,
+                                 static_cast<double>(m.solid)};
+  numbers.insert(numbers.end(), m.parameters.begin(), m.parameters.end());
+  return numbers;
 }
 
 std::size_t longest_travel(const Shot& shot, const ShpbBar& input, const ShpbBar& output) {

@@ -95,7 +95,8 @@ const std::vector<BarMode>& ShpbModel::modes(WaveTheory theory, const MovedShpb&
                              theory == WaveTheory::elementary ? 0.0 : b.dispersion_radius_m(),
                              theory == WaveTheory::elementary ? 0.0 : b.poisson_ratio.value};
   if (!b.youngs_modulus_Pa) {
-    key.insert(key.end(), {moved.material.E1_Pa, moved.material.E2_Pa, moved.material.eta2_Pa_s});
+    key.push_back(static_cast<double>(moved.material.solid));
+    key.insert(key.end(), moved.material.parameters.begin(), moved.material.parameters.end());
   }
   KeptModes& kept = kept_[slot][bar];
   if (kept.key != key) {

@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "processing/identification/solids.hpp"
 #include "processing/specimen/shpb_unknowns.hpp"
 #include "processing/waves/bar_modes.hpp"
+#include "processing/waves/solids.hpp"
 
 namespace kolsky {
 

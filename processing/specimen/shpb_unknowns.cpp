@@ -54,10 +54,11 @@ std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<Shp
   add_bar(list, bench.input, 0);
   add_bar(list, *bench.output, 1);
   if (!bench.input.youngs_modulus_Pa || !bench.output->youngs_modulus_Pa) {
-    const Eigen::Matrix3d root = moduli_directions(bench, bars);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const bool moves = root.col(static_cast<int>(i)).norm() > 0.0;
-      add(list, "bar-model:" + std::to_string(i + 1), Of::bar_material, i, moves ? 1.0 : 0.0);
+    const Eigen::MatrixXd root = moduli_directions(bench, bars);
+    for (Eigen::Index i = 0; i < root.cols(); ++i) {
+      const bool moves = root.col(i).norm() > 0.0;
+      add(list, "bar-model:" + std::to_string(i + 1), Of::bar_material, static_cast<std::size_t>(i),
+          moves ? 1.0 : 0.0);
     }
   }
   add(list, "temperature", Of::temperature, 0, sd_by_temperature(bench, bars));
@@ -79,8 +80,10 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
       gain(stations.size(), 1.0),
       delay_s(stations.size(), 0.0) {
   std::vector<double> shift_m(stations.size(), 0.0);
-  Eigen::Vector3d relative = Eigen::Vector3d::Zero();
-  const Eigen::Matrix3d root = moduli_directions(filed, prior);
+  const Eigen::MatrixXd root = moduli_directions(filed, prior);
+  const Eigen::VectorXd with_density = moves_with_density(material);
+  const Eigen::VectorXd with_temperature = moves_with_temperature(material);
+  Eigen::VectorXd relative = Eigen::VectorXd::Zero(root.cols());
   const auto moduli_with = bar_of_density(filed, prior);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const ShpbUnknown& u = unknowns[i];
@@ -100,7 +103,7 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         break;
       case Of::bar_density:
         scale(bars[u.index].density_kg_m3, move);
-        relative += Eigen::Vector3d::Constant(u.index == moduli_with ? move : 0.0);
+        relative += (u.index == moduli_with ? move : 0.0) * with_density;
         break;
       case Of::bar_diameter:
         scale(bars[u.index].diameter_m, move);
@@ -115,10 +118,10 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         scale(*bars[u.index].youngs_modulus_Pa, move);
         break;
       case Of::bar_material:
-        relative += root.col(static_cast<int>(u.index)) * move;
+        relative += root.col(static_cast<Eigen::Index>(u.index)) * move;
         break;
       case Of::temperature:
-        relative -= move * Eigen::Vector3d(1.0, 1.0, 0.0);
+        relative -= move * with_temperature;
         break;
       case Of::specimen_length:
         scale(specimen.length_m, move);
@@ -131,9 +134,7 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
         break;
     }
   }
-  scale(material.E1_Pa, relative[0]);
-  scale(material.E2_Pa, relative[1]);
-  scale(material.eta2_Pa_s, relative[2]);
+  move_parameters(material, relative);
   for (std::size_t j = 0; j < stations.size(); ++j) {
     // Positions on the input bar count from the impacted end: the specimen is at its length.
     const double filed_m = stations[j].to_specimen_m;

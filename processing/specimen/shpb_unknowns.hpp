@@ -24,7 +24,7 @@ struct ShpbUnknown {
     bar_diameter,
     bar_poisson,
     bar_modulus,   ///< of an elastic bar
-    bar_material,  ///< one of three independent directions of a viscoelastic bar's moduli
+    bar_material,  ///< one of the independent directions of a viscoelastic bar's moduli
     temperature,   ///< at which viscoelastic bars soften
     specimen_length,
     specimen_diameter,

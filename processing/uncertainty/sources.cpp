@@ -53,12 +53,6 @@ void add_gauge(Sources& sources, const Bench& bench, std::size_t i) {
   }
 }
 
-void scale(Material& moduli, double E1, double E2, double eta2) {
-  moduli.E1_Pa.value *= 1.0 + E1;
-  moduli.E2_Pa.value *= 1.0 + E2;
-  moduli.eta2_Pa_s.value *= 1.0 + eta2;
-}
-
 void add_density(Sources& sources, const Bench& bench, const BarPrior& bars, bool input) {
   const auto bar = [input](Bench& b) -> Bar& { return input ? b.input : *b.output; };
   const Measured density = (input ? bench.input : *bench.output).density_kg_m3;
@@ -71,7 +65,7 @@ void add_density(Sources& sources, const Bench& bench, const BarPrior& bars, boo
                          const double move = deviations * relative_sd(at);
                          at.value *= 1.0 + move;
                          if (with_moduli) {
-                           scale(moved.bars, move, move, move);
+                           move_parameters(moved.bars, move * moves_with_density(moved.bars));
                          }
                        }});
   }
@@ -109,21 +103,22 @@ void add_moduli(Sources& sources, const Bench& bench, const BarPrior& bars) {
   if (bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa)) {
     return;
   }
-  const Eigen::Matrix3d directions = moduli_directions(bench, bars);
-  for (int i = 2; i >= 0; --i) {
-    const Eigen::Vector3d along = directions.col(i);
+  const Eigen::MatrixXd directions = moduli_directions(bench, bars);
+  for (Eigen::Index i = directions.cols() - 1; i >= 0; --i) {
+    const Eigen::VectorXd along = directions.col(i);
     if (along.norm() > 0.0) {
-      sources.push_back({"bar model, direction " + std::to_string(3 - i), "bar moduli", 0.0,
-                         along.norm(), [along](ShotNumbers& moved, double deviations) {
-                           scale(moved.bars, deviations * along[0], deviations * along[1],
-                                 deviations * along[2]);
+      sources.push_back({"bar model, direction " + std::to_string(directions.cols() - i),
+                         "bar moduli", 0.0, along.norm(),
+                         [along](ShotNumbers& moved, double deviations) {
+                           move_parameters(moved.bars, deviations * along);
                          }});
     }
   }
   if (const double change = sd_by_temperature(bench, bars); change > 0.0) {
     sources.push_back({"temperature_K", "temperature", bench.temperature_K->value,
                        bench.temperature_K->sd, [change](ShotNumbers& moved, double deviations) {
-                         scale(moved.bars, -deviations * change, -deviations * change, 0.0);
+                         move_parameters(moved.bars,
+                                         -deviations * change * moves_with_temperature(moved.bars));
                        }});
   }
 }

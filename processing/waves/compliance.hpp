@@ -38,7 +38,7 @@ class ThreeElementSolid final : public Compliance {
   ThreeElementSolid(double E1_Pa, double E2_Pa, double eta2_Pa_s)
       : E1_Pa_(E1_Pa), E2_Pa_(E2_Pa), eta2_Pa_s_(eta2_Pa_s) {}
   explicit ThreeElementSolid(const Material& m)
-      : ThreeElementSolid(m.E1_Pa, m.E2_Pa, m.eta2_Pa_s) {}
+      : ThreeElementSolid(m.E1_Pa(), m.E2_Pa(), m.eta2_Pa_s()) {}
 
   // Not inline: modules differ in how they divide complex numbers, and which of them a program's
   // copy came from would show in the last bits.
@@ -50,6 +50,9 @@ class ThreeElementSolid final : public Compliance {
   double E2_Pa_;
   double eta2_Pa_s_;
 };
+
+/// A material's, of whatever family.
+[[nodiscard]] std::unique_ptr<const Compliance> compliance_of(const Material& material);
 
 /// A bar's compliance: elastic where the bench gives its modulus, else the material's.
 [[nodiscard]] std::unique_ptr<const Compliance> compliance_of(const Bar& bar,

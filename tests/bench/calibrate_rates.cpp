@@ -81,9 +81,9 @@ CalibrationOptions options_of(const testing::Campaign& made, const Case& wanted)
     Material material;
     material.density_kg_m3 = {true_material.density_kg_m3};
     material.poisson_ratio = {true_material.poisson_ratio};
-    material.E1_Pa = {true_material.E1_Pa * wanted.E1_filed, true_material.E1_Pa * 1e-3};
-    material.E2_Pa = {true_material.E2_Pa, true_material.E2_Pa * 1e-2};
-    material.eta2_Pa_s = {true_material.eta2_Pa_s, true_material.eta2_Pa_s * 1e-2};
+    material.E1_Pa() = {true_material.E1_Pa * wanted.E1_filed, true_material.E1_Pa * 1e-3};
+    material.E2_Pa() = {true_material.E2_Pa, true_material.E2_Pa * 1e-2};
+    material.eta2_Pa_s() = {true_material.eta2_Pa_s, true_material.eta2_Pa_s * 1e-2};
     options.bars = BarPrior(material);
   }
   return options;

@@ -111,7 +111,7 @@ Model known_ball() {
   for (const auto& [id, paper] : {std::pair{"three-element-core", paper_golf_core()},
                                   std::pair{"three-element-cover", paper_golf_cover()}}) {
     Material material = paper;
-    for (Measured* const number : {&material.E1_Pa, &material.E2_Pa, &material.eta2_Pa_s}) {
+    for (Measured* const number : {&material.E1_Pa(), &material.E2_Pa(), &material.eta2_Pa_s()}) {
       number->sd = kKnown * number->value;
     }
     take_layer(material, *model.find(id));

@@ -42,7 +42,7 @@ void try_material(const std::string& text) {
     const kolsky::Material material = kolsky::parse_material(text, "f.toml");
     const kolsky::Material again =
         kolsky::parse_material(kolsky::format_material(material), "f.toml");
-    require(same(material.E1_Pa, again.E1_Pa) && same(material.eta2_Pa_s, again.eta2_Pa_s));
+    require(same(material.E1_Pa(), again.E1_Pa()) && same(material.eta2_Pa_s(), again.eta2_Pa_s()));
     require(material.source == again.source);
   } catch (const InputError& error) {
     require_clear(error);

@@ -215,9 +215,9 @@ Material filed_material(const TrueMaterial& material) {
   Material filed_as;
   filed_as.density_kg_m3 = {material.density_kg_m3, 0.0};
   filed_as.poisson_ratio = {material.poisson_ratio, 0.0};
-  filed_as.E1_Pa = {material.E1_Pa, 0.0};
-  filed_as.E2_Pa = {material.E2_Pa, 0.0};
-  filed_as.eta2_Pa_s = {material.eta2_Pa_s, 0.0};
+  filed_as.E1_Pa() = {material.E1_Pa, 0.0};
+  filed_as.E2_Pa() = {material.E2_Pa, 0.0};
+  filed_as.eta2_Pa_s() = {material.eta2_Pa_s, 0.0};
   return filed_as;
 }
 
@@ -228,9 +228,9 @@ void loosen_bars(Random& random, Campaign& campaign) {
   };
   TrueMaterial& material = campaign.world.material;
   if (campaign.filed_bars) {
-    loosen_one(campaign.filed_bars->E1_Pa, material.E1_Pa, 1e-4);
-    loosen_one(campaign.filed_bars->E2_Pa, material.E2_Pa, 2e-3);
-    loosen_one(campaign.filed_bars->eta2_Pa_s, material.eta2_Pa_s, 2e-3);
+    loosen_one(campaign.filed_bars->E1_Pa(), material.E1_Pa, 1e-4);
+    loosen_one(campaign.filed_bars->E2_Pa(), material.E2_Pa, 2e-3);
+    loosen_one(campaign.filed_bars->eta2_Pa_s(), material.eta2_Pa_s, 2e-3);
   }
   TrueSpecimen& specimen = campaign.split->specimen;
   loosen_one(campaign.bench.specimen->length_m, specimen.length_m, 0.002);

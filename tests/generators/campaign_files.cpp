@@ -107,9 +107,9 @@ void write_bars(const CampaignFolder& to, const Material& bars) {
   std::string text;
   put(text, "density_kg_m3", bars.density_kg_m3);
   put(text, "poisson_ratio", bars.poisson_ratio);
-  put(text, "E1_Pa", bars.E1_Pa);
-  put(text, "E2_Pa", bars.E2_Pa);
-  put(text, "eta2_Pa_s", bars.eta2_Pa_s);
+  put(text, "E1_Pa", bars.E1_Pa());
+  put(text, "E2_Pa", bars.E2_Pa());
+  put(text, "eta2_Pa_s", bars.eta2_Pa_s());
   std::filesystem::create_directories(to.folder);
   write_text(to.folder / "bars.toml", text);
 }

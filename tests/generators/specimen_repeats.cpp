@@ -34,9 +34,9 @@ SpecimenFit SpecimenRepeats::fit(unsigned repeat, const SpecimenFitOptions& opti
   const auto misfile = [&](Measured& number, double truth, double relative_sd) {
     number = {truth * (1.0 + relative_sd * normal(random)), truth * relative_sd};
   };
-  misfile(bars.E1_Pa, model_.input.E1_Pa, filed_.bars_sd[0]);
-  misfile(bars.E2_Pa, model_.input.E2_Pa, filed_.bars_sd[1]);
-  misfile(bars.eta2_Pa_s, model_.input.eta2_Pa_s, filed_.bars_sd[2]);
+  misfile(bars.E1_Pa(), model_.input.E1_Pa, filed_.bars_sd[0]);
+  misfile(bars.E2_Pa(), model_.input.E2_Pa, filed_.bars_sd[1]);
+  misfile(bars.eta2_Pa_s(), model_.input.eta2_Pa_s, filed_.bars_sd[2]);
   std::vector<Shot> shots;
   for (unsigned i = 0; i < shots_; ++i) {
     const auto seed = static_cast<unsigned>(random());

@@ -78,9 +78,10 @@ std::vector<Direction> Prober::nuisances() {
     add_modulus(out, &testing::TrueMaterial::E1_Pa, true,
                 filed(*campaign_.bench.input.youngs_modulus_Pa));
   } else {
-    add_modulus(out, &testing::TrueMaterial::E1_Pa, held, bars ? filed(bars->E1_Pa) : 0.0);
-    add_modulus(out, &testing::TrueMaterial::E2_Pa, held, bars ? filed(bars->E2_Pa) : 0.0);
-    add_modulus(out, &testing::TrueMaterial::eta2_Pa_s, held, bars ? filed(bars->eta2_Pa_s) : 0.0);
+    add_modulus(out, &testing::TrueMaterial::E1_Pa, held, bars ? filed(bars->E1_Pa()) : 0.0);
+    add_modulus(out, &testing::TrueMaterial::E2_Pa, held, bars ? filed(bars->E2_Pa()) : 0.0);
+    add_modulus(out, &testing::TrueMaterial::eta2_Pa_s, held,
+                bars ? filed(bars->eta2_Pa_s()) : 0.0);
   }
   add_gauges(out);
   return out;

@@ -125,20 +125,14 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   Material material;
   material.density_kg_m3 = shots.front().bench.input.density_kg_m3;
   material.poisson_ratio = shots.front().bench.input.poisson_ratio;
-  material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
-  material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
-  material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
+  material.parameters = measured_of(fit.parameters);
   run.bars = fmt::format("identified from {} shots", shots.size());
   material.source = "kolsky chain, " + run.bars;
   material.identified =
       Material::Identified{fit.band_limit_Hz, run.bar->temperature_K, fit.chi2_reduced,
                            !run.bar->spectrum.mean_loss.gains()};
   Bars bars{BarPrior(material), fit.band_limit_Hz, std::string(kPlace) + "--bar-shots"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      bars.prior.covariance[i][j] = fit.covariance[i][j];
-    }
-  }
+  bars.prior.covariance = fit.covariance;
   return bars;
 }
 
@@ -179,9 +173,7 @@ Material filed_material(const std::vector<Shot>& shots, const char* option) {
 
 MaterialPosterior posterior_of(const SpecimenFit& fit, Material material) {
   MaterialPosterior posterior{std::move(material), {}};
-  posterior.material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
-  posterior.material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
-  posterior.material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
+  posterior.material.parameters = measured_of(fit.parameters);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       posterior.covariance[i][j] = fit.covariance[i][j];
@@ -220,8 +212,7 @@ bool same_bars(const std::vector<Shot>& core, const std::vector<Shot>& cover,
   const auto& a = core.front().bar_model;
   const auto& b = cover.front().bar_model;
   return a.has_value() == b.has_value() &&
-         (!a || (alike(a->E1_Pa, b->E1_Pa) && alike(a->E2_Pa, b->E2_Pa) &&
-                 alike(a->eta2_Pa_s, b->eta2_Pa_s)));
+         (!a || (a->solid == b->solid && std::ranges::equal(a->parameters, b->parameters, alike)));
 }
 
 /// The covariance of two fits by what they share: unit deviations of the bars' moduli and of a

@@ -57,24 +57,25 @@ BarIdentificationOptions options_from(const Settings& settings) {
   return options;
 }
 
+/// Of a fit without a number that a file takes.
+const char* mend_of(SolidKind solid) {
+  return solid == SolidKind::three_element
+             ? "file an elastic bar by bars.*.youngs_modulus_Pa in the bench instead"
+             : "give a --solid of fewer parameters, or auto";
+}
+
 void write_material(const std::string& path, const BarIdentification& result,
                     const std::vector<Shot>& shots) {
-  const BarFit& fit = result.three_element;
+  const BarFit& fit = fit_to_file(result);
   const bool grows = result.spectrum.mean_loss.gains();
   const Bar& bar = shots.front().bench.input;
   Material material;
   material.density_kg_m3 = bar.density_kg_m3;
   material.poisson_ratio = bar.poisson_ratio;
-  material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
-  material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
-  material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
+  material.solid = fit.solid;
+  material.parameters = measured_of(fit.parameters);
   material.source = "kolsky identify bar, " + std::to_string(shots.size()) + " shots";
-  auto& covariance = material.covariance.emplace();
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      covariance[3 * i + j] = fit.covariance[i][j];
-    }
-  }
+  material.covariance = row_by_row(fit.covariance);
   material.identified = Material::Identified{fit.band_limit_Hz, result.temperature_K};
   try {
     check(material);
@@ -83,13 +84,12 @@ void write_material(const std::string& path, const BarIdentification& result,
                      "cannot file this fit: " + error.place() + " " + error.problem(),
                      grows ? "check the gauge factors and the order of the gauges: the waves grow "
                              "on their way"
-                           : "file an elastic bar by bars.*.youngs_modulus_Pa in the bench "
-                             "instead");
+                           : mend_of(fit.solid));
   }
   const auto better = better_solid(result);
   NewFile file(path);
   file.write(format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced, !grows,
-                                        better ? cost_of_three_elements(*better, fit) : ""}));
+                                        better ? cost_of_filing(fit, *better) : ""}));
   file.publish(kReadableByAll);
 }
 
@@ -112,21 +112,7 @@ BarIdentification identify(const std::vector<Shot>& shots, const Settings& setti
   }
 }
 
-/// Three elements are filed whatever is ahead, but not in place of what was asked for by name.
-void require_fileable_solid(const Settings& settings) {
-  const bool filed = !settings.solid || *settings.solid == "auto" ||
-                     solid_kind(*settings.solid) == SolidKind::three_element;
-  if (settings.model_out && !filed) {
-    throw InputError(
-        std::string(kName) + ": --model-out",
-        "writes a material file, which is a three-element solid, not a " + *settings.solid + " one",
-        "leave --model-out out for that solid, or --solid (or give auto) to file three "
-        "elements");
-  }
-}
-
 int run(const Settings& settings, Context& context) {
-  require_fileable_solid(settings);
   if (settings.draws) {
     require_draws(kName, *settings.draws);
   }
@@ -172,20 +158,22 @@ Command identify_bar_command() {
       "Wave theory and far end are chosen by the records; every alternative is listed.";
   command.examples =
       "  kolsky identify bar shot1.h5 shot2.h5 --model-out pmma.toml\n"
+      "  kolsky identify bar shots/ --solid auto --model-out pmma.toml\n"
       "  kolsky identify bar shots/ --json > bar.json\n"
       "  kolsky identify bar shots/ --draws 500\n"
       "  kolsky identify bar shot.h5 --dispersion elementary --svg bar.svg\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of shots on one bar, or folders of them", &s.captures),
-      option("--model-out", "M.toml",
-             "material file of three elements to write, for --bar-model: values, deviations,\n"
-             "covariance",
-             &s.model_out),
+      option(
+          "--model-out", "M.toml",
+          "material file to write, for --bar-model: values, deviations, covariance of the solid\n"
+          "that --solid asks for or chooses",
+          &s.model_out),
       Argument{"--solid",
                "FAMILY",
-               "family of solids for the spectrum: three-element (default), or what the records "
-               "are evidence\n"
-               "for (auto); the three-element parameters always come too",
+               "family of solids for the spectrum and the file: three-element (default), or what "
+               "the records\n"
+               "are evidence for (auto); the three-element parameters always come too",
                &s.solid,
                false,
                {"three-element", "four-element-fluid", "two-kelvin", "three-kelvin", "fractional",

@@ -59,11 +59,6 @@ SpecimenFitOptions fit_options(const Settings& settings, const std::optional<Bar
   SpecimenFitOptions options;
   if (settings.solid) {
     options.solid = solid_kind(*settings.solid);
-    if (options.solid != SolidKind::three_element && settings.model_out) {
-      throw InputError(std::string(kName) + ": --model-out",
-                       "writes a material file, which is a three-element solid",
-                       "leave --solid or --model-out out");
-    }
   }
   if (settings.dispersion) {
     options.bars = wave_theory(*settings.dispersion);
@@ -187,32 +182,26 @@ void write_material(const IdentifiedSpecimen& outcome, const std::string& path) 
   Material material;
   material.density_kg_m3 = *bench.specimen->density_kg_m3;
   material.poisson_ratio = *bench.specimen->poisson_ratio;
-  material.E1_Pa = {fit.parameters[0].value, fit.parameters[0].sd};
-  material.E2_Pa = {fit.parameters[1].value, fit.parameters[1].sd};
-  material.eta2_Pa_s = {fit.parameters[2].value, fit.parameters[2].sd};
+  material.solid = fit.solid;
+  material.parameters = measured_of(fit.parameters);
   material.source =
       fmt::format("kolsky identify specimen, {} shots, chi2 per degree of freedom {:.3f}",
                   outcome.shots.size(), fit.chi2_reduced);
+  material.covariance = row_by_row(fit.covariance);
+  material.identified =
+      Material::Identified{fit.band_limit_Hz, temperature_of(outcome.shots.front())};
   try {
     check(material);
   } catch (const InputError& error) {
     throw InputError(std::string(kName) + ": --model-out",
                      "cannot file this fit: " + error.place() + " " + error.problem(),
-                     "give more shots or a wider band");
-  }
-  std::string text = format_material(material) + "covariance = [";
-  for (const auto& row : fit.covariance) {
-    for (const double value : row) {
-      text += fmt::format("{:.17e}, ", value);
-    }
-  }
-  text += fmt::format("]\n\n[identified]\nshots = {}\nband_limit_Hz = {:.1f}\n",
-                      outcome.shots.size(), fit.band_limit_Hz);
-  if (const auto temperature_K = temperature_of(outcome.shots.front())) {
-    text += fmt::format("temperature_K = {:.3f}\n", *temperature_K);
+                     fit.solid == SolidKind::three_element
+                         ? "give more shots or a wider band"
+                         : "give more shots, a wider band or a --solid of fewer parameters");
   }
   NewFile file(path);
-  file.write(text);
+  // [identified] is the last table.
+  file.write(format_material(material) + fmt::format("shots = {}\n", outcome.shots.size()));
   file.publish(kReadableByAll);
 }
 

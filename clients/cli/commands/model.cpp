@@ -68,7 +68,7 @@ void take_bar_model(const Material& material, Model& model) {
     take_bars(material, *bars);
     return;
   }
-  const std::array<Measured, 3> starts{material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+  const std::array<Measured, 3> starts{material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s()};
   for (std::size_t p = 0; p < starts.size(); ++p) {
     bars->values[p].value = bars->values[p].prior_mean = starts[p].value;
   }

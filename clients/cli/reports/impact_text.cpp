@@ -34,9 +34,9 @@ std::string solid_text(const impact::Solid& solid, const impact::BallMaterial& f
   std::string text = fmt::format("{} at once, {} relaxed",
                                  with_unit(impact::instantaneous_modulus_Pa(solid), "Pa"),
                                  with_unit(impact::relaxed_modulus_Pa(solid), "Pa"));
-  const double kept = impact::instantaneous_modulus_Pa(solid) / filed.material.E1_Pa;
+  const double kept = impact::instantaneous_modulus_Pa(solid) / filed.material.E1_Pa();
   if (std::abs(kept - 1.0) > 1e-3) {
-    text += fmt::format(" (filed E1 {})", with_unit(filed.material.E1_Pa, "Pa"));
+    text += fmt::format(" (filed E1 {})", with_unit(filed.material.E1_Pa(), "Pa"));
   }
   return text;
 }

@@ -19,6 +19,9 @@ constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kVersionIdentified = 2;
 /// With how the shot is to be reduced, where that is not as usual.
 constexpr std::uint32_t kVersionReduction = 3;
+/// With a bar model of another family of solids than three elements, and a reduction that may be as
+/// usual.
+constexpr std::uint32_t kVersionSolid = 4;
 constexpr std::size_t kGapBytes = 17;
 constexpr std::size_t kLeastMetaBytes = 8;
 constexpr std::size_t kLeastChannelBytes = 45;
@@ -102,6 +105,9 @@ std::uint8_t code_bytes(const ChannelRecord& channel) {
 }
 
 std::uint32_t version_of(const Shot& shot) {
+  if (shot.bar_model && shot.bar_model->solid != SolidKind::three_element) {
+    return kVersionSolid;
+  }
   if (shot.reduction.asks()) {
     return kVersionReduction;
   }
@@ -137,7 +143,8 @@ void put_identification(ByteWriter& writer, const Material& material) {
 
 void get_identification(ByteReader& reader, Material& material) {
   if (reader.get_flag()) {
-    for (double& number : material.covariance.emplace()) {
+    const std::size_t count = material.parameters.size();
+    for (double& number : material.covariance.emplace(count * count)) {
       number = reader.get<double>();
     }
   }
@@ -186,28 +193,54 @@ ReductionRequest get_request(ByteReader& reader) {
   return request;
 }
 
-void put_material(ByteWriter& writer, const std::optional<Material>& material) {
+void put(ByteWriter& writer, const Measured& number) {
+  writer.put(number.value);
+  writer.put(number.sd);
+}
+
+Measured get_measured(ByteReader& reader) {
+  const auto value = reader.get<double>();
+  return {value, reader.get<double>()};
+}
+
+SolidKind get_solid(ByteReader& reader) {
+  try {
+    return solid_kind(reader.get_text());
+  } catch (const InputError& error) {
+    reader.refuse(error.problem());
+  }
+}
+
+void put_material(ByteWriter& writer, const std::optional<Material>& material,
+                  std::uint32_t version) {
   writer.put(static_cast<std::uint8_t>(material ? 1 : 0));
   if (!material) {
     return;
   }
-  for (const Measured* number : {&material->density_kg_m3, &material->poisson_ratio,
-                                 &material->E1_Pa, &material->E2_Pa, &material->eta2_Pa_s}) {
-    writer.put(number->value);
-    writer.put(number->sd);
+  put(writer, material->density_kg_m3);
+  put(writer, material->poisson_ratio);
+  if (version == kVersionSolid) {
+    writer.put_text(name_of(material->solid));
+  }
+  for (const Measured& number : material->parameters) {
+    put(writer, number);
   }
   writer.put_text(material->source);
 }
 
-std::optional<Material> get_material(ByteReader& reader) {
+std::optional<Material> get_material(ByteReader& reader, std::uint32_t version) {
   if (!reader.get_flag()) {
     return std::nullopt;
   }
   Material material;
-  for (Measured* number : {&material.density_kg_m3, &material.poisson_ratio, &material.E1_Pa,
-                           &material.E2_Pa, &material.eta2_Pa_s}) {
-    number->value = reader.get<double>();
-    number->sd = reader.get<double>();
+  material.density_kg_m3 = get_measured(reader);
+  material.poisson_ratio = get_measured(reader);
+  if (version == kVersionSolid) {
+    material.solid = get_solid(reader);
+    material.parameters.resize(parameters_of(material.solid).size());
+  }
+  for (Measured& number : material.parameters) {
+    number = get_measured(reader);
   }
   material.source = reader.get_text();
   return material;
@@ -245,11 +278,14 @@ void put_metadata(ByteWriter& writer, const Shot& shot) {
   writer.put(version);
   writer.put_text(shot.id);
   writer.put_text(shot.bench_toml);
-  put_material(writer, shot.bar_model);
+  put_material(writer, shot.bar_model, version);
   if (shot.bar_model && version != kVersion) {
     put_identification(writer, *shot.bar_model);
   }
-  if (version == kVersionReduction) {
+  if (version == kVersionSolid) {
+    writer.put(static_cast<std::uint8_t>(shot.reduction.asks() ? 1 : 0));
+  }
+  if (shot.reduction.asks()) {
     put_request(writer, shot.reduction);
   }
   writer.put(shot.rate.numerator);
@@ -396,21 +432,21 @@ void encode_shot(const Shot& shot, std::vector<std::byte>& out) {
 Shot decode_shot(std::span<const std::byte> bytes, const std::string& place) {
   ByteReader reader(bytes, place);
   const auto version = reader.get<std::uint32_t>();
-  if (version < kVersion || version > kVersionReduction) {
+  if (version < kVersion || version > kVersionSolid) {
     reader.refuse("shot of format " + std::to_string(version) + ", this program reads " +
-                  std::to_string(kVersion) + " to " + std::to_string(kVersionReduction));
+                  std::to_string(kVersion) + " to " + std::to_string(kVersionSolid));
   }
   Shot shot;
   shot.id = reader.get_text();
   shot.bench_toml = reader.get_text();
-  shot.bar_model = get_material(reader);
-  if (version == kVersionIdentified && !shot.bar_model) {
+  shot.bar_model = get_material(reader, version);
+  if ((version == kVersionIdentified || version == kVersionSolid) && !shot.bar_model) {
     reader.refuse("an identification of no bar model");
   }
   if (version != kVersion && shot.bar_model) {
     get_identification(reader, *shot.bar_model);
   }
-  if (version == kVersionReduction) {
+  if (version == kVersionReduction || (version == kVersionSolid && reader.get_flag())) {
     shot.reduction = get_request(reader);
   }
   shot.rate.numerator = reader.get<std::int64_t>();

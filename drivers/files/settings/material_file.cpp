@@ -10,29 +10,65 @@ namespace kolsky {
 
 namespace {
 
-std::array<double, 9> read_covariance(const TomlTable& table) {
-  std::array<double, 9> covariance{};
-  const std::vector<double> numbers = table.numbers("covariance");
-  if (numbers.size() != covariance.size()) {
-    throw table.error("covariance", "has " + std::to_string(numbers.size()) + " numbers",
-                      "give nine, row by row, of E1_Pa, E2_Pa and eta2_Pa_s");
+SolidKind read_solid(const TomlTable& table) {
+  const auto name = table.optional_text("solid");
+  if (!name) {
+    return SolidKind::three_element;
   }
-  std::copy(numbers.begin(), numbers.end(), covariance.begin());
-  return covariance;
+  try {
+    return solid_kind(*name);
+  } catch (const InputError& error) {
+    throw table.located(error);
+  }
+}
+
+bool has_parameter(SolidKind solid, const std::string& name) {
+  const auto& family = parameters_of(solid);
+  return std::any_of(family.begin(), family.end(),
+                     [&](const SolidParameter& own) { return own.name == name; });
+}
+
+/// Of a family that has the parameter, the one of fewest; empty where none has.
+std::string family_with(const std::string& parameter) {
+  for (const SolidKind solid :
+       {SolidKind::two_kelvin, SolidKind::fractional, SolidKind::three_kelvin}) {
+    if (has_parameter(solid, parameter)) {
+      return name_of(solid);
+    }
+  }
+  return "";
+}
+
+/// A parameter that another family has says that `solid` is missing or wrong.
+void refuse_of_other_solids(const TomlTable& table, SolidKind solid) {
+  for (const std::string& key : table.keys()) {
+    const std::string family = has_parameter(solid, key) ? "" : family_with(key);
+    if (!family.empty()) {
+      throw table.error(key, "is no parameter of a " + name_of(solid) + " solid",
+                        "leave it out, or say which solid has it: solid = \"" + family + "\"");
+    }
+  }
 }
 
 Material read(const TomlTable& table) {
-  table.expect({"density_kg_m3", "poisson_ratio", "E1_Pa", "E2_Pa", "eta2_Pa_s", "source",
-                "covariance", "identified"});
   Material material;
+  material.solid = read_solid(table);
+  refuse_of_other_solids(table, material.solid);
+  std::vector<std::string> keys = {"density_kg_m3", "poisson_ratio"};
+  for (const SolidParameter& parameter : parameters_of(material.solid)) {
+    keys.push_back(parameter.name);
+  }
+  keys.insert(keys.end(), {"solid", "source", "covariance", "identified"});
+  table.expect(keys);
   material.density_kg_m3 = table.measured("density_kg_m3");
   material.poisson_ratio = table.measured("poisson_ratio");
-  material.E1_Pa = table.measured("E1_Pa");
-  material.E2_Pa = table.measured("E2_Pa");
-  material.eta2_Pa_s = table.measured("eta2_Pa_s");
+  material.parameters.clear();
+  for (const SolidParameter& parameter : parameters_of(material.solid)) {
+    material.parameters.push_back(table.measured(parameter.name));
+  }
   material.source = table.optional_text("source").value_or("");
   if (table.has("covariance")) {
-    material.covariance = read_covariance(table);
+    material.covariance = table.numbers("covariance");
   }
   if (const auto identified = table.optional_table("identified")) {
     material.identified = Material::Identified{identified->optional_number("band_limit_Hz"),
@@ -102,13 +138,17 @@ std::string format_material(const Material& material) {
   if (!material.source.empty()) {
     text += "source = " + quoted(material.source) + "\n";
   }
+  if (material.solid != SolidKind::three_element) {
+    text += "solid = " + quoted(name_of(material.solid)) + "\n";
+  }
   text += number_line("density_kg_m3", material.density_kg_m3);
   text += number_line("poisson_ratio", material.poisson_ratio);
-  text += number_line("E1_Pa", material.E1_Pa);
-  text += number_line("E2_Pa", material.E2_Pa);
-  text += number_line("eta2_Pa_s", material.eta2_Pa_s);
+  const auto& family = parameters_of(material.solid);
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    text += number_line(family[i].name, material.parameters[i]);
+  }
   if (material.covariance) {
-    text += "covariance = [";  // E1, E2, eta2, row by row
+    text += "covariance = [";  // of the parameters, row by row
     for (std::size_t i = 0; i < material.covariance->size(); ++i) {
       text += (i == 0 ? "" : ", ") + digits((*material.covariance)[i]);
     }

@@ -21,7 +21,7 @@ struct Identified {
   std::string dispersion;  ///< how waves were taken to travel
   double chi2_reduced = 0.0;
   bool passive = true;  ///< false: waves grew on their way, and no bar model may be made of it
-  /// What clearly explains the records better than three elements and what these cost, for people;
+  /// What clearly explains the records better than this solid and what this one costs, for people;
   /// empty where nothing does.
   std::string better_solid{};
 };

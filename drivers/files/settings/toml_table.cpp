@@ -284,12 +284,16 @@ void TomlTable::accept(const std::string& key) const {
 }
 
 void TomlTable::expect(std::initializer_list<std::string_view> keys) const {
+  expect(std::vector<std::string>(keys.begin(), keys.end()));
+}
+
+void TomlTable::expect(const std::vector<std::string>& keys) const {
   for (const auto& entry : node_->entries) {
-    const bool expected = std::any_of(keys.begin(), keys.end(), [&](std::string_view key) {
+    const bool expected = std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
       return entry.key == key || is_deviation_of(entry.key, key);
     });
     if (!expected) {
-      throw unknown_key(entry.key, {keys.begin(), keys.end()});
+      throw unknown_key(entry.key, keys);
     }
   }
 }

@@ -65,6 +65,7 @@ class TomlTable {
   /// Refuses any key but these (and their `_sd` siblings), so that a misspelt key is named before
   /// the one it stands for is missed. Call it before reading; `finish()` is still needed.
   void expect(std::initializer_list<std::string_view> keys) const;
+  void expect(const std::vector<std::string>& keys) const;
   /// Refuses keys in this table and the tables below it that nothing asked for, the first line
   /// first.
   void finish() const;

@@ -17,9 +17,9 @@ impact::BallMaterial material_of(const BallLayer& layer, int reading, bool cauch
   impact::BallMaterial material;
   material.material.density_kg_m3 = {layer.density_kg_m3, 0.0};
   material.material.poisson_ratio = {layer.poisson_ratio, 0.0};
-  material.material.E1_Pa = {layer.solid.E1_Pa, 0.0};
-  material.material.E2_Pa = {layer.solid.E2_Pa, 0.0};
-  material.material.eta2_Pa_s = {layer.solid.eta2_Pa_s, 0.0};
+  material.material.E1_Pa() = {layer.solid.E1_Pa, 0.0};
+  material.material.E2_Pa() = {layer.solid.E2_Pa, 0.0};
+  material.material.eta2_Pa_s() = {layer.solid.eta2_Pa_s, 0.0};
   material.reading = static_cast<impact::Reading>(reading);
   material.nonlinearity = layer.nonlinearity;
   material.law = cauchy ? impact::FiniteStrain::cauchy : impact::FiniteStrain::kirchhoff;

@@ -132,8 +132,8 @@ TEST_F(IdentifyBar, ASolidThatIsAskedForIsSaidToBe) {
   EXPECT_EQ(result["choice"]["solid"]["asked"], true);
 }
 
-/// Creep over two times, which three elements cannot hold; reductions go by three all the same.
-TEST_F(IdentifyBar, SaysWhatThreeElementsCostWhereAnotherSolidIsAhead) {
+/// Creep over two times, which three elements cannot hold.
+TEST_F(IdentifyBar, SaysWhatThreeElementsCostAndFilesWhatIsAheadWhereAsked) {
   testing::Campaign campaign = testing::draw_campaign({.seed = 71, .noise_strain = 1e-6});
   testing::plant(campaign.world, testing::parse_effect("second-relaxation=6e-12,tau=3e-4"));
   const std::string capture =
@@ -141,8 +141,8 @@ TEST_F(IdentifyBar, SaysWhatThreeElementsCostWhereAnotherSolidIsAhead) {
           .front()
           .string();
   const std::string model = folder_ / "two.toml";
-  const json told = json_of(scene::kolsky(
-      {"identify", "bar", capture, "--solid", "auto", "--model-out", model, "--json"}));
+  const json told =
+      json_of(scene::kolsky({"identify", "bar", capture, "--model-out", model, "--json"}));
   const json& better = told["better_solid"];
   EXPECT_EQ(better["solid"], "two-kelvin");
   const auto evidence_of = [&](const char* solid) {
@@ -157,19 +157,32 @@ TEST_F(IdentifyBar, SaysWhatThreeElementsCostWhereAnotherSolidIsAhead) {
   const double ahead = evidence_of("two-kelvin") - evidence_of("three-element");
   EXPECT_NEAR(better["log_evidence_ahead"].get<double>(), ahead, 0.02 * ahead);
   EXPECT_LT(better["chi2_reduced"], told["chi2_reduced"]);
+  EXPECT_EQ(read_material(model).solid, SolidKind::three_element);
   std::stringstream file;
   file << std::ifstream(model).rdbuf();
-  const std::string sentence = "reductions carry waves by three elements";
+  const std::string sentence = "a two-kelvin solid is ahead of the three-element one";
   EXPECT_NE(file.str().find("better_solid = \"" + sentence), std::string::npos) << file.str();
   EXPECT_NE(told["warnings"].dump().find(sentence), std::string::npos) << told["warnings"];
-}
+  EXPECT_NE(told["warnings"].dump().find("--solid two-kelvin files it"), std::string::npos);
 
-TEST_F(IdentifyBar, RefusesToFileThreeElementsForASolidThatIsAskedForByName) {
-  const std::string model = folder_ / "fractional.toml";
-  const scene::Answer answer = scene::kolsky(
-      {"identify", "bar", folder_ / "none.h5", "--solid", "fractional", "--model-out", model});
-  EXPECT_TRUE(refused(answer, {"--model-out", "not a fractional", "auto"}));
-  EXPECT_FALSE(std::filesystem::exists(model));
+  for (const char* solid : {"auto", "two-kelvin"}) {
+    const std::string own = folder_ / (std::string(solid) + ".toml");
+    const json chosen = json_of(scene::kolsky(
+        {"identify", "bar", capture, "--solid", solid, "--model-out", own, "--json"}));
+    EXPECT_TRUE(chosen["better_solid"].is_null()) << chosen["better_solid"];
+    const Material filed = read_material(own);
+    EXPECT_EQ(filed.solid, SolidKind::two_kelvin);
+    const json& fitted = chosen["solid"];
+    ASSERT_EQ(filed.parameters.size(), 5U);
+    for (std::size_t i = 0; i < filed.parameters.size(); ++i) {
+      const std::string& name = parameters_of(filed.solid)[i].name;
+      EXPECT_EQ(filed.parameters[i].value, fitted["parameters"][name]["value"].get<double>());
+      EXPECT_EQ(filed.parameters[i].sd, fitted["parameters"][name]["sd"].get<double>());
+      EXPECT_EQ(filed.covariance->at(5 * i + 1), fitted["covariance"][i][1].get<double>());
+    }
+    ASSERT_TRUE(filed.identified);
+    EXPECT_EQ(filed.identified->chi2_reduced, fitted["chi2_reduced"].get<double>());
+  }
 }
 
 TEST_F(IdentifyBar, IsDrawnThroughItsFit) {
@@ -225,8 +238,8 @@ TEST_F(IdentifyBar, FindsTheBarAndFilesIt) {
   EXPECT_EQ(result["waveforms"][0]["gauges"].size(), 3U);
 
   const Material filed = read_material(model);
-  EXPECT_EQ(filed.E1_Pa.value, result["parameters"]["E1_Pa"]["value"].get<double>());
-  EXPECT_EQ(filed.E1_Pa.sd, result["parameters"]["E1_Pa"]["sd"].get<double>());
+  EXPECT_EQ(filed.E1_Pa().value, result["parameters"]["E1_Pa"]["value"].get<double>());
+  EXPECT_EQ(filed.E1_Pa().sd, result["parameters"]["E1_Pa"]["sd"].get<double>());
 }
 
 /// A bar that is struck at one end and has one gauge, its length as well known as a tape measures.

@@ -11,6 +11,8 @@
 #include <set>
 #include <sstream>
 
+#include "drivers/files/settings/material_file.hpp"
+#include "processing/waves/compliance.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/generators/linear_shpb.hpp"
 
@@ -414,6 +416,35 @@ TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
   EXPECT_EQ(plan("near", {}).code, 0);
 }
 
+/// A core that creeps over two times.
+class TwoBranchSpecimenFiles : public SpecimenFiles {
+ protected:
+  TwoBranchSpecimenFiles() {
+    testing::KelvinChain chain = testing::three_element(121e6, 143e6, 2860.0);
+    chain.add_relaxation(4e-9, 2e-4);
+    model_.chain = chain;
+  }
+};
+
+TEST_F(TwoBranchSpecimenFiles, AreFiledAsTheSolidThatWasFitted) {
+  const std::string file = folder_ / "core.toml";
+  const json told = json_of(kolsky(identify({"--bar-model", folder_ / "pmma.toml", "--solid",
+                                             "two-kelvin", "--model-out", file, "--json"})));
+  const Material filed = read_material(file);
+  ASSERT_EQ(filed.solid, SolidKind::two_kelvin);
+  for (std::size_t i = 0; i < filed.parameters.size(); ++i) {
+    const json& fitted = told["parameters"][parameters_of(filed.solid)[i].name];
+    EXPECT_EQ(filed.parameters[i].value, fitted["value"].get<double>());
+    EXPECT_NEAR(std::sqrt(filed.covariance->at(6 * i)), fitted["sd"].get<double>(),
+                1e-9 * fitted["sd"].get<double>());
+  }
+  for (const double frequency_Hz : {1e3, 3e3, 8e3}) {
+    const Complex s(0.0, 2.0 * std::numbers::pi * frequency_Hz);
+    const Complex truth = 1.0 / 121e6 + 1.0 / (143e6 + 2860.0 * s) + 4e-9 / (1.0 + 2e-4 * s);
+    EXPECT_LT(std::abs(compliance_of(filed)->at(s) / truth - 1.0), 0.01) << frequency_Hz;
+  }
+}
+
 TEST_F(SpecimenFiles, RefuseWhatMakesNoSense) {
   const std::string& capture = captures_.front();
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--stress", "four-wave"}), {"three-wave"}));
@@ -423,8 +454,6 @@ TEST_F(SpecimenFiles, RefuseWhatMakesNoSense) {
   folder_.write("renamed.toml", replaced(kBench, "\"g2\"", "\"h2\""));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bench", folder_ / "renamed.toml"}),
                       {"renamed.toml", "h2", "g2"}));
-  EXPECT_TRUE(refused(kolsky(identify({"--solid", "fractional", "--model-out", "x.toml"})),
-                      {"--model-out"}));
   EXPECT_TRUE(refused(kolsky({"identify", "specimen"}), {"CAPTURE is missing"}));
   EXPECT_TRUE(refused(kolsky(identify({"--draws", "1"})), {"--draws", "20"}));
   EXPECT_TRUE(refused(kolsky(identify({"--softening", "2"})), {"--softening", "0.003"}));

@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "processing/base/error.hpp"
 
@@ -21,8 +22,21 @@ std::string place_refused(const Material& material) {
 
 Material solid(double density_kg_m3, double poisson_ratio, double E1_Pa, double E2_Pa,
                double eta2_Pa_s) {
-  return {{density_kg_m3, 0.0}, {poisson_ratio, 0.0}, {E1_Pa, 0.0},
-          {E2_Pa, 0.0},         {eta2_Pa_s, 0.0},     ""};
+  return three_element_material({density_kg_m3}, {poisson_ratio}, {E1_Pa}, {E2_Pa}, {eta2_Pa_s},
+                                "");
+}
+
+Material two_kelvin() {
+  Material material = paper_pmma();
+  material.solid = SolidKind::two_kelvin;
+  material.parameters = {{5.7e9}, {40e9}, {1.9e6}, {160e9}, {5e7}};
+  return material;
+}
+
+Measured& number_of(Material& material, std::size_t i) {
+  return i == 0   ? material.density_kg_m3
+         : i == 1 ? material.poisson_ratio
+                  : material.parameters.at(i - 2);
 }
 
 // Every solid that the paper tabulates (Table 4, core and cover).
@@ -37,28 +51,68 @@ TEST(Material, ThePapersAreTaken) {
 
 TEST(Material, ThePapersPmmaIsItsFirstRow) {
   const Material pmma = paper_pmma();
-  EXPECT_EQ(pmma.E1_Pa, 5.66e9);
-  EXPECT_EQ(pmma.E2_Pa, 37.0e9);
-  EXPECT_EQ(pmma.eta2_Pa_s, 1.81e6);
+  EXPECT_EQ(pmma.E1_Pa(), 5.66e9);
+  EXPECT_EQ(pmma.E2_Pa(), 37.0e9);
+  EXPECT_EQ(pmma.eta2_Pa_s(), 1.81e6);
   EXPECT_EQ(pmma.poisson_ratio, 0.36);
   EXPECT_EQ(pmma.density_kg_m3, 1180.0);
 }
 
 TEST(Material, RefusesEveryValueThatIsNone) {
-  constexpr std::array kKeys{"density_kg_m3", "poisson_ratio", "E1_Pa", "E2_Pa", "eta2_Pa_s"};
-  constexpr std::array kMembers{&Material::density_kg_m3, &Material::poisson_ratio,
-                                &Material::E1_Pa, &Material::E2_Pa, &Material::eta2_Pa_s};
-  for (std::size_t i = 0; i < kKeys.size(); ++i) {
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0,
-                             std::numeric_limits<double>::infinity()}) {
-      Material material = paper_pmma();
-      (material.*kMembers[i]).value = bad;
-      EXPECT_EQ(place_refused(material), kKeys[i]);
-      material = paper_pmma();
-      (material.*kMembers[i]).sd = bad;
-      EXPECT_EQ(place_refused(material), std::string(kKeys[i]) + "_sd");
+  for (const Material& good : {paper_pmma(), two_kelvin()}) {
+    std::vector<std::string> keys = {"density_kg_m3", "poisson_ratio"};
+    for (const SolidParameter& parameter : parameters_of(good.solid)) {
+      keys.push_back(parameter.name);
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0,
+                               std::numeric_limits<double>::infinity()}) {
+        Material material = good;
+        number_of(material, i).value = bad;
+        EXPECT_EQ(place_refused(material), keys[i]);
+        material = good;
+        number_of(material, i).sd = bad;
+        EXPECT_EQ(place_refused(material), keys[i] + "_sd");
+      }
     }
   }
+}
+
+TEST(Material, EveryFamilyIsTakenWithItsOwnNumbers) {
+  EXPECT_EQ(place_refused(two_kelvin()), "nothing");
+  Material material = two_kelvin();
+  material.parameters.pop_back();
+  EXPECT_EQ(place_refused(material), "solid");
+  material = two_kelvin();
+  material.parameters[4].value = 1e-8 * material.parameters[3];
+  EXPECT_EQ(place_refused(material), "eta3_Pa_s");
+  material = two_kelvin();
+  material.covariance.emplace(9, 0.0);
+  EXPECT_EQ(place_refused(material), "covariance");
+  material.covariance.emplace(25, 0.0);
+  EXPECT_EQ(place_refused(material), "nothing");
+  material.solid = SolidKind::fractional;
+  material.covariance.reset();
+  material.parameters = {{5.7e9}, {40e9}, {1.9e6}, {0.8}};
+  EXPECT_EQ(place_refused(material), "nothing");
+  material.parameters[3].value = 1.1;
+  EXPECT_EQ(place_refused(material), "beta");
+  // A dashpot in line has no spring beside it, and with it no retardation time.
+  material.solid = SolidKind::four_element_fluid;
+  material.parameters = {{5.7e9}, {4e12}, {40e9}, {1.9e6}};
+  EXPECT_EQ(place_refused(material), "nothing");
+}
+
+TEST(Material, HasNoThreeElementsInAnotherFamily) {
+  EXPECT_EQ(two_kelvin().E1_Pa(), 5.7e9);
+  EXPECT_THROW((void)two_kelvin().E2_Pa(), InputError);
+  EXPECT_THROW((void)two_kelvin().eta2_Pa_s(), InputError);
+}
+
+TEST(Material, RelaxesToAllItsSpringsInLine) {
+  EXPECT_DOUBLE_EQ(relaxed_modulus_Pa(paper_pmma()), 1.0 / (1.0 / 5.66e9 + 1.0 / 37.0e9));
+  EXPECT_DOUBLE_EQ(relaxed_modulus_Pa(two_kelvin()),
+                   1.0 / (1.0 / 5.7e9 + 1.0 / 40e9 + 1.0 / 160e9));
 }
 
 }  // namespace

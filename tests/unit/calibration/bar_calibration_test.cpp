@@ -173,9 +173,9 @@ TEST(BarCalibration, MaterialFiledOffIsNamed) {
   Material material;
   material.density_kg_m3 = {made.world.material.density_kg_m3};
   material.poisson_ratio = {made.world.material.poisson_ratio};
-  material.E1_Pa = {made.world.material.E1_Pa * 1.02, made.world.material.E1_Pa * 1e-3};
-  material.E2_Pa = {made.world.material.E2_Pa, made.world.material.E2_Pa * 1e-2};
-  material.eta2_Pa_s = {made.world.material.eta2_Pa_s, made.world.material.eta2_Pa_s * 1e-2};
+  material.E1_Pa() = {made.world.material.E1_Pa * 1.02, made.world.material.E1_Pa * 1e-3};
+  material.E2_Pa() = {made.world.material.E2_Pa, made.world.material.E2_Pa * 1e-2};
+  material.eta2_Pa_s() = {made.world.material.eta2_Pa_s, made.world.material.eta2_Pa_s * 1e-2};
   CalibrationOptions options;
   options.bars = BarPrior(material);
   const Calibration calibration = calibrate(testing::shots_of(made), options);
@@ -190,9 +190,9 @@ TEST(BarCalibration, JudgesNoFurtherThanItsBarsAreKnown) {
   const std::vector<Shot> shots = testing::shots_of(made);
   Material material = paper_pmma();
   material.density_kg_m3 = {made.world.material.density_kg_m3};
-  material.E1_Pa = {made.world.material.E1_Pa, made.world.material.E1_Pa * 1e-2};
-  material.E2_Pa = {made.world.material.E2_Pa, made.world.material.E2_Pa * 0.1};
-  material.eta2_Pa_s = {made.world.material.eta2_Pa_s, made.world.material.eta2_Pa_s * 0.1};
+  material.E1_Pa() = {made.world.material.E1_Pa, made.world.material.E1_Pa * 1e-2};
+  material.E2_Pa() = {made.world.material.E2_Pa, made.world.material.E2_Pa * 0.1};
+  material.eta2_Pa_s() = {made.world.material.eta2_Pa_s, made.world.material.eta2_Pa_s * 0.1};
   material.identified = Material::Identified{kKnown_Hz, std::nullopt};
   CalibrationOptions known;
   known.bars = BarPrior(material);

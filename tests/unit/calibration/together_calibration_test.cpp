@@ -134,9 +134,9 @@ TEST(BarsTogether, NumbersAtTheirLimitsExplainNothing) {
   const testing::Campaign made = testing::draw_campaign(wishes);
   CalibrationOptions options;
   Material bars = paper_pmma();
-  bars.E1_Pa = {made.world.material.E1_Pa};
-  bars.E2_Pa = {made.world.material.E2_Pa};
-  bars.eta2_Pa_s = {made.world.material.eta2_Pa_s};
+  bars.E1_Pa() = {made.world.material.E1_Pa};
+  bars.E2_Pa() = {made.world.material.E2_Pa};
+  bars.eta2_Pa_s() = {made.world.material.eta2_Pa_s};
   options.bars = BarPrior(bars);
   const Calibration calibration = calibrate(testing::shots_of(made), options);
   EXPECT_EQ(calibration.certificate, Certificate::undecided);
@@ -232,9 +232,9 @@ TEST(BarsTogether, EachRodHasItsOwnModuli) {
   model.output.E1_Pa *= 0.95;
   model.gauge_out_m = 0.4;
   Material filed = paper_pmma();
-  filed.E1_Pa.sd = 0.1 * filed.E1_Pa;
-  filed.E2_Pa.sd = 0.1 * filed.E2_Pa;
-  filed.eta2_Pa_s.sd = 0.1 * filed.eta2_Pa_s;
+  filed.E1_Pa().sd = 0.1 * filed.E1_Pa();
+  filed.E2_Pa().sd = 0.1 * filed.E2_Pa();
+  filed.eta2_Pa_s().sd = 0.1 * filed.eta2_Pa_s();
   CalibrationOptions options;
   options.bars = BarPrior(filed);
   const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 5), options);
@@ -258,9 +258,9 @@ TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
   model.ramp_s = 30e-6;
   const std::vector<Shot> shots = shots_of(model.bench(), model.solve(), 5);
   Material filed = paper_pmma();
-  filed.E1_Pa = {5.5e9, 0.3e9};
-  filed.E2_Pa = {1.2 * filed.E2_Pa, 0.3 * filed.E2_Pa};
-  filed.eta2_Pa_s = {0.8 * filed.eta2_Pa_s, 0.3 * filed.eta2_Pa_s};
+  filed.E1_Pa() = {5.5e9, 0.3e9};
+  filed.E2_Pa() = {1.2 * filed.E2_Pa(), 0.3 * filed.E2_Pa()};
+  filed.eta2_Pa_s() = {0.8 * filed.eta2_Pa_s(), 0.3 * filed.eta2_Pa_s()};
   CalibrationOptions options;
   options.bars = BarPrior(filed);
   const Calibration calibration = calibrate(shots, options);

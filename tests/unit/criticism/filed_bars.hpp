@@ -12,7 +12,7 @@ namespace kolsky {
 inline Model filed_split_bar(const testing::Campaign& truth) {
   Model model = paper_model(BenchKind::shpb, false);
   const Material& filed = *truth.filed_bars;
-  const std::vector<Measured> numbers{filed.E1_Pa, filed.E2_Pa, filed.eta2_Pa_s};
+  const std::vector<Measured> numbers{filed.E1_Pa(), filed.E2_Pa(), filed.eta2_Pa_s()};
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     ModelValue& value = model.find("three-element-bar")->values[p];
     value.value = value.prior_mean = numbers[p].value;

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "drivers/files/models/model_file.hpp"
 #include "processing/criticism/fitting/composition.hpp"
@@ -12,19 +12,19 @@
 namespace kolsky {
 namespace {
 
-const std::array<double, 9> kCovariance{4e12, -5e12, 1e7, -5e12, 9e12, -2e7, 1e7, -2e7, 1e4};
+const std::vector<double> kCovariance{4e12, -5e12, 1e7, -5e12, 9e12, -2e7, 1e7, -2e7, 1e4};
 
 Material core() {
   Material core;
   core.density_kg_m3 = {1140.0, 0.0};
   core.poisson_ratio = {0.376, 0.004};
-  core.E1_Pa = {121e6, 1e6};
-  core.E2_Pa = {143e6, 1e6};
-  core.eta2_Pa_s = {2860.0, 50.0};
+  core.E1_Pa() = {121e6, 1e6};
+  core.E2_Pa() = {143e6, 1e6};
+  core.eta2_Pa_s() = {2860.0, 50.0};
   return core;
 }
 
-Model ball_of(const std::optional<std::array<double, 9>>& covariance) {
+Model ball_of(const std::optional<std::vector<double>>& covariance) {
   Model model = paper_model(BenchKind::impact, true);
   Material filed = core();
   filed.covariance = covariance;

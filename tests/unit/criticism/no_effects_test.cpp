@@ -31,7 +31,7 @@ TEST(FiledBars, OfOtherModuliAreNoEffect) {
   for (std::uint64_t seed = 841; seed < 843; ++seed) {
     testing::Campaign truth = testing::draw_campaign(
         {.seed = seed, .shots = 5, .gauges = 2, .samples = 1400, .rate_Hz = 1e6, .split = true});
-    truth.filed_bars->E2_Pa.value *= seed % 2 == 0 ? 1.03 : 0.97;
+    truth.filed_bars->E2_Pa().value *= seed % 2 == 0 ? 1.03 : 0.97;
     const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), filed_split_bar(truth));
     EXPECT_EQ(name_of(diagnosis.verdict), "unknown") << seed;
     EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [](const std::string& note) {

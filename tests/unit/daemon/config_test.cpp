@@ -250,7 +250,7 @@ striker_speed_m_per_s = 12.5
   EXPECT_EQ(config.meta.at("striker_speed_m_per_s"), "12.5");
   EXPECT_EQ(apparatus.trigger_channel, 1U);
   ASSERT_TRUE(apparatus.bar_model);
-  EXPECT_EQ(apparatus.bar_model->E1_Pa.value, 5.0e9);
+  EXPECT_EQ(apparatus.bar_model->E1_Pa().value, 5.0e9);
 
   const TriggerOptions trigger = trigger_options(config.trigger, 2e6);
   EXPECT_EQ(trigger.level_sigma, 9.5);

@@ -31,14 +31,25 @@ def optional(value):
     return b"\x01" + (packed(value) if isinstance(value, str) else struct.pack("<d", value))
 
 
+SOLIDS = {
+    "three-element": ("E1_Pa", "E2_Pa", "eta2_Pa_s"),
+    "two-kelvin": ("E1_Pa", "E2_Pa", "eta2_Pa_s", "E3_Pa", "eta3_Pa_s"),
+}
+
+
+def numbers(values, keys):
+    return b"".join(struct.pack("<dd", values[key], values.get(key + "_sd", 0.0)) for key in keys)
+
+
 def material(values, version):
-    out = b"\x01"
-    for key in ("density_kg_m3", "poisson_ratio", "E1_Pa", "E2_Pa", "eta2_Pa_s"):
-        out += struct.pack("<dd", values[key], values.get(key + "_sd", 0.0))
+    solid = values.get("solid", "three-element")
+    out = b"\x01" + numbers(values, ("density_kg_m3", "poisson_ratio"))
+    out += packed(solid) if version == 4 else b""
+    out += numbers(values, SOLIDS[solid])
     out += packed(values.get("source", ""))
     if version > 1:
         covariance, identified = values.get("covariance"), values.get("identified")
-        out += struct.pack("<B9d", 1, *covariance) if covariance else b"\x00"
+        out += struct.pack(f"<B{len(covariance)}d", 1, *covariance) if covariance else b"\x00"
         out += b"\x00" if identified is None else (
             b"\x01" + optional(identified.get("band_limit_Hz")) + optional(identified.get("temperature_K")))
     return out
@@ -54,6 +65,8 @@ def reduction(asked):
 
 
 def version_of(model, asked):
+    if model and "solid" in model:
+        return 4
     if asked is not None:
         return 3
     return 2 if model and ("covariance" in model or "identified" in model) else 1
@@ -65,7 +78,8 @@ def canonical(entry):
     version = version_of(model, shot.get("reduction"))
     out = struct.pack("<I", version) + packed(text(shot["id"])) + packed(text(shot["bench_toml"]))
     out += material(model, version) if model else b"\x00"
-    out += reduction(shot["reduction"]) if version == 3 else b""
+    out += struct.pack("<B", "reduction" in shot) if version == 4 else b""
+    out += reduction(shot["reduction"]) if "reduction" in shot else b""
     for key in ("rate_numerator", "rate_denominator", "first_tick"):
         out += struct.pack("<q", shot[key][()])
     if "trigger_tick" in shot:

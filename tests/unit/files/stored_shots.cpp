@@ -1,6 +1,7 @@
 #include "tests/unit/files/stored_shots.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -67,7 +68,7 @@ Shot make_shot(std::uint32_t seed, const ShotShape& shape) {
   shot.bench_toml = bench_text(shape.channels);
   shot.bench = parse_bench(shot.bench_toml, "bench");
   shot.bar_model = paper_pmma();
-  shot.bar_model->E1_Pa.sd = 1.0e8 / 3.0;
+  shot.bar_model->E1_Pa().sd = 1.0e8 / 3.0;
   shot.rate = {1'000'000, 3};
   shot.first_tick = 1'000'000'000'000 + seed;
   shot.trigger = TriggerEvent{shot.first_tick + 40, 0.1 + 1e-17, 0.03 / 7.0, TriggerKind::forced};
@@ -80,6 +81,18 @@ Shot make_shot(std::uint32_t seed, const ShotShape& shape) {
   shot.monotonic_ns = 98'765'432'101'234 + seed;
   shot.software_version = "0.1.0 (β)";
   return shot;
+}
+
+Material two_kelvin_bar() {
+  Material bar = paper_pmma();
+  bar.solid = SolidKind::two_kelvin;
+  bar.parameters = {{5.7e9, 1e6}, {4e10, 1e9 / 3.0}, {1.9e6, 0.0}, {1.6e11, 5e9}, {5e7, 3e6}};
+  auto& covariance = bar.covariance.emplace(25, 0.0);
+  for (std::size_t i = 0; i < bar.parameters.size(); ++i) {
+    covariance[6 * i] = std::pow(bar.parameters[i].sd, 2);
+  }
+  bar.identified = Material::Identified{15e3, 296.5};
+  return bar;
 }
 
 Shot asked_shot() {
@@ -102,8 +115,8 @@ Shot golden_shot() {
   shot.id = "golden-1";
   shot.bench_toml = bench_text(2);
   shot.bench = parse_bench(shot.bench_toml, "bench");
-  shot.bar_model =
-      Material{{1180.0, 0.0}, {0.36, 0.01}, {5.5e9, 1e7}, {37e9, 0.0}, {1.8e6, 0.0}, "β"};
+  shot.bar_model = three_element_material({1180.0, 0.0}, {0.36, 0.01}, {5.5e9, 1e7}, {37e9, 0.0},
+                                          {1.8e6, 0.0}, "β");
   shot.rate = {1'000'000, 1};
   shot.first_tick = 123'456'789'012;
   shot.trigger = TriggerEvent{123'456'789'014, 0.25, 0.05, TriggerKind::marked};
@@ -134,7 +147,11 @@ std::vector<GoldenShot> make_golden_shots() {
   asked.reduction.stress = "one-wave";
   asked.reduction.friction = 0.1;
   asked.reduction.with_true = true;
-  return {{"shot", 1, usual}, {"identified", 2, identified}, {"asked", 3, asked}};
+  Shot solid = asked;
+  solid.id = "golden-4";
+  solid.bar_model = two_kelvin_bar();
+  return {
+      {"shot", 1, usual}, {"identified", 2, identified}, {"asked", 3, asked}, {"solid", 4, solid}};
 }
 
 namespace {
@@ -158,9 +175,11 @@ void expect_same(const Shot& actual, const Shot& expected) {
   if (expected.bar_model) {
     expect_bits(actual.bar_model->density_kg_m3, expected.bar_model->density_kg_m3);
     expect_bits(actual.bar_model->poisson_ratio, expected.bar_model->poisson_ratio);
-    expect_bits(actual.bar_model->E1_Pa, expected.bar_model->E1_Pa);
-    expect_bits(actual.bar_model->E2_Pa, expected.bar_model->E2_Pa);
-    expect_bits(actual.bar_model->eta2_Pa_s, expected.bar_model->eta2_Pa_s);
+    EXPECT_EQ(actual.bar_model->solid, expected.bar_model->solid);
+    ASSERT_EQ(actual.bar_model->parameters.size(), expected.bar_model->parameters.size());
+    for (std::size_t i = 0; i < expected.bar_model->parameters.size(); ++i) {
+      expect_bits(actual.bar_model->parameters[i], expected.bar_model->parameters[i]);
+    }
     EXPECT_EQ(actual.bar_model->source, expected.bar_model->source);
     EXPECT_EQ(actual.bar_model->covariance, expected.bar_model->covariance);
     EXPECT_EQ(actual.bar_model->identified, expected.bar_model->identified);

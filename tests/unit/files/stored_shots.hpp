@@ -42,6 +42,9 @@ struct ShotShape {
 /// A shot with every field set, all of it following from the seed.
 [[nodiscard]] Shot make_shot(std::uint32_t seed, const ShotShape& shape = {});
 
+/// A bar of two Kelvin branches, identified, with a covariance.
+[[nodiscard]] Material two_kelvin_bar();
+
 /// A shot that asks for every kind of reduction.
 [[nodiscard]] Shot asked_shot();
 
@@ -54,7 +57,8 @@ struct GoldenShot {
 inline void PrintTo(const GoldenShot& golden, std::ostream* out) {
   *out << golden.name;
 }
-/// One of each version: as usual, with an identified bar model, with a reduction asked for.
+/// One of each version: as usual, with an identified bar model, with a reduction asked for, with a
+/// bar of another family than three elements.
 [[nodiscard]] std::vector<GoldenShot> make_golden_shots();
 
 /// Every field but the parsed bench, bit for bit.

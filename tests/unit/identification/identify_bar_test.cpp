@@ -530,7 +530,11 @@ TEST(IdentifyBar, TwoBranchesAreNotTakenForThree) {
   const std::vector<Shot> shots = spread_creep("second-relaxation=6e-12,tau=3e-4");
   const BarIdentification result = identify_bar(shots, {.solid = std::nullopt});
   EXPECT_EQ(result.fit.solid, SolidKind::two_kelvin);
-  EXPECT_TRUE(says(result, "a two-kelvin solid is ahead of them"));
+  EXPECT_FALSE(says(result, "is ahead of the"));
+  EXPECT_EQ(&fit_to_file(result), &result.fit);
+  const BarIdentification three = identify_bar(shots, {});
+  EXPECT_EQ(fit_to_file(three).solid, SolidKind::three_element);
+  EXPECT_TRUE(says(three, "a two-kelvin solid is ahead of the three-element one"));
 }
 
 /// Of four that were compared: under other waves, without a fit, behind, and ahead by 40 and by 12.
@@ -558,11 +562,22 @@ TEST(BetterSolid, IsTheOneFurthestAheadUnderTheSameWaves) {
   ASSERT_TRUE(better);
   EXPECT_EQ(better->solid, SolidKind::fractional);
   EXPECT_EQ(better->log_evidence_ahead, 40.0);
-  const std::string cost = cost_of_three_elements(*better, result.three_element);
-  EXPECT_NE(cost.find("fractional solid is ahead of them by a log evidence of 40"),
+  const std::string cost = cost_of_filing(result.three_element, *better);
+  EXPECT_NE(cost.find("a fractional solid is ahead of the three-element one"), std::string::npos)
+      << cost;
+  EXPECT_NE(cost.find("by a log evidence of 40: that leaves a reduced chi2 of 3, it 1.2; --solid "
+                      "fractional files it"),
             std::string::npos)
       << cost;
-  EXPECT_NE(cost.find("they leave a reduced chi2 of 3, it 1.2"), std::string::npos) << cost;
+  // Asked for by name, two branches are filed, and another is ahead of these.
+  result.fit.solid = SolidKind::two_kelvin;
+  result.fit.theory = result.three_element.theory;
+  result.fit.far_end = result.three_element.far_end;
+  result.fit.log_evidence = -88.0;
+  EXPECT_EQ(better_solid(result)->log_evidence_ahead, 28.0);
+  result.fit.solid = SolidKind::fractional;
+  result.fit.log_evidence = -60.0;
+  EXPECT_FALSE(better_solid(result));
 }
 
 /// Each is what makes the records, and has two numbers fewer than two Kelvin branches or none more.

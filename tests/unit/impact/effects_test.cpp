@@ -57,18 +57,18 @@ TEST(Effects, AStiffeningCoreRaisesThePeakAndShortensTheContact) {
 // unseen.
 TEST(Effects, AnImpactHoldsTwoOfTheCoresThreeNumbers) {
   const Material filed = paper_core();
-  const double softness_per_Pa = 1.0 / filed.E1_Pa + 1.0 / filed.E2_Pa;
+  const double softness_per_Pa = 1.0 / filed.E1_Pa() + 1.0 / filed.E2_Pa();
   const auto with = [&](double E1_Pa) {
     Material core = filed;
-    core.E1_Pa = {E1_Pa};
-    core.E2_Pa = {1.0 / (softness_per_Pa - 1.0 / E1_Pa)};
-    core.eta2_Pa_s = {filed.eta2_Pa_s * std::pow(core.E2_Pa / filed.E2_Pa, 2)};
+    core.E1_Pa() = {E1_Pa};
+    core.E2_Pa() = {1.0 / (softness_per_Pa - 1.0 / E1_Pa)};
+    core.eta2_Pa_s() = {filed.eta2_Pa_s() * std::pow(core.E2_Pa() / filed.E2_Pa(), 2)};
     ImpactModel model =
         impact_on(paper_bench(), {core}, {paper_cover()}, TargetKind::dashpot, 51.0);
     model.elements = 240;
     return simulate(model);
   };
-  const ImpactHistory plain = with(filed.E1_Pa);
+  const ImpactHistory plain = with(filed.E1_Pa());
   for (const double E1_Pa : {90e6, 400e6}) {
     const ImpactHistory moved = with(E1_Pa);
     double squares = 0.0;

@@ -6,10 +6,10 @@ namespace kolsky::testing {
 
 /// The paper's Table 3.
 inline Material paper_core() {
-  return {{1140.0}, {0.376}, {121e6}, {143e6}, {2860.0}, ""};
+  return three_element_material({1140.0}, {0.376}, {121e6}, {143e6}, {2860.0}, "");
 }
 inline Material paper_cover() {
-  return {{960.0}, {0.319}, {987e6}, {452e6}, {6020.0}, ""};
+  return three_element_material({960.0}, {0.319}, {987e6}, {452e6}, {6020.0}, "");
 }
 
 /// The paper's bench: 35.65 mm of core in 42.7 mm weigh 43.4 g.

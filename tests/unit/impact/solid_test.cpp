@@ -109,9 +109,37 @@ TEST(Solid, SecondRelaxationAddsItsComplianceInTheReading) {
   }
 }
 
+TEST(Solid, CarriesEveryKelvinBranchOfAMaterial) {
+  Material material = paper_core();
+  material.solid = SolidKind::three_kelvin;
+  material.parameters = {{130e6}, {160e6}, {2500.0}, {900e6}, {9e4}, {2e9}, {2e3}};
+  const Solid solid = solid_of(material, Reading::full);
+  ASSERT_EQ(solid.arms.size(), 3U);
+  for (const double s : {1.0, 1e3, 1e4, 1e5, 1e7}) {
+    const double J =
+        1.0 / 130e6 + 1.0 / (160e6 + s * 2500.0) + 1.0 / (900e6 + s * 9e4) + 1.0 / (2e9 + s * 2e3);
+    EXPECT_NEAR(uniaxial_modulus(solid, s) * J, 1.0, 1e-9);
+  }
+}
+
+TEST(Solid, RefusesMaterialsThatAreNoChainOfKelvinUnits) {
+  Material material = paper_core();
+  material.solid = SolidKind::fractional;
+  material.parameters = {{130e6}, {160e6}, {2500.0}, {0.8}};
+  try {
+    (void)solid_of(material, Reading::full);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "solid");
+    EXPECT_NE(std::string(error.what()).find("two-kelvin"), std::string::npos) << error.what();
+  }
+  material.solid = SolidKind::four_element_fluid;
+  EXPECT_THROW((void)solid_of(material, Reading::full), InputError);
+}
+
 TEST(Solid, RefusesWhatIsNotPassive) {
   Material material = paper_core();
-  material.eta2_Pa_s = {-1.0};
+  material.eta2_Pa_s() = {-1.0};
   EXPECT_THROW((void)solid_of(material, Reading::full), InputError);
   material = paper_core();
   material.poisson_ratio = {0.5};

@@ -19,9 +19,9 @@ using testing::LinearShpb;
 Material core() {
   Material material = paper_pmma();
   material.density_kg_m3 = {1140.0};
-  material.E1_Pa = {121e6};
-  material.E2_Pa = {143e6};
-  material.eta2_Pa_s = {2860.0};
+  material.E1_Pa() = {121e6};
+  material.E2_Pa() = {143e6};
+  material.eta2_Pa_s() = {2860.0};
   return material;
 }
 

@@ -70,13 +70,13 @@ TEST(BallPrediction, WithoutDoubtIsTheImpactItself) {
 // The sd of 24 draws is known to 15 %; more than three of those, and the slope's own bend.
 TEST(BallPrediction, DoubtOfAModulusIsItsSlopeTimesIt) {
   MaterialPosterior core{paper_core(), {}};
-  const double sd_Pa = 0.01 * core.material.E2_Pa;
+  const double sd_Pa = 0.01 * core.material.E2_Pa();
   core.covariance[1][1] = sd_Pa * sd_Pa;
   const BallPrediction told = only(core, {40.3, 0.0});
   Material stiffer = paper_core();
   Material softer = paper_core();
-  stiffer.E2_Pa.value += sd_Pa;
-  softer.E2_Pa.value -= sd_Pa;
+  stiffer.E2_Pa().value += sd_Pa;
+  softer.E2_Pa().value -= sd_Pa;
   const impact::ImpactHistory high = thrown(stiffer, 40.3);
   const impact::ImpactHistory low = thrown(softer, 40.3);
   const double force_N = std::abs(high.peak_force_N - low.peak_force_N) / 2.0;
@@ -87,8 +87,8 @@ TEST(BallPrediction, DoubtOfAModulusIsItsSlopeTimesIt) {
 
 TEST(BallPrediction, CorrelatedDoubtsAreDrawnTogether) {
   MaterialPosterior apart{paper_core(), {}};
-  const double a = 0.02 * apart.material.E1_Pa;
-  const double b = 0.02 * apart.material.E2_Pa;
+  const double a = 0.02 * apart.material.E1_Pa();
+  const double b = 0.02 * apart.material.E2_Pa();
   apart.covariance[0][0] = a * a;
   apart.covariance[1][1] = b * b;
   MaterialPosterior together = apart;
@@ -103,8 +103,8 @@ TEST(BallPrediction, CorrelatedDoubtsAreDrawnTogether) {
 // Core and cover off by the same bar: their slopes add up, or take from each other.
 TEST(BallPrediction, WhatCoreAndCoverShareIsDrawnTogether) {
   BallPosterior ball{{paper_core(), {}}, {paper_cover(), {}}, {}};
-  const double core_Pa = 0.02 * ball.core.material.E2_Pa;
-  const double cover_Pa = 0.03 * ball.cover.material.E1_Pa;
+  const double core_Pa = 0.02 * ball.core.material.E2_Pa();
+  const double cover_Pa = 0.03 * ball.cover.material.E1_Pa();
   ball.core.covariance[1][1] = core_Pa * core_Pa;
   ball.cover.covariance[0][0] = cover_Pa * cover_Pa;
   PredictionOptions options = small();
@@ -120,7 +120,7 @@ TEST(BallPrediction, WhatCoreAndCoverShareIsDrawnTogether) {
     for (const int side : {-1, 1}) {
       Material moved_core = paper_core();
       Material moved_cover = paper_cover();
-      (core ? moved_core.E2_Pa : moved_cover.E1_Pa).value += side * (core ? core_Pa : cover_Pa);
+      (core ? moved_core.E2_Pa() : moved_cover.E1_Pa()).value += side * (core ? core_Pa : cover_Pa);
       peaks_N[side > 0 ? 1 : 0] = thrown(moved_core, 40.3, moved_cover).peak_force_N;
     }
     return (peaks_N[1] - peaks_N[0]) / 2.0;

@@ -216,8 +216,8 @@ struct MeshedImpact {
 MeshedImpact meshed(double position_m) {
   Bench bench = ball_bench({position_m});
   bench.input.length_m = {1.8};
-  const Material core{{1140.0}, {0.376}, {121e6}, {143e6}, {2860.0}, ""};
-  const Material cover{{960.0}, {0.319}, {987e6}, {452e6}, {6020.0}, ""};
+  const Material core = three_element_material({1140.0}, {0.376}, {121e6}, {143e6}, {2860.0}, "");
+  const Material cover = three_element_material({960.0}, {0.319}, {987e6}, {452e6}, {6020.0}, "");
   impact::ImpactModel model =
       impact::impact_on(bench, {core}, {cover}, impact::TargetKind::bar, 40.3);
   model.elements = 512;

@@ -79,7 +79,7 @@ TEST(PaperBench, ABarModelThatIsOffShows) {
   const Shot shot = solve(kCore, 0.004).shot;
   ReductionOptions options;
   options.bar_model = paper_pmma();
-  options.bar_model->E1_Pa.value *= 0.95;
+  options.bar_model->E1_Pa().value *= 0.95;
   const Reduction right = Reducer().reduce(shot);
   const Reduction off = Reducer(options).reduce(shot);
   EXPECT_LT(check_of(right, "equilibrium").value, 0.07);

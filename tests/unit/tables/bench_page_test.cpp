@@ -47,7 +47,7 @@ TEST(BenchPage, ItsExamplesAreRead) {
   EXPECT_EQ(ball.photo_sensors.size(), 1U);
   ASSERT_TRUE(ball.striker);
 
-  EXPECT_EQ(parse_material(list[2], "page").E1_Pa.value, 5.66e9);
+  EXPECT_EQ(parse_material(list[2], "page").E1_Pa().value, 5.66e9);
 }
 
 /// The words in quotes within every list of keys that a reader expects.

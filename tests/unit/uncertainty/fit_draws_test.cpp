@@ -64,7 +64,7 @@ TEST(FitDraws, ScatterAsTheFitStates) {
     bench.specimen->length_m.sd = 2e-3 * bench.specimen->length_m;
   });
   Material material = paper_pmma();
-  material.E2_Pa.sd = 1e-3 * material.E2_Pa;
+  material.E2_Pa().sd = 1e-3 * material.E2_Pa();
   const BarPrior bars(material);
   const SpecimenFit fit = fit_specimen(shots, bars, massless());
   const FitDraws draws = drawn(shots, bars, fit, kDraws);
@@ -97,8 +97,8 @@ TEST(FitDraws, TemperatureSoftensTheBars) {
   // By as much as bars that are softer by a deviation move it, as far as the shots leave that open.
   const double deviation = 3.0 * bars.softening_per_K;
   Material softer = paper_pmma();
-  softer.E1_Pa.value *= 1.0 - 0.1 * deviation;
-  softer.E2_Pa.value *= 1.0 - 0.1 * deviation;
+  softer.E1_Pa().value *= 1.0 - 0.1 * deviation;
+  softer.E2_Pa().value *= 1.0 - 0.1 * deviation;
   const SpecimenFit moved = fit_specimen(at(0.0), BarPrior(softer), massless());
   const auto temperature =
       std::find_if(unknown.bench.begin(), unknown.bench.end(),

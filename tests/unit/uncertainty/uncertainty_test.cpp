@@ -1,6 +1,7 @@
 // What is filed with a deviation, carried through the reduction of solved benches.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "processing/reduction/validity.hpp"
 #include "processing/uncertainty/monte_carlo.hpp"
 #include "processing/uncertainty/noise.hpp"
+#include "processing/uncertainty/sources.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
@@ -177,6 +179,42 @@ TEST(Uncertainty, TheBudgetAddsUpToTheWhole) {
 }
 
 // Waves show moduli over density: whatever the density is off by, the waves stay as fast.
+/// Five parameters that are known together better than apart.
+TEST(Uncertainty, ABarOfAnotherFamilyMovesByItsWholeCovariance) {
+  Bench bench = testing::LinearShpb().bench();
+  bench.temperature_K = Measured{296.0, 0.5};
+  Material material = paper_pmma();
+  material.solid = SolidKind::two_kelvin;
+  material.parameters = {{5.7e9}, {40e9}, {1.9e6}, {160e9}, {5e7}};
+  Eigen::MatrixXd relative = Eigen::MatrixXd::Constant(5, 5, -1e-6);
+  relative.diagonal() << 4e-6, 5e-6, 6e-6, 7e-6, 8e-6;
+  auto& covariance = material.covariance.emplace();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      covariance.push_back(relative(i, j) * material.parameters[static_cast<std::size_t>(i)] *
+                           material.parameters[static_cast<std::size_t>(j)]);
+    }
+  }
+  Eigen::MatrixXd moved_by = Eigen::MatrixXd::Zero(5, 5);
+  Eigen::VectorXd warmer = Eigen::VectorXd::Zero(5);
+  for (const UncertaintySource& source : uncertainty_sources(bench, BarPrior(material))) {
+    ShotNumbers moved{bench, material};
+    source.move(moved, 1.0);
+    Eigen::VectorXd move(5);
+    for (std::size_t i = 0; i < 5; ++i) {
+      move[static_cast<Eigen::Index>(i)] = moved.bars.parameters[i] / material.parameters[i] - 1.0;
+    }
+    if (source.group == "bar moduli") {
+      moved_by += move * move.transpose();
+    } else if (source.group == "temperature") {
+      warmer = move;
+    }
+  }
+  EXPECT_LT((moved_by - relative).norm(), 1e-9 * relative.norm());
+  const Eigen::VectorXd springs = (Eigen::VectorXd(5) << 1, 1, 0, 1, 0).finished();
+  EXPECT_LT((warmer + 0.5 * kSofteningPerK * springs).norm(), 1e-12);
+}
+
 TEST(Uncertainty, ModuliFromWavesGoWithTheDensity) {
   testing::LinearShpb model;
   Bench bench = model.bench();
@@ -184,7 +222,7 @@ TEST(Uncertainty, ModuliFromWavesGoWithTheDensity) {
   Material material = paper_pmma();
   material.density_kg_m3.sd = bench.input.density_kg_m3.sd;
   BarPrior bars(material);
-  const std::array<double, 3> values = {material.E1_Pa, material.E2_Pa, material.eta2_Pa_s};
+  const std::array<double, 3> values = {material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s()};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       bars.covariance[i][j] = (25e-6 + (i == j ? 4e-6 : 0.0)) * values[i] * values[j];
@@ -196,7 +234,7 @@ TEST(Uncertainty, ModuliFromWavesGoWithTheDensity) {
     for (const UncertaintySource& source : uncertainty_sources(bench, bars)) {
       ShotNumbers moved{bench, material};
       source.move(moved, 1.0);
-      const double faster = moved.bars.E1_Pa / material.E1_Pa * bench.input.density_kg_m3 /
+      const double faster = moved.bars.E1_Pa() / material.E1_Pa() * bench.input.density_kg_m3 /
                                 moved.bench.input.density_kg_m3 -
                             1.0;
       variance += faster * faster;

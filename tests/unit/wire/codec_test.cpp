@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <random>
@@ -34,11 +35,13 @@ v1::Result encoded(const Reduction& reduction) {
 }
 
 void expect_same(const Material& a, const Material& b) {
-  for (const auto field : {&Material::density_kg_m3, &Material::poisson_ratio, &Material::E1_Pa,
-                           &Material::E2_Pa, &Material::eta2_Pa_s}) {
-    EXPECT_EQ((a.*field).value, (b.*field).value);
-    EXPECT_EQ((a.*field).sd, (b.*field).sd);
-  }
+  const auto same = [](const Measured& x, const Measured& y) {
+    return x.value == y.value && x.sd == y.sd;
+  };
+  EXPECT_TRUE(same(a.density_kg_m3, b.density_kg_m3));
+  EXPECT_TRUE(same(a.poisson_ratio, b.poisson_ratio));
+  EXPECT_EQ(a.solid, b.solid);
+  EXPECT_TRUE(std::ranges::equal(a.parameters, b.parameters, same));
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.identified, b.identified);
@@ -106,6 +109,24 @@ TEST(ShotCodec, KeepsWhereABarModelHolds) {
   shot.bar_model->covariance.reset();
   shot.bar_model->identified = Material::Identified{};
   expect_same(*wire::decode(over_the_wire(encoded(shot))).bar_model, *shot.bar_model);
+}
+
+TEST(ShotCodec, KeepsABarOfAnotherFamilyOfSolids) {
+  Shot shot = full_shot(8);
+  shot.bar_model->solid = SolidKind::four_element_fluid;
+  shot.bar_model->parameters = {{5.7e9, 1e6}, {4e11, 1e9 / 3.0}, {37e9, 2e8}, {1.8e6, 0.0}};
+  shot.bar_model->covariance.emplace(16, 0.0);
+  (*shot.bar_model->covariance)[15] = 1.0 / 3.0;
+  const v1::Shot message = encoded(shot);
+  expect_same(*wire::decode(over_the_wire(message)).bar_model, *shot.bar_model);
+  const auto refused = [&](const std::function<void(v1::Material&)>& damage) {
+    v1::Shot damaged = message;
+    damage(*damaged.mutable_bar_model());
+    EXPECT_THROW((void)wire::decode(damaged), InputError);
+  };
+  refused([](v1::Material& m) { m.set_solid("burgers"); });
+  refused([](v1::Material& m) { m.mutable_parameters()->RemoveLast(); });
+  refused([](v1::Material& m) { m.mutable_covariance()->RemoveLast(); });
 }
 
 TEST(ShotCodec, WhatIsAbsentStaysAbsent) {

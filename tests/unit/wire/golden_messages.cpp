@@ -166,6 +166,20 @@ v1::Shot shot_identified() {
   return identified;
 }
 
+v1::Shot shot_of_another_solid() {
+  v1::Shot other = shot();
+  v1::Material& material = *other.mutable_bar_model();
+  material.clear_e1_pa();
+  material.clear_e2_pa();
+  material.clear_eta2_pa_s();
+  material.set_solid("fractional");
+  set(*material.add_parameters(), 5.5e9, 1e7);
+  set(*material.add_parameters(), 6e9, 2e7);
+  set(*material.add_parameters(), 1e5, 3.0);
+  set(*material.add_parameters(), 0.75, 0.0);
+  return other;
+}
+
 v1::Shot asked_shot() {
   v1::Shot asked = shot();
   v1::ReductionAsked& reduction = *asked.mutable_reduction();
@@ -545,6 +559,7 @@ std::vector<Fixture> fixtures() {
       fixture("shot", shot()),
       fixture("shot_identified", shot_identified()),
       fixture("shot_asked", asked_shot()),
+      fixture("shot_solid", shot_of_another_solid()),
       fixture("result", result()),
       fixture("result_asked", asked_result()),
       fixture("result_quiet", result_with_quiet()),

@@ -49,8 +49,8 @@ Shot full_shot(std::size_t samples) {
   Shot shot;
   shot.id = "20240102T030405.678901-1";
   shot.bench_toml = "kind = \"shpb\"  # Kraftmeßgerät\n";
-  shot.bar_model =
-      Material{{1200.1, 0.3}, {0.37, 0.0}, {5.5e9, 1e7}, {6.1e9, 0.0}, {1e5, 2.0}, "us"};
+  shot.bar_model = three_element_material({1200.1, 0.3}, {0.37, 0.0}, {5.5e9, 1e7}, {6.1e9, 0.0},
+                                          {1e5, 2.0}, "us");
   shot.reduction = {.dispersion = "exact",
                     .separate = "never",
                     .stress = "one-wave",

@@ -1,16 +1,12 @@
 #pragma once
 
-#include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "processing/waves/compliance.hpp"
-
 namespace kolsky {
 
-/// Families of linear solids and fluids that a spectrum of J can be fitted with. All parameters are
-/// positive.
+/// Families of linear solids and fluids that waves can be carried by and a spectrum of J fitted
+/// with. All parameters are positive.
 enum class SolidKind {
   three_element,       ///< J = 1/E1 + 1/(E2 + s eta2)                            E1, E2, eta2
   four_element_fluid,  ///< J = 1/E1 + 1/(s eta2) + 1/(E3 + s eta3)               E1, eta2, E3, eta3
@@ -21,19 +17,16 @@ enum class SolidKind {
 
 /// One parameter of a family.
 struct SolidParameter {
+  enum class Is { modulus, viscosity, exponent };
   std::string name;  ///< with its unit, as in a material file: "E1_Pa"
+  Is is = Is::modulus;
+
+  /// Whether J falls as it grows: a solid stiffer by a factor has all these larger by it.
+  [[nodiscard]] bool stiffens() const { return is != Is::exponent; }
 };
 
+/// The spring that a wave's front sees is the first; a branch's dashpot follows its spring.
 [[nodiscard]] const std::vector<SolidParameter>& parameters_of(SolidKind kind);
-
-/// The solid with these parameters, in the order of `parameters_of`.
-[[nodiscard]] std::unique_ptr<const Compliance> make_solid(SolidKind kind,
-                                                           std::span<const double> parameters);
-
-/// d log J / d log p along a path of s, by parameter.
-[[nodiscard]] std::vector<std::vector<Complex>> log_slopes(SolidKind kind,
-                                                           std::span<const double> parameters,
-                                                           std::span<const Complex> path);
 
 /// @throws InputError for any other name: three-element, four-element-fluid, two-kelvin,
 /// three-kelvin, fractional

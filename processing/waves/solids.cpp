@@ -1,11 +1,8 @@
-#include "processing/identification/solids.hpp"
+#include "processing/waves/solids.hpp"
 
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
-
-#include "processing/base/error.hpp"
 
 namespace kolsky {
 
@@ -113,38 +110,7 @@ Moved moved(SolidKind kind, std::span<const double> p, Complex s) {
   return m;
 }
 
-constexpr std::array kNames{std::pair{SolidKind::three_element, "three-element"},
-                            std::pair{SolidKind::four_element_fluid, "four-element-fluid"},
-                            std::pair{SolidKind::two_kelvin, "two-kelvin"},
-                            std::pair{SolidKind::three_kelvin, "three-kelvin"},
-                            std::pair{SolidKind::fractional, "fractional"}};
-
 }  // namespace
-
-const std::vector<SolidParameter>& parameters_of(SolidKind kind) {
-  static const std::vector<SolidParameter> three = {{"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}};
-  static const std::vector<SolidParameter> four = {
-      {"E1_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
-  static const std::vector<SolidParameter> two_kelvin = {
-      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}};
-  static const std::vector<SolidParameter> three_kelvin = {
-      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"E3_Pa"}, {"eta3_Pa_s"}, {"E4_Pa"}, {"eta4_Pa_s"}};
-  static const std::vector<SolidParameter> fractional = {
-      {"E1_Pa"}, {"E2_Pa"}, {"eta2_Pa_s"}, {"beta"}};
-  switch (kind) {
-    case SolidKind::three_element:
-      return three;
-    case SolidKind::four_element_fluid:
-      return four;
-    case SolidKind::two_kelvin:
-      return two_kelvin;
-    case SolidKind::three_kelvin:
-      return three_kelvin;
-    case SolidKind::fractional:
-      break;
-  }
-  return fractional;
-}
 
 std::unique_ptr<const Compliance> make_solid(SolidKind kind, std::span<const double> parameters) {
   switch (kind) {
@@ -172,26 +138,6 @@ std::vector<std::vector<Complex>> log_slopes(SolidKind kind, std::span<const dou
     }
   }
   return slopes;
-}
-
-SolidKind solid_kind(const std::string& name) {
-  for (const auto& [kind, text] : kNames) {
-    if (name == text) {
-      return kind;
-    }
-  }
-  throw InputError("solid", "\"" + name + "\" is not a family of solids",
-                   "give three-element, four-element-fluid, two-kelvin, three-kelvin or "
-                   "fractional");
-}
-
-std::string name_of(SolidKind kind) {
-  for (const auto& [known, text] : kNames) {
-    if (kind == known) {
-      return text;
-    }
-  }
-  return {};
 }
 
 }  // namespace kolsky

@@ -1,0 +1,191 @@
+// A bar that creeps over two times, identified alone and then carrying the waves of a split bar.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/files/settings/material_file.hpp"
+#include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/generators/campaign.hpp"
+#include "tests/generators/campaign_files.hpp"
+#include "tests/generators/shpb_world.hpp"
+
+namespace kolsky {
+namespace {
+
+using nlohmann::json;
+using scene::json_of;
+using scene::kolsky;
+
+constexpr const char* kSecondBranch = "second-relaxation=6e-12,tau=3e-4";
+
+/// The bar by itself and a split bar of it, as captures, both by characteristics in the time
+/// domain; and what really happened in the specimen.
+class CarriedSolid : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { made_ = std::make_unique<Made>(); }
+  static void TearDownTestSuite() { made_.reset(); }
+
+  struct Made {
+    scene::Folder folder;
+    std::vector<std::string> bar_captures, captures;
+    std::vector<testing::SpecimenHistory> truth;
+    testing::TrueSpecimen specimen;
+    std::string two, three;  ///< material files
+
+    Made() : two(folder / "two.toml"), three(folder / "three.toml") {
+      testing::Campaign bar = testing::draw_campaign({.seed = 71, .shots = 4});
+      testing::hide(bar, testing::parse_effect(kSecondBranch));
+      bar_captures = captures_of(bar, "bar");
+      testing::Campaign split = testing::draw_campaign({.seed = 72, .shots = 3, .split = true});
+      split.world.material = bar.world.material;
+      for (Bar* const own : {&split.bench.input, &*split.bench.output}) {
+        own->density_kg_m3 = bar.bench.input.density_kg_m3;
+        own->poisson_ratio = bar.bench.input.poisson_ratio;
+      }
+      captures = captures_of(split, "split");
+      (void)testing::shpb_readings(testing::split_world(split), {}, &truth);
+      specimen = split.split->specimen;
+      json told = json_of(identify_bar({"--solid", "auto", "--model-out", two, "--json"}));
+      EXPECT_EQ(told["solid"]["solid"], "two-kelvin");
+      (void)json_of(identify_bar({"--model-out", three, "--json"}));
+    }
+
+    std::vector<std::string> captures_of(testing::Campaign campaign, const char* name) {
+      std::vector<std::string> files;
+      for (testing::TrueShot& shot : campaign.world.shots) {
+        shot.temperature_K = campaign.world.reference_K;
+      }
+      for (const auto& file :
+           testing::write_campaign({folder / name, false}, testing::shots_of(campaign))) {
+        files.push_back(file.string());
+      }
+      return files;
+    }
+
+    [[nodiscard]] scene::Answer identify_bar(const std::vector<std::string>& more) const {
+      std::vector<std::string> words = {"identify", "bar"};
+      words.insert(words.end(), bar_captures.begin(), bar_captures.end());
+      words.insert(words.end(), more.begin(), more.end());
+      return kolsky(words);
+    }
+  };
+
+  static std::unique_ptr<Made> made_;
+};
+
+std::unique_ptr<CarriedSolid::Made> CarriedSolid::made_;
+
+double sample(const std::vector<double>& values, double place) {
+  const double held = std::clamp(place, 0.0, static_cast<double>(values.size()) - 1.001);
+  const auto n = static_cast<std::size_t>(held);
+  const double share = held - static_cast<double>(n);
+  return values[n] + share * (values[n + 1] - values[n]);
+}
+
+/// Root mean square of what stress and strain are off by over the histories, in stated deviations:
+/// beside the truth at the lag that suits the strain best, which times of arrival leave open.
+struct Off {
+  double stress, strain;
+};
+
+Off off_by(const json& told, const testing::SpecimenHistory& truth, double area_m2) {
+  const std::vector<double> time_s = told["time_s"], strain = told["strain"];
+  const std::vector<double> stress_Pa = told["stress_Pa"], stress_sd_Pa = told["stress_sd_Pa"];
+  const std::vector<double> strain_sd = told["strain_sd"];
+  const double reach = 0.8 * time_s.back();
+  const auto rms = [&](double lag_s, const auto& off) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t n = 0; n < time_s.size(); ++n) {
+      if (time_s[n] > 0.1 * reach && time_s[n] < reach) {
+        squares += std::pow(off(n, (time_s[n] + lag_s) / truth.step_s), 2);
+        ++count;
+      }
+    }
+    return std::sqrt(squares / count);
+  };
+  double best_s = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (double lag_s = 0.0; lag_s < 2e-3; lag_s += 0.1e-6) {
+    const double apart =
+        rms(lag_s, [&](std::size_t n, double at) { return strain[n] - sample(truth.strain, at); });
+    if (apart < least) {
+      least = apart;
+      best_s = lag_s;
+    }
+  }
+  return {rms(best_s,
+              [&](std::size_t n, double at) {
+                return (stress_Pa[n] - sample(truth.force_N, at) / area_m2) / stress_sd_Pa[n];
+              }),
+          rms(best_s, [&](std::size_t n, double at) {
+            return (strain[n] - sample(truth.strain, at)) / strain_sd[n];
+          })};
+}
+
+/// By how many stated deviations a figure of the curve is off.
+double deviations_of(const json& told, const char* figure, double truth) {
+  const json& own = told["uncertainty"]["figures"][figure];
+  return (own["value"].get<double>() - truth) / own["sd"].get<double>();
+}
+
+TEST_F(CarriedSolid, ReducesToTheTruthWithinItsDeviationsAsThreeElementsDoNot) {
+  for (std::size_t i = 0; i < made_->captures.size(); ++i) {
+    const testing::SpecimenHistory& truth = made_->truth[i];
+    const double area_m2 = made_->specimen.area_m2();
+    const double peak_Pa = *std::ranges::max_element(truth.force_N) / area_m2;
+    const double peak_strain = *std::ranges::max_element(truth.strain);
+    for (const std::string& model : {made_->two, made_->three}) {
+      const json told = json_of(kolsky({"reduce", made_->captures[i], "--bar-model", model,
+                                        "--uncertainty", "--draws", "200", "--json"}));
+      const Off off = off_by(told, truth, area_m2);
+      const double stress = deviations_of(told, "peak_stress_Pa", peak_Pa);
+      const double strain = deviations_of(told, "peak_strain", peak_strain);
+      std::printf(
+          "%s: histories off by %.2f (stress), %.2f (strain), peaks by %.2f, %.2f deviations\n",
+          model == made_->two ? "two branches" : "three elements", off.stress, off.strain, stress,
+          strain);
+      if (model == made_->two) {
+        EXPECT_LT(off.stress, 1.6);
+        EXPECT_LT(off.strain, 1.6);
+        EXPECT_LT(std::abs(stress), 3.0);
+        EXPECT_LT(std::abs(strain), 3.0);
+      } else {
+        EXPECT_GT(off.strain, 2.5);
+        EXPECT_GT(stress, 2.5);
+      }
+    }
+  }
+}
+
+TEST_F(CarriedSolid, IdentifiesASpecimenAsThreeElementsDoNot) {
+  const auto identified = [&](const std::string& model) {
+    std::vector<std::string> words = {"identify", "specimen"};
+    words.insert(words.end(), made_->captures.begin(), made_->captures.end());
+    words.insert(words.end(), {"--bar-model", model, "--json"});
+    return json_of(kolsky(words));
+  };
+  const auto off = [](const json& told, const char* name, double truth) {
+    const json& own = told["parameters"][name];
+    return std::abs(own["value"].get<double>() - truth) / own["sd"].get<double>();
+  };
+  const json two = identified(made_->two);
+  EXPECT_LT(off(two, "E1_Pa", made_->specimen.E1_Pa), 3.0);
+  EXPECT_LT(off(two, "E2_Pa", made_->specimen.E2_Pa), 3.0);
+  EXPECT_LT(off(two, "eta2_Pa_s", made_->specimen.eta2_Pa_s), 3.0);
+  EXPECT_LT(two["chi2_reduced"], 1.1);
+  // What is not known of the bar is in it: five directions of its covariance.
+  EXPECT_NE(two["bench"].dump().find("bar-model:5"), std::string::npos) << two["bench"];
+  const json three = identified(made_->three);
+  EXPECT_GT(off(three, "E1_Pa", made_->specimen.E1_Pa), 4.0);
+  EXPECT_GT(three["chi2_reduced"], 1.5);
+}
+
+}  // namespace
+}  // namespace kolsky
