@@ -6,6 +6,7 @@
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/calibration/part_fit.hpp"
+#include "processing/models/material_effects.hpp"
 
 namespace kolsky {
 
@@ -47,19 +48,12 @@ void compare_areas(const PartResult& part, std::vector<std::string>& warnings) {
 
 /// The bars' moduli as a part of the shots gives them.
 BarPrior as_found(const PartResult& part, BarPrior bars) {
+  using Of = CalibratedNumber::Of;
+  const auto places = three_element_places(bars.material.solid);
   for (const CalibratedNumber& number : part.numbers) {
-    switch (number.of) {
-      case CalibratedNumber::Of::E1:
-        bars.material.E1_Pa() = number.combined;
-        break;
-      case CalibratedNumber::Of::E2:
-        bars.material.E2_Pa() = number.combined;
-        break;
-      case CalibratedNumber::Of::eta2:
-        bars.material.eta2_Pa_s() = number.combined;
-        break;
-      default:
-        break;
+    if (number.of >= Of::E1) {
+      const auto which = static_cast<std::size_t>(number.of) - static_cast<std::size_t>(Of::E1);
+      bars.material.parameters[places.at(which)] = number.combined;
     }
   }
   return bars;

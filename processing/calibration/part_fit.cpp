@@ -15,6 +15,7 @@
 #include "processing/criticism/records/judged_band.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/identification/known_unknowns.hpp"
+#include "processing/models/material_effects.hpp"
 #include "processing/waves/bar_modes.hpp"
 
 namespace kolsky {
@@ -381,6 +382,7 @@ class PartFit {
     Bar bar = campaign_.bench.input;
     bar.density_kg_m3.value *= values.back();
     Material material = bars_.material;
+    const auto places = three_element_places(material.solid);
     for (std::size_t i = 0, m = 0; i < numbers_.size(); ++i) {
       if (numbers_[i].of_output_bar) {
         continue;
@@ -390,13 +392,9 @@ class PartFit {
           bar.youngs_modulus_Pa->value = values[m++];
           break;
         case CalibratedNumber::Of::E1:
-          material.E1_Pa().value = values[m++];
-          break;
         case CalibratedNumber::Of::E2:
-          material.E2_Pa().value = values[m++];
-          break;
         case CalibratedNumber::Of::eta2:
-          material.eta2_Pa_s().value = values[m++];
+          material.parameters[places[numbers_[i].parameter]].value = values[m++];
           break;
         default:
           break;

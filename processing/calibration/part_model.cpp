@@ -1,8 +1,10 @@
 #include "processing/calibration/part_model.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "processing/identification/known_unknowns.hpp"
+#include "processing/models/material_effects.hpp"
 
 namespace kolsky {
 
@@ -63,13 +65,22 @@ bool each_bar_has_moduli(const Bench& bench, const CalibrationOptions& options) 
          !bench.output->youngs_modulus_Pa;
 }
 
+const Material& material_of(const CalibrationPart& part, const CalibrationOptions& options) {
+  return options.bars ? options.bars->material : part.bars.material;
+}
+
+/// Of its three elements; what the material has more is held.
 void add_moduli(const std::string& effect, const std::string& prefix, const Material& material,
                 bool believed, std::vector<ModelNumber>& list) {
-  using Of = CalibratedNumber::Of;
-  list.push_back(of_material(Of::E1, 0, effect, prefix + "E1_Pa", material.E1_Pa(), believed));
-  list.push_back(of_material(Of::E2, 1, effect, prefix + "E2_Pa", material.E2_Pa(), believed));
-  list.push_back(
-      of_material(Of::eta2, 2, effect, prefix + "eta2_Pa_s", material.eta2_Pa_s(), believed));
+  constexpr std::array kOf{CalibratedNumber::Of::E1, CalibratedNumber::Of::E2,
+                           CalibratedNumber::Of::eta2};
+  const auto places = three_element_places(material.solid);
+  const Material three = three_elements_of(material);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    list.push_back(of_material(kOf.at(i), i, effect,
+                               prefix + parameters_of(material.solid)[places.at(i)].name,
+                               three.parameters[i], believed));
+  }
 }
 
 void hold(EffectUse& use) {
@@ -78,16 +89,42 @@ void hold(EffectUse& use) {
   }
 }
 
-EffectUse specimen_use(const Bench& bench, const BarPrior& bars) {
+/// The bars, held.
+void add_bars(const Bench& bench, const CalibrationOptions& options, const Material& material,
+              Model& model) {
+  model.effects.push_back(use_named(kBars));
+  hold(model.effects.back());
+  if (each_bar_has_moduli(bench, options)) {
+    model.effects.push_back(use_named(kOutputBar));
+    hold(model.effects.back());
+  }
+  if (const auto further = further_effect(material, "")) {
+    require_for_all_bars(*further, material, bench);
+    model.effects.push_back(*further);
+  }
+}
+
+/// A slice of the bar, or nothing between the bars; held.
+void add_specimen(const Bench& bench, const Material& material, Model& model) {
   EffectUse use = use_named("three-element-specimen");
   hold(use);
   const bool slice = specimen_is_slice_of_bar(bench);
-  const Material& material = bars.material;
   const double E = bench.input.youngs_modulus_Pa ? bench.input.youngs_modulus_Pa->value : 0.0;
-  use.values[0].value = !slice ? kRigid_Pa : E > 0.0 ? E : material.E1_Pa().value;
-  use.values[1].value = !slice || E > 0.0 ? kRigid_Pa : material.E2_Pa().value;
-  use.values[2].value = !slice || E > 0.0 ? 1.0 : material.eta2_Pa_s().value;
-  return use;
+  const Material three = three_elements_of(material);
+  use.values[0].value = !slice ? kRigid_Pa : E > 0.0 ? E : three.E1_Pa().value;
+  use.values[1].value = !slice || E > 0.0 ? kRigid_Pa : three.E2_Pa().value;
+  use.values[2].value = !slice || E > 0.0 ? 1.0 : three.eta2_Pa_s().value;
+  model.effects.push_back(use);
+  if (!slice) {
+    return;
+  }
+  if (const auto further = further_effect(material, "specimen-"); further && E == 0.0) {
+    model.effects.push_back(*further);
+  }
+  EffectUse inertia = use_named("specimen-inertia");
+  inertia.values[0].value = 1.0;
+  hold(inertia);
+  model.effects.push_back(inertia);
 }
 
 }  // namespace
@@ -124,7 +161,7 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
     list.push_back(number);
   } else {
     const bool believed = options.bars.has_value();
-    const Material& material = options.bars ? options.bars->material : part.bars.material;
+    const Material& material = material_of(part, options);
     add_moduli(kBars, "", material, believed, list);
     if (each_bar_has_moduli(bench, options)) {
       add_moduli(kOutputBar, "output:", material, believed, list);
@@ -139,12 +176,7 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
   Model model;
   model.kind = bench.kind;
   if (!elastic(bench)) {
-    model.effects.push_back(use_named(kBars));
-    hold(model.effects.back());
-  }
-  if (each_bar_has_moduli(bench, options)) {
-    model.effects.push_back(use_named(kOutputBar));
-    hold(model.effects.back());
+    add_bars(bench, options, material_of(part, options), model);
   }
   model.effects.push_back(use_named("elementary-waves"));
   if (variant.exact_waves) {
@@ -159,13 +191,7 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
     model.effects.push_back(use);
   }
   if (bench.kind == BenchKind::shpb) {
-    model.effects.push_back(specimen_use(bench, part.bars));
-    if (specimen_is_slice_of_bar(bench)) {
-      EffectUse use = use_named("specimen-inertia");
-      use.values[0].value = 1.0;
-      hold(use);
-      model.effects.push_back(use);
-    }
+    add_specimen(bench, part.bars.material, model);
   }
   if (part.two_passes) {
     // Both passes are one gauge's: only the way between them is open.

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <ostream>
+#include <utility>
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_ledger.hpp"
@@ -13,9 +14,11 @@
 #include "drivers/files/models/model_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
+#include "drivers/files/settings/toml_table.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/impact/bench_impact.hpp"
+#include "processing/models/material_effects.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -59,18 +62,45 @@ struct NewSettings {
 
 /// Bars as a material file gives them: where a model of the bar itself starts, what one of a split
 /// bar goes by.
-void take_bar_model(const Material& material, Model& model) {
+void take_bar_model(const Material& material, const std::optional<Bench>& bench, Model& model) {
   EffectUse* bars = model.find("three-element-bar");
   if (bars == nullptr) {
     return;
   }
-  if (model.kind == BenchKind::shpb) {
-    take_bars(material, *bars);
-    return;
+  const Material three = three_elements_of(material);
+  const bool starts_only = model.kind != BenchKind::shpb;
+  if (starts_only) {
+    for (std::size_t p = 0; p < three.parameters.size(); ++p) {
+      bars->values[p].value = bars->values[p].prior_mean = three.parameters[p].value;
+    }
+  } else {
+    take_bars(three, *bars);
   }
-  const std::array<Measured, 3> starts{material.E1_Pa(), material.E2_Pa(), material.eta2_Pa_s()};
-  for (std::size_t p = 0; p < starts.size(); ++p) {
-    bars->values[p].value = bars->values[p].prior_mean = starts[p].value;
+  if (auto further = further_effect(material, "")) {
+    if (bench) {
+      require_for_all_bars(*further, material, *bench);
+    }
+    for (ModelValue& value : further->values) {
+      value.free = starts_only;
+    }
+    add_behind("three-element-bar", std::move(*further), model);
+  }
+}
+
+void take_ball_layer(const Material& material, const std::string& layer, Model& model) {
+  take_layer(three_elements_of(material), *model.find("three-element-" + layer));
+  if (auto further = further_effect(material, layer + "-")) {
+    add_behind("three-element-" + layer, std::move(*further), model);
+  }
+}
+
+/// What a model takes of a material file, with the file in what it refuses.
+template <class Take>
+void take_from(const std::string& file, const Take& take) {
+  try {
+    take();
+  } catch (const InputError& error) {
+    throw TomlTable::open(file).located(error);
   }
 }
 
@@ -85,7 +115,7 @@ std::string take_ball(const NewSettings& settings, const std::optional<Bench>& b
     source += (i == 0 ? "" : "; ") + std::string(names.at(i)) + ": ";
     if (*files.at(i)) {
       materials.at(i) = read_material(**files.at(i));
-      take_layer(materials.at(i), *model.find(std::string("three-element-") + names.at(i)));
+      take_from(**files.at(i), [&] { take_ball_layer(materials.at(i), names.at(i), model); });
       source += **files.at(i);
     } else {
       source += materials.at(i).source + ", held";
@@ -158,7 +188,7 @@ int make_new(const NewSettings& settings, Context& context) {
   } else if (settings.bar_model) {
     const Material bars = read_material(*settings.bar_model);
     require_passive(bars, *settings.bar_model);
-    take_bar_model(bars, file.model);
+    take_from(*settings.bar_model, [&] { take_bar_model(bars, filed, file.model); });
     file.bar_source = *settings.bar_model;
   } else if (!elastic) {
     file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"

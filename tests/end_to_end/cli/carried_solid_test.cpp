@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -21,6 +22,7 @@ namespace {
 using nlohmann::json;
 using scene::json_of;
 using scene::kolsky;
+using scene::refused;
 
 constexpr const char* kSecondBranch = "second-relaxation=6e-12,tau=3e-4";
 
@@ -185,6 +187,62 @@ TEST_F(CarriedSolid, IdentifiesASpecimenAsThreeElementsDoNot) {
   const json three = identified(made_->three);
   EXPECT_GT(off(three, "E1_Pa", made_->specimen.E1_Pa), 4.0);
   EXPECT_GT(three["chi2_reduced"], 1.5);
+}
+
+/// Three elements and the second branch, which together are the bar; the specimen fits then.
+TEST_F(CarriedSolid, IsPutIntoModelsAsEffects) {
+  const auto chi2_by = [&](const std::string& bars) {
+    const std::string model = made_->folder / "model.toml";
+    const json told = json_of(
+        kolsky({"model", "new", "--kind", "shpb", "--bar-model", bars, "-o", model, "--json"}));
+    const json& parameters = told["parameters"];
+    const Material bar = read_material(bars);
+    EXPECT_EQ(parameters["bar.E1_Pa"]["value"], bar.parameters[0].value);
+    if (bar.solid == SolidKind::two_kelvin) {
+      const double D = parameters["second-relaxation.D"]["value"];
+      EXPECT_DOUBLE_EQ(D, 1.0 / bar.parameters[3]);
+      EXPECT_EQ(parameters["second-relaxation.tau"]["free"], false);
+    }
+    std::vector<std::string> words = {"fit"};
+    words.insert(words.end(), made_->captures.begin(), made_->captures.end());
+    words.insert(words.end(), {"--model", model, "-o", made_->folder / "fitted.toml", "--json"});
+    const json fitted = json_of(kolsky(words));
+    std::filesystem::remove(made_->folder / "fitted.toml");
+    std::filesystem::remove(model);
+    return fitted["misfit"]["chi2_reduced"].get<double>();
+  };
+  EXPECT_LT(chi2_by(made_->two), 1.1);
+  EXPECT_GT(chi2_by(made_->three), 1.5);
+}
+
+TEST_F(CarriedSolid, CalibratesTheBenchItWasIdentifiedOn) {
+  const auto certificate_by = [&](const std::string& bars) {
+    std::vector<std::string> words = {"calibrate"};
+    words.insert(words.end(), made_->bar_captures.begin(), made_->bar_captures.end());
+    words.insert(words.end(), {"--bar-model", bars, "--json"});
+    return json_of(kolsky(words))["certificate"].get<std::string>();
+  };
+  EXPECT_EQ(certificate_by(made_->two), "pass");
+  EXPECT_EQ(certificate_by(made_->three), "undecided");
+}
+
+TEST_F(CarriedSolid, IsRefusedWhereNothingHoldsIt) {
+  constexpr const char* kBranch =
+      "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.7e9\nE2_Pa = 40e9\n"
+      "eta2_Pa_s = 1.9e6\n";
+  made_->folder.write("branches.toml",
+                      "solid = \"three-kelvin\"\n" + std::string(kBranch) +
+                          "E3_Pa = 160e9\neta3_Pa_s = 5e7\nE4_Pa = 2e11\neta4_Pa_s = 2e6\n");
+  EXPECT_TRUE(refused(kolsky({"model", "new", "--kind", "shpb", "--bar-model",
+                              made_->folder / "branches.toml", "-o", made_->folder / "none.toml"}),
+                      {"branches.toml:1: solid", "three-kelvin", "no effect", "two-kelvin"}));
+  made_->folder.write("power.toml",
+                      "solid = \"fractional\"\n" + std::string(kBranch) + "beta = 0.8\n");
+  EXPECT_TRUE(
+      refused(kolsky({"impact", "--bench", KOLSKY_SOURCE_DIR "/docs/benches/paper-impact.toml",
+                      "--core", made_->folder / "power.toml", "--cover",
+                      KOLSKY_SOURCE_DIR "/docs/materials/golf-cover.toml", "--speed", "20"}),
+              {"power.toml:1: solid", "fractional", "two-kelvin"}));
 }
 
 }  // namespace
