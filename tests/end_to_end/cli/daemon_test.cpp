@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "daemon/daemon.hpp"
+#include "drivers/files/captures/capture.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "proto/codec.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
@@ -85,6 +86,37 @@ TEST_F(WithDaemon, GetIsReduceOfTheCaptureToTheByte) {
   EXPECT_EQ(ask({"get", id, "--json", "--true"}).out,
             kolsky({"reduce", capture, "--json", "--true"}).out);
   EXPECT_EQ(ask({"get", id}).out, kolsky({"reduce", capture}).out);
+}
+
+/// Over the wire, in the journal's record and in the capture the shot has the bar it was taken
+/// with.
+TEST(WithABarOfTwoBranches, GetIsReduceOfTheCaptureToTheByte) {
+  scene::Lab lab;
+  scene::Installation setup(lab.uri(), lab.bench());
+  setup.folder().write("two.toml",
+                       "solid = \"two-kelvin\"\nsource = \"two branches\"\n"
+                       "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\n"
+                       "E2_Pa = 37e9\neta2_Pa_s = 1.81e6\nE3_Pa = 160e9\neta3_Pa_s = 5e7\n");
+  setup.set("", "bar_model = \"two.toml\"");
+  Daemon daemon(setup.read());
+  daemon.start();
+  const auto ask = [&](const std::vector<std::string>& words) {
+    return kolsky(words, {"KOLSKY_ENDPOINT=" + daemon.endpoints().control});
+  };
+  ASSERT_TRUE(scene::eventually([&] { return ask({"arm"}).code == 0; }));
+  const std::string id = json_of(ask({"fire", "--wait", "10", "--json"}))["shot"];
+  const Answer got = ask({"get", id, "--json"});
+  EXPECT_EQ(json_of(got)["bar_model"], "two branches");
+  const std::string capture = json_of(ask({"shots", "--json"}))["shots"][0]["capture"];
+  ASSERT_TRUE(scene::eventually([&] { return std::filesystem::exists(capture); })) << capture;
+  EXPECT_EQ(read_capture(capture).bar_model->solid, SolidKind::two_kelvin);
+  EXPECT_EQ(kolsky({"reduce", capture, "--json"}).out, got.out);
+  setup.folder().write("three.toml",
+                       "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\n"
+                       "E2_Pa = 37e9\neta2_Pa_s = 1.81e6\nsource = \"two branches\"\n");
+  const json three =
+      json_of(kolsky({"reduce", capture, "--json", "--bar-model", setup.folder() / "three.toml"}));
+  EXPECT_NE(three["strain"], json_of(got)["strain"]);
 }
 
 TEST_F(WithDaemon, ExportsAShotByItsId) {
