@@ -20,6 +20,7 @@
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
+#include "processing/identification/better_solid.hpp"
 #include "processing/impact/impact.hpp"
 
 namespace kolsky::cli {
@@ -408,6 +409,10 @@ void add_remarks(ChainRun& run) {
       "the deviations hold if the linear model does: they are no allowance for a wrong one");
   if (!run.impacts.empty()) {
     add_not_constrained(run);
+  }
+  if (const auto better = run.bar ? better_solid(*run.bar) : std::nullopt) {
+    run.remarks.push_back("bar: " + cost_of_filing(fit_to_file(*run.bar), *better) +
+                          " (`kolsky identify bar --model-out`), for --bar-model");
   }
   for (const auto& [part, fit] : {std::pair("core", &run.core), std::pair("cover", &run.cover)}) {
     for (const std::string& warning : fit->warnings) {

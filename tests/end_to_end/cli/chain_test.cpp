@@ -59,7 +59,7 @@ class Chain : public ::testing::Test {
     testing::BallForce truth;
 
     void make() {
-      make_bar();
+      bar = make_bar("bar", kPmma);
       core = make_specimens("core", kCore, 0.376);
       cover = make_specimens("cover", kCover, 0.319);
       make_balls();
@@ -76,7 +76,7 @@ class Chain : public ::testing::Test {
       return folder / (name + ".h5");
     }
 
-    void make_bar() {
+    std::vector<std::string> make_bar(const std::string& name, const RodMaterial& material) {
       std::string bench = "kind = \"bar\"\nsampling_frequency_Hz = 1e6\ntemperature_K = 296.0\n" +
                           bar_lines("input", 2.0, 0.02);
       for (int j = 0; j < 4; ++j) {
@@ -84,8 +84,9 @@ class Chain : public ::testing::Test {
       }
       folder.write("bar.toml", bench);
       testing::BarShots::Setup setup;
-      setup.material = kPmma;
+      setup.material = material;
       std::mt19937_64 random(5);
+      std::vector<std::string> captures;
       for (const Shot& shot : testing::BarShots(setup).draw(2, {}, random)) {
         std::string table = "time_s,g1,g2,g3,g4\n";
         for (std::size_t n = 0; n < shot.samples(); ++n) {
@@ -98,8 +99,9 @@ class Chain : public ::testing::Test {
           }
           table += "\n";
         }
-        bar.push_back(import(fmt::format("bar{}", bar.size()), table, "bar.toml"));
+        captures.push_back(import(fmt::format("{}{}", name, captures.size()), table, "bar.toml"));
       }
+      return captures;
     }
 
     std::vector<std::string> make_specimens(const std::string& name, const RodMaterial& material,
@@ -272,6 +274,28 @@ TEST_F(Chain, ForetellsWithoutAMeasurementAndInText) {
     EXPECT_NE(answer.out.find(wanted), std::string::npos) << wanted << "\n" << answer.out;
   }
   EXPECT_EQ(answer.out.find("agree"), std::string::npos) << "nothing was measured";
+}
+
+TEST_F(Chain, SaysThatABarIsMoreThanThreeElementsAndGoesByItsFile) {
+  RodMaterial branches = kPmma;
+  branches.relaxations = {{6e-12, 3e-4}};
+  const std::vector<std::string> bar = files_->make_bar("branches", branches);
+  const auto chain = [&](const char* option, const std::vector<std::string>& bars) {
+    std::vector<std::string> words = with({"chain"}, option, bars);
+    words = with(with(words, "--core-shots", files_->core), "--cover-shots", files_->cover);
+    words.insert(words.end(), {"--bench", files_->folder / "impact.toml", "--speed", "31.1",
+                               "--draws", "8", "--json"});
+    return json_of(kolsky(words));
+  };
+  const std::string ahead = "a two-kelvin solid is ahead of the three-element one";
+  EXPECT_NE(chain("--bar-shots", bar)["remarks"].dump().find(ahead), std::string::npos);
+  const std::string filed = files_->folder / "branches.toml";
+  std::vector<std::string> words = {"identify", "bar", "--solid", "auto", "--model-out", filed};
+  words.insert(words.end(), bar.begin(), bar.end());
+  ASSERT_EQ(kolsky(words).code, 0);
+  const json by_file = chain("--bar-model", {filed});
+  EXPECT_EQ(by_file["remarks"].dump().find(ahead), std::string::npos);
+  EXPECT_EQ(by_file["speeds"].size(), 1U);
 }
 
 // PMMA's moduli change by some 0.3 % per kelvin: bars count as alike within 2 K.
