@@ -238,11 +238,11 @@ TEST_F(CarriedSolid, IsRefusedWhereNothingHoldsIt) {
                       {"branches.toml:1: solid", "three-kelvin", "no effect", "two-kelvin"}));
   made_->folder.write("power.toml",
                       "solid = \"fractional\"\n" + std::string(kBranch) + "beta = 0.8\n");
-  EXPECT_TRUE(
-      refused(kolsky({"impact", "--bench", KOLSKY_SOURCE_DIR "/docs/benches/paper-impact.toml",
-                      "--core", made_->folder / "power.toml", "--cover",
-                      KOLSKY_SOURCE_DIR "/docs/materials/golf-cover.toml", "--speed", "20"}),
-              {"power.toml:1: solid", "fractional", "two-kelvin"}));
+  const std::string docs = std::string(KOLSKY_SOURCE_DIR) + "/docs/";
+  EXPECT_TRUE(refused(kolsky({"impact", "--bench", docs + "benches/paper-impact.toml", "--core",
+                              made_->folder / "power.toml", "--cover",
+                              docs + "materials/golf-cover.toml", "--speed", "20"}),
+                      {"power.toml:1: solid", "fractional", "two-kelvin"}));
 }
 
 }  // namespace
