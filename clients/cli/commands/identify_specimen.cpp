@@ -230,6 +230,7 @@ Command identify_specimen_command() {
       "  kolsky identify specimen shot*.h5 --bar-model pmma.toml\n"
       "  kolsky identify specimen shot*.h5 --bar-model pmma.toml --model-out core.toml --json\n"
       "  kolsky identify specimen shot*.h5 --bar-model pmma.toml --draws 500\n"
+      "  kolsky identify specimen shot*.h5 --solid two-kelvin --model-out core.toml\n"
       "  kolsky identify specimen shot*.h5 --solid fractional --dispersion exact\n";
   command.arguments = {
       needed("CAPTURE", "", "captures of one bench and material", &s.captures),
@@ -237,7 +238,8 @@ Command identify_specimen_command() {
              "material file of viscoelastic bars; its deviations count. Else the capture's own, "
              "else the paper's PMMA",
              &s.bar_model),
-      option("--model-out", "S.toml", "material file to write: values, deviations, covariance",
+      option("--model-out", "S.toml",
+             "material file of the solid fitted to write: values, deviations, covariance",
              &s.model_out),
       option("--solid", "FAMILY",
              "three-element (default), four-element-fluid, two-kelvin, three-kelvin or fractional",
