@@ -145,22 +145,29 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
   bool converged = false;
   constexpr int kMostSteps = 40;
   constexpr int kMostRefused = 4;
+  constexpr double kAsGood = 0.75;  ///< as what was foretold of a step
   for (int n = 0; n < kMostSteps && !converged; ++n) {
+    // Of a misfit many times the noise nothing hangs on what noise is.
+    const double near = kNear * std::max(1.0, steps.chi2_per_residual());
     const double promised = steps.promised();
-    if ((roughly || fresh) && promised < kNear) {
+    if ((roughly || fresh) && promised < near) {
       converged = true;
       break;
     }
     FitSteps::Step step = steps.tried(damping);
     if (std::isfinite(step.chi2) && step.gain > 0.0) {
       // What is learned serves as long as what it promises comes true.
-      const bool serves = step.gain > std::max(kNear, 0.1 * promised);
-      converged = fresh && step.gain < kNear;
+      const bool serves = step.gain > std::max(near, 0.1 * promised);
+      const bool as_foretold = step.gain > kAsGood * step.foretold;
+      converged = fresh && step.gain < near;
       if (serves) {
         steps.learn(step);
       }
       steps.take(std::move(step));
-      damping = damping > 1e-2 ? damping / 10.0 : 0.0;
+      // Where a step gains less than was foretold of it, a longer one is not worth an attempt.
+      if (as_foretold) {
+        damping = damping > 1e-2 ? damping / 10.0 : 0.0;
+      }
       refused = 0;
       if (serves) {
         steps.go_on();

@@ -132,7 +132,9 @@ FitSteps::Step FitSteps::tried(double damping) {
     theta[static_cast<std::size_t>(i)] += move[i];
   }
   keep_inside(composition_, theta);
-  return at(std::move(theta));
+  Step step = at(std::move(theta));
+  step.foretold = move.dot(2.0 * downhill_ - information_ * move);
+  return step;
 }
 
 FitSteps::Step FitSteps::at(std::vector<double> theta) {

@@ -20,7 +20,8 @@ class FitSteps {
     Eigen::VectorXd residual;
     double chi2 = 0.0;
     double penalty = 0.0;
-    double gain = 0.0;  ///< of the objective; not a number where the model refuses
+    double gain = 0.0;      ///< of the objective; not a number where the model refuses
+    double foretold = 0.0;  ///< the same if the residuals were straight
     [[nodiscard]] bool better() const;
   };
 
@@ -37,6 +38,9 @@ class FitSteps {
   void go_on() { linearise(); }
   /// What a full step would gain if the residuals were straight.
   [[nodiscard]] double promised() const { return promised_; }
+  [[nodiscard]] double chi2_per_residual() const {
+    return fit_.chi2 / static_cast<double>(fit_.residual.size());
+  }
   [[nodiscard]] bool nothing_free() const { return fit_.theta.empty(); }
   /// The fit as it stands, with its covariance.
   [[nodiscard]] ModelFit done(bool converged);
