@@ -16,6 +16,12 @@ namespace {
 
 constexpr std::size_t kMostRefits = 12;
 
+/// By how much what may yet turn out best is behind the best: first order and fits from one side
+/// say little where much is missing.
+double margin_behind(double best) {
+  return std::max(150.0, 0.6 * best);
+}
+
 /// Every strength over its reach would change the records by less than noise does.
 bool beyond_reach(const Candidate& candidate, const Direction& direction) {
   if (direction.freedom <= 0.0 || !std::isfinite(direction.gain) ||
@@ -183,8 +189,7 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
   constexpr double kWorthIt = 4.0;
   for (const std::size_t i : ranked) {
     const double first = evidence_[ranked.front()];
-    const double margin = std::max(150.0, 0.6 * first);
-    const bool near = evidence_[i] > kWorthIt && evidence_[i] > first - margin;
+    const bool near = evidence_[i] > kWorthIt && evidence_[i] > first - margin_behind(first);
     const bool filed = directions_[i].freedom > 0.0 && is_filed_number(candidates_[i]);
     if (chosen.size() < kMostRefits && (near || filed)) {
       chosen.push_back(i);
@@ -213,7 +218,8 @@ void ImpactSearch::add_variants_as_likely(std::vector<std::size_t>& chosen) cons
   }
 }
 
-std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor) {
+std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor,
+                                               double least) {
   const Candidate& candidate = candidates_[index];
   const Model model = with(base_.model, candidate, true);
   Composition composition(model, study_.campaign());
@@ -227,7 +233,8 @@ std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers&
                          carry(base_.composition, base_.fit.theta, composition), nullptr,
                          Settle::roughly);
   }
-  if (is_filed_number(candidate)) {
+  const double objective = fit.objective();
+  if (is_filed_number(candidate) && !(base_.fit.objective() - objective < least)) {
     fit = from_afar(candidate, std::move(fit), composition,
                     carry(base_.composition, base_.fit.theta, composition), study_.residuals(),
                     executor);
@@ -363,10 +370,15 @@ std::vector<ImpactRefit> ImpactSearch::refits() {
                             [&](std::size_t i) { return !is_filed_number(candidates_[i]); });
   const auto near = static_cast<std::size_t>(from_afar_too - chosen.begin());
   std::vector<std::optional<ImpactRefit>> done(chosen.size());
-  share_out(near,
-            [&](std::size_t i, const Workers& executor) { done[i] = refit(chosen[i], executor); });
+  share_out(near, [&](std::size_t i, const Workers& executor) {
+    done[i] = refit(chosen[i], executor, 0.0);
+  });
+  double best = 0.0;
+  for (const auto& own : done) {
+    best = own ? std::max(best, base_.fit.objective() - own->studied.fit.objective()) : best;
+  }
   for (std::size_t i = near; i < chosen.size(); ++i) {
-    done[i] = refit(chosen[i], study_.executor());
+    done[i] = refit(chosen[i], study_.executor(), best - margin_behind(best));
   }
   std::vector<ImpactRefit> list;
   for (auto& own : done) {

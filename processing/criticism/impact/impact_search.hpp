@@ -71,7 +71,9 @@ class ImpactSearch {
  private:
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
   void add_variants_as_likely(std::vector<std::size_t>& chosen) const;
-  [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor);
+  /// @param least  gain from which on a filed number is tried from afar, too
+  [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor,
+                                                 double least);
   [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
                                                      Composition composition, ModelFit fit) const;
   void leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list);
