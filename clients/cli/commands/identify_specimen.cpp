@@ -184,9 +184,7 @@ void write_material(const IdentifiedSpecimen& outcome, const std::string& path) 
   material.poisson_ratio = *bench.specimen->poisson_ratio;
   material.solid = fit.solid;
   material.parameters = measured_of(fit.parameters);
-  material.source =
-      fmt::format("kolsky identify specimen, {} shots, chi2 per degree of freedom {:.3f}",
-                  outcome.shots.size(), fit.chi2_reduced);
+  material.source = fmt::format("kolsky identify specimen, {} shots", outcome.shots.size());
   material.covariance = row_by_row(fit.covariance);
   material.identified =
       Material::Identified{fit.band_limit_Hz, temperature_of(outcome.shots.front())};
@@ -200,8 +198,11 @@ void write_material(const IdentifiedSpecimen& outcome, const std::string& path) 
                          : "give more shots, a wider band or a --solid of fewer parameters");
   }
   NewFile file(path);
-  // [identified] is the last table.
-  file.write(format_material(material) + fmt::format("shots = {}\n", outcome.shots.size()));
+  Identified identified;
+  identified.shots = outcome.shots.size();
+  identified.dispersion = name_of(fit.theory.bars);
+  identified.chi2_reduced = fit.chi2_reduced;
+  file.write(format_material(material, identified));
   file.publish(kReadableByAll);
 }
 

@@ -8,22 +8,15 @@
 
 #include "processing/base/error.hpp"
 #include "processing/models/scene.hpp"
+#include "tests/unit/base/solid_material.hpp"
 
 namespace kolsky {
 namespace {
 
-Material made_of(SolidKind solid, const std::vector<double>& values) {
-  Material material = paper_pmma();
-  material.solid = solid;
-  material.parameters.clear();
-  for (const double value : values) {
-    material.parameters.push_back({value});
-  }
-  return material;
-}
+using testing::material_of;
 
 Material two_kelvin() {
-  return made_of(SolidKind::two_kelvin, {5.7e9, 40e9, 1.9e6, 160e9, 5e7});
+  return material_of(SolidKind::two_kelvin, {5.7e9, 40e9, 1.9e6, 160e9, 5e7});
 }
 
 /// The bar's J as a model's effects make it.
@@ -49,8 +42,8 @@ Complex by_effects(const Material& material, Complex s) {
 TEST(MaterialEffects, HaveTheMaterialsComplianceExactly) {
   for (const Material& material :
        {paper_pmma(), two_kelvin(),
-        made_of(SolidKind::four_element_fluid, {5.7e9, 4e8, 37e9, 1.8e6}),
-        made_of(SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7})}) {
+        material_of(SolidKind::four_element_fluid, {5.7e9, 4e8, 37e9, 1.8e6}),
+        material_of(SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7})}) {
     for (const double frequency_Hz : {100.0, 3e3, 40e3}) {
       const Complex s(300.0, 2.0 * std::numbers::pi * frequency_Hz);
       const Complex J = compliance_of(material)->at(s);
@@ -95,12 +88,12 @@ TEST(MaterialEffects, RefuseWhatNoEffectIs) {
     return "nothing";
   };
   const Material three_branches =
-      made_of(SolidKind::three_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5});
+      material_of(SolidKind::three_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5});
   EXPECT_EQ(place_refused([&] { (void)further_effect(three_branches, ""); }), "solid");
-  const Material branch = made_of(SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7});
+  const Material branch = material_of(SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7});
   EXPECT_EQ(place_refused([&] { (void)further_effect(branch, "core-"); }), "solid");
   // A branch slower than the effect goes.
-  const Material slow = made_of(SolidKind::two_kelvin, {5.7e9, 40e9, 1.9e6, 160e9, 5e11});
+  const Material slow = material_of(SolidKind::two_kelvin, {5.7e9, 40e9, 1.9e6, 160e9, 5e11});
   EXPECT_EQ(place_refused([&] { (void)further_effect(slow, ""); }), "solid");
   Bench mixed;
   mixed.output = mixed.input;

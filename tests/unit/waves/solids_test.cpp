@@ -1,4 +1,5 @@
 #include "processing/waves/solids.hpp"
+#include "tests/unit/base/solid_material.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,14 +40,7 @@ TEST(Solids, SlopesAreThoseOfTheCompliance) {
 TEST(Solids, AMaterialIsCarriedByItsOwnFamily) {
   const Complex s(300.0, 6e4);
   const auto of = [&](SolidKind solid, const std::vector<double>& values) {
-    Material material = paper_pmma();
-    material.solid = solid;
-    material.parameters.clear();
-    for (const double value : values) {
-      material.parameters.push_back({value});
-    }
-    Bar bar;
-    return compliance_of(bar, material)->at(s);
+    return compliance_of(Bar{}, testing::material_of(solid, values))->at(s);
   };
   const auto kelvin = [&](double E, double eta) { return 1.0 / (E + s * eta); };
   const auto expect_near = [](Complex J, Complex wanted) {
