@@ -432,6 +432,9 @@ TEST_F(TwoBranchSpecimenFiles, AreFiledAsTheSolidThatWasFitted) {
                                              "two-kelvin", "--model-out", file, "--json"})));
   const Material filed = read_material(file);
   ASSERT_EQ(filed.solid, SolidKind::two_kelvin);
+  ASSERT_TRUE(filed.identified);
+  EXPECT_EQ(filed.identified->chi2_reduced, told["chi2_reduced"].get<double>());
+  EXPECT_EQ(filed.identified->band_limit_Hz, told["band_limit_Hz"].get<double>());
   for (std::size_t i = 0; i < filed.parameters.size(); ++i) {
     const json& fitted = told["parameters"][parameters_of(filed.solid)[i].name];
     EXPECT_EQ(filed.parameters[i].value, fitted["value"].get<double>());
