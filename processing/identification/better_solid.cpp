@@ -1,5 +1,7 @@
 #include "processing/identification/better_solid.hpp"
 
+#include <utility>
+
 #include "processing/reduction/formatted.hpp"
 
 namespace kolsky {
@@ -12,6 +14,20 @@ constexpr double kClearlyAhead = 10.0;
 
 const BarFit& fit_to_file(const BarIdentification& result) {
   return result.fit.solid == SolidKind::three_element ? result.three_element : result.fit;
+}
+
+Material material_to_file(const BarIdentification& result, const Bar& bar, std::string source) {
+  const BarFit& fit = fit_to_file(result);
+  Material material;
+  material.density_kg_m3 = bar.density_kg_m3;
+  material.poisson_ratio = bar.poisson_ratio;
+  material.solid = fit.solid;
+  material.parameters = measured_of(fit.parameters);
+  material.source = std::move(source);
+  material.covariance = row_by_row(fit.covariance);
+  material.identified = Material::Identified{fit.band_limit_Hz, result.temperature_K,
+                                             fit.chi2_reduced, !result.spectrum.mean_loss.gains()};
+  return material;
 }
 
 std::optional<BetterSolid> better_solid(const BarIdentification& result) {
@@ -31,13 +47,16 @@ std::optional<BetterSolid> better_solid(const BarIdentification& result) {
   return better;
 }
 
-std::string cost_of_filing(const BarFit& filed, const BetterSolid& better) {
-  const std::string name = name_of(better.solid);
+std::string cost_of_going_by(const BarFit& filed, const BetterSolid& better) {
   return formatted(
       "a %s solid is ahead of the %s one that reductions would go by, by a log evidence of %.0f: "
-      "that leaves a reduced chi2 of %.3g, it %.3g; --solid %s files it",
-      name.c_str(), name_of(filed.solid).c_str(), better.log_evidence_ahead, filed.chi2_reduced,
-      better.chi2_reduced, name.c_str());
+      "that leaves a reduced chi2 of %.3g, it %.3g",
+      name_of(better.solid).c_str(), name_of(filed.solid).c_str(), better.log_evidence_ahead,
+      filed.chi2_reduced, better.chi2_reduced);
+}
+
+std::string cost_of_filing(const BarFit& filed, const BetterSolid& better) {
+  return cost_of_going_by(filed, better) + "; --solid " + name_of(better.solid) + " files it";
 }
 
 }  // namespace kolsky

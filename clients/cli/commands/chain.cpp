@@ -32,6 +32,7 @@ constexpr double kWithoutMeasurement_Hz = 50e3;
 
 struct Settings {
   std::vector<std::string> bar_shots;
+  std::optional<std::string> bar_solid;
   std::optional<std::string> bar_model;
   std::vector<std::string> core_shots;
   std::vector<std::string> cover_shots;
@@ -103,7 +104,17 @@ struct Bars {
   std::string name;  ///< of what they were given by; empty: by the captures
 };
 
+/// Nothing: what the shots are evidence for.
+std::optional<SolidKind> bar_solid_of(const Settings& settings) {
+  const std::string solid = settings.bar_solid.value_or(name_of(SolidKind::three_element));
+  return solid == "auto" ? std::nullopt : std::optional(solid_kind(solid));
+}
+
 Bars bars_of(const Settings& settings, ChainRun& run) {
+  if (settings.bar_solid && settings.bar_shots.empty()) {
+    throw InputError(std::string(kPlace) + "--bar-solid", "is of the bar that --bar-shots identify",
+                     "give those shots, or leave it out");
+  }
   if (!settings.bar_shots.empty() && settings.bar_model) {
     throw InputError(std::string(kPlace) + "--bar-model", "is given beside --bar-shots",
                      "keep one of them");
@@ -121,20 +132,14 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   const std::vector<Shot> shots = captured_shots(settings.bar_shots);
   require_kind(shots, BenchKind::bar, "--bar-shots", "bar");
   say_to_a_person(fmt::format("identifying the bar from {} shots", shots.size()));
-  run.bar = identify_bar(shots, {}, all_cores());
-  const BarFit& fit = run.bar->three_element;
-  Material material;
-  material.density_kg_m3 = shots.front().bench.input.density_kg_m3;
-  material.poisson_ratio = shots.front().bench.input.poisson_ratio;
-  material.parameters = measured_of(fit.parameters);
+  BarIdentificationOptions options;
+  options.solid = bar_solid_of(settings);
+  run.bar = identify_bar(shots, options, all_cores());
   run.bars = fmt::format("identified from {} shots", shots.size());
-  material.source = "kolsky chain, " + run.bars;
-  material.identified =
-      Material::Identified{fit.band_limit_Hz, run.bar->temperature_K, fit.chi2_reduced,
-                           !run.bar->spectrum.mean_loss.gains()};
-  Bars bars{BarPrior(material), fit.band_limit_Hz, std::string(kPlace) + "--bar-shots"};
-  bars.prior.covariance = fit.covariance;
-  return bars;
+  const Material material =
+      material_to_file(*run.bar, shots.front().bench.input, "kolsky chain, " + run.bars);
+  return {BarPrior(material), material.identified->band_limit_Hz,
+          std::string(kPlace) + "--bar-shots"};
 }
 
 SpecimenFit fit_of(const std::vector<Shot>& shots, const Bars& bars, const char* part) {
@@ -411,8 +416,8 @@ void add_remarks(ChainRun& run) {
     add_not_constrained(run);
   }
   if (const auto better = run.bar ? better_solid(*run.bar) : std::nullopt) {
-    run.remarks.push_back("bar: " + cost_of_filing(fit_to_file(*run.bar), *better) +
-                          " (`kolsky identify bar --model-out`), for --bar-model");
+    run.remarks.push_back("bar: " + cost_of_going_by(fit_to_file(*run.bar), *better) +
+                          "; --bar-solid " + name_of(better->solid) + " goes by it");
   }
   for (const auto& [part, fit] : {std::pair("core", &run.core), std::pair("cover", &run.cover)}) {
     for (const std::string& warning : fit->warnings) {
@@ -485,6 +490,14 @@ Command chain_command() {
   command.arguments = {
       option("--bar-shots", "CAPTURE",
              "shots on the specimens' bar alone, kind \"bar\"; captures or folders", &s.bar_shots),
+      Argument{"--bar-solid",
+               "FAMILY",
+               "family of solids that --bar-shots identify: three-element (default), or what they\n"
+               "are evidence for (auto)",
+               &s.bar_solid,
+               false,
+               {"three-element", "four-element-fluid", "two-kelvin", "three-kelvin", "fractional",
+                "auto"}},
       option("--bar-model", "M.toml",
              "what identify bar --model-out wrote, in place of --bar-shots; with neither, elastic "
              "bars, the captures' own bar model or the paper's PMMA",

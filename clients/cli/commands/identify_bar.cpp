@@ -68,15 +68,9 @@ void write_material(const std::string& path, const BarIdentification& result,
                     const std::vector<Shot>& shots) {
   const BarFit& fit = fit_to_file(result);
   const bool grows = result.spectrum.mean_loss.gains();
-  const Bar& bar = shots.front().bench.input;
-  Material material;
-  material.density_kg_m3 = bar.density_kg_m3;
-  material.poisson_ratio = bar.poisson_ratio;
-  material.solid = fit.solid;
-  material.parameters = measured_of(fit.parameters);
-  material.source = "kolsky identify bar, " + std::to_string(shots.size()) + " shots";
-  material.covariance = row_by_row(fit.covariance);
-  material.identified = Material::Identified{fit.band_limit_Hz, result.temperature_K};
+  const Material material =
+      material_to_file(result, shots.front().bench.input,
+                       "kolsky identify bar, " + std::to_string(shots.size()) + " shots");
   try {
     check(material);
   } catch (const InputError& error) {

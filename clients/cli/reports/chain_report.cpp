@@ -7,6 +7,7 @@
 #include "clients/cli/reports/chain_run.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"
+#include "processing/identification/better_solid.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -212,7 +213,7 @@ JsonValue describe(const ChainRun& run) {
   }
   JsonValue bar = nullptr;
   if (run.bar) {
-    const BarFit& fit = run.bar->three_element;
+    const BarFit& fit = fit_to_file(*run.bar);
     bar = describe(fit.parameters, fit.covariance, fit.chi2_reduced);
   }
   return JsonObject{
@@ -234,8 +235,8 @@ JsonValue describe(const ChainRun& run) {
 std::string report(const ChainRun& run, const Terminal& terminal) {
   std::string text = "bars: " + run.bars + "\n";
   if (run.bar) {
-    text += material_line("bar", run.bar->three_element.parameters,
-                          run.bar->three_element.chi2_reduced);
+    const BarFit& fit = fit_to_file(*run.bar);
+    text += material_line("bar", fit.parameters, fit.chi2_reduced);
   }
   text += material_line("core", run.core.parameters, run.core.chi2_reduced);
   text += material_line("cover", run.cover.parameters, run.cover.chi2_reduced);

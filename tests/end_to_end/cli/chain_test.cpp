@@ -280,15 +280,19 @@ TEST_F(Chain, SaysThatABarIsMoreThanThreeElementsAndGoesByItsFile) {
   RodMaterial branches = kPmma;
   branches.relaxations = {{6e-12, 3e-4}};
   const std::vector<std::string> bar = files_->make_bar("branches", branches);
-  const auto chain = [&](const char* option, const std::vector<std::string>& bars) {
+  const auto chain = [&](const char* option, const std::vector<std::string>& bars,
+                         const std::vector<std::string>& solid = {}) {
     std::vector<std::string> words = with({"chain"}, option, bars);
+    words.insert(words.end(), solid.begin(), solid.end());
     words = with(with(words, "--core-shots", files_->core), "--cover-shots", files_->cover);
     words.insert(words.end(), {"--bench", files_->folder / "impact.toml", "--speed", "31.1",
                                "--draws", "8", "--json"});
     return json_of(kolsky(words));
   };
   const std::string ahead = "a two-kelvin solid is ahead of the three-element one";
-  EXPECT_NE(chain("--bar-shots", bar)["remarks"].dump().find(ahead), std::string::npos);
+  const std::string remarks = chain("--bar-shots", bar)["remarks"].dump();
+  EXPECT_NE(remarks.find(ahead), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("--bar-solid two-kelvin goes by it"), std::string::npos) << remarks;
   const std::string filed = files_->folder / "branches.toml";
   std::vector<std::string> words = {"identify", "bar", "--solid", "auto", "--model-out", filed};
   words.insert(words.end(), bar.begin(), bar.end());
@@ -296,6 +300,14 @@ TEST_F(Chain, SaysThatABarIsMoreThanThreeElementsAndGoesByItsFile) {
   const json by_file = chain("--bar-model", {filed});
   EXPECT_EQ(by_file["remarks"].dump().find(ahead), std::string::npos);
   EXPECT_EQ(by_file["speeds"].size(), 1U);
+  // At once, without a file between: the same but for the digits that a file has.
+  const json at_once = chain("--bar-shots", bar, {"--bar-solid", "auto"});
+  EXPECT_EQ(at_once["remarks"].dump().find(ahead), std::string::npos);
+  EXPECT_EQ(at_once["bar"]["parameters"].size(), 5U);
+  for (const char* number : {"E1_Pa", "E2_Pa", "eta2_Pa_s"}) {
+    const double filed_by = by_file["core"]["parameters"][number]["value"];
+    EXPECT_NEAR(at_once["core"]["parameters"][number]["value"], filed_by, 1e-4 * filed_by);
+  }
 }
 
 // PMMA's moduli change by some 0.3 % per kelvin: bars count as alike within 2 K.
@@ -316,6 +328,9 @@ TEST_F(Chain, RefusesWhatIsNoChain) {
   std::vector<std::string> specimens =
       with(with({"chain"}, "--core-shots", files_->core), "--cover-shots", files_->cover);
   EXPECT_TRUE(refused(kolsky(specimens), {"--bench"}));
+  EXPECT_TRUE(
+      refused(kolsky(with(with(specimens, "--ball-shots", files_->ball), "--bar-solid", {"auto"})),
+              {"--bar-solid", "--bar-shots"}));
   EXPECT_TRUE(
       refused(kolsky(with(specimens, "--ball-shots", files_->bar)), {"impact", "--ball-shots"}));
   EXPECT_TRUE(refused(
