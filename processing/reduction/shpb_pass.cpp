@@ -21,6 +21,8 @@ namespace {
 
 /// A run above the level shorter than this is a spike, not a pulse.
 constexpr double kShortestPulse_s = 5e-6;
+/// Of the band that the noise allows: a limit below that rounds the pulse's foot off.
+constexpr double kMostCut = 0.7;
 /// Noise's deviations beyond which something is not its account.
 constexpr double kStandsOut = 3.0;
 
@@ -185,11 +187,10 @@ class Pass {
   }
 
   void choose_band(std::span<const double> pulse) {
-    double limit_Hz = options_.band_limit_Hz.value_or(0.0);
-    if (!options_.band_limit_Hz) {
-      limit_Hz = std::min(t_.band.from_noise(pulse, input_noise_),
-                          options_.most_band_Hz.value_or(limit_Hz_of_rate()));
-    }
+    const double of_noise_Hz = t_.band.from_noise(pulse, input_noise_);
+    double limit_Hz = options_.band_limit_Hz.value_or(
+        std::min(of_noise_Hz, options_.most_band_Hz.value_or(of_noise_Hz)));
+    foot_is_rounded_ = limit_Hz < kMostCut * of_noise_Hz;
     bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
     bars_.reach(t_, bins_);
     const double blind_from_Hz = bars_.blind_from_Hz(t_, bins_);
@@ -207,8 +208,6 @@ class Pass {
   [[nodiscard]] std::span<Complex> in_band(std::vector<Complex>& spectrum) const {
     return std::span(spectrum).first(bins_);
   }
-
-  double limit_Hz_of_rate() const { return rate_Hz_ / 2.0; }
 
   /// Gives the incident pulse the tail that the specimen's answer hides: at the impacted end it is
   /// the striker's push, which is over before the hidden part would have started there, unless it
@@ -326,15 +325,33 @@ class Pass {
                : push_noise_share_;
   }
 
-  /// t = 0: the foot of the incident pulse after it has been carried to interface A.
+  /// t = 0: the foot of the incident pulse after it has been carried to interface A. Where the band
+  /// ends below what the noise allows, the filter has rounded that foot: then the one at the gauge,
+  /// before any filter, and a front's way from there.
   void locate_arrival() {
     carry(&CarryingKernels::right_going_front, t_.history);
     const double travel = bars_.input.front_time_s(in_.gauge_to_specimen_m) * rate_Hz_;
-    const double late = travel + static_cast<double>(t_.key.delay);
-    const auto begin = static_cast<std::size_t>(gauge_foot_ + late);
-    const auto end = std::min(t_.history.size(), split_ + static_cast<std::size_t>(late));
+    Foot foot{.index = gauge_foot_ + travel};
+    if (!options_.arrival_s && foot_is_rounded_) {
+      foot = first_foot(t_.input_strain, gauge_foot_, static_cast<double>(split_), input_noise_);
+      foot.index += travel;
+    } else if (!options_.arrival_s) {
+      const double late = travel + static_cast<double>(t_.key.delay);
+      foot = first_foot(t_.history, gauge_foot_ + late, static_cast<double>(split_) + late,
+                        input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz));
+      foot.index -= static_cast<double>(t_.key.delay);
+    }
+    reduction_.arrival_s = foot.index * period_s_;
+    reduction_.arrival_sigma_s = foot.sigma * period_s_;
+  }
+
+  /// The foot of the pulse whose peak lies between two samples of a record.
+  [[nodiscard]] Foot first_foot(std::span<const double> record, double from, double to,
+                                double noise_rms) {
+    const auto begin = static_cast<std::size_t>(from);
+    const std::size_t end = std::min(record.size(), static_cast<std::size_t>(to));
     for (std::size_t n = 0; n < end; ++n) {
-      t_.scratch[n] = sense_ * t_.history[n];
+      t_.scratch[n] = sense_ * record[n];
     }
     const std::span<const double> pulse(t_.scratch.data(), end);
     const auto peak =
@@ -343,15 +360,7 @@ class Pass {
     while (half > 0 && pulse[half] > *peak / 2.0) {
       --half;
     }
-    const double noise = input_noise_ * t_.band.noise_share(reduction_.band_limit_Hz);
-    Foot foot = foot_of(pulse, half, *peak, noise);
-    foot.index -= static_cast<double>(t_.key.delay);
-    if (options_.arrival_s) {
-      foot.index = gauge_foot_ + travel;
-      foot.sigma = 0.0;
-    }
-    reduction_.arrival_s = foot.index * period_s_;
-    reduction_.arrival_sigma_s = foot.sigma * period_s_;
+    return foot_of(pulse, half, *peak, noise_rms);
   }
 
   /// Tells the waves apart by more than time, where that is asked for or needed and possible.
@@ -599,6 +608,7 @@ class Pass {
   double period_s_;
   double sense_ = 1.0;
   double gauge_foot_ = 0.0;
+  bool foot_is_rounded_ = false;          ///< by a band that ends below what the noise allows
   std::optional<double> arrival_late_s_;  ///< of one that was given, than the foot that is found
   std::size_t push_end_ = 0;              ///< of what is known of the push, in samples of its own
   double push_left_Pa_ = 0.0;
