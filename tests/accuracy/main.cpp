@@ -29,7 +29,7 @@ constexpr const char* kHead =
 const std::vector<Part> kParts{elastic_waves,
                                viscoelastic_waves,
                                identified_bars,
-                               identified_solid_bar,
+                               identified_solid_bars,
                                identified_compliances,
                                identified_specimens,
                                identified_specimen_compliances,

@@ -28,7 +28,7 @@ using Part = std::optional<Section> (*)();
 std::optional<Section> elastic_waves();
 std::optional<Section> viscoelastic_waves();
 std::optional<Section> identified_bars();
-std::optional<Section> identified_solid_bar();
+std::optional<Section> identified_solid_bars();
 std::optional<Section> identified_compliances();
 std::optional<Section> identified_specimens();
 std::optional<Section> identified_specimen_compliances();
