@@ -6,6 +6,7 @@
 
 #include "processing/identification/bar_fit.hpp"
 #include "processing/identification/bar_spectrum.hpp"
+#include "tests/bench/held_coverage.hpp"
 #include "tests/generators/solid_bar_shots.hpp"
 
 namespace {
@@ -25,7 +26,8 @@ struct Sums {
   }
 };
 
-void judge(std::size_t row, int repeats, testing::NoiseColour colour, unsigned seed) {
+void judge(std::size_t row, int repeats, testing::NoiseColour colour, unsigned seed,
+           HeldCoverage& held) {
   const testing::SolidBarShots shots(testing::kTable4[row]);
   const testing::SolidBarShots::Tolerances tolerances;
   const auto bound = shots.bound(tolerances, colour);
@@ -55,10 +57,10 @@ void judge(std::size_t row, int repeats, testing::NoiseColour colour, unsigned s
   for (std::size_t i = 0; i < 3; ++i) {
     std::printf(
         "  %-5s inside 95 %%: %3d of %d   error rms %.4f %% (mean %+.4f)   stated %.4f %%   bound "
-        "%.4f %%   mean square of deviations %.2f\n",
+        "%.4f %%   mean square of deviations %.2f%s\n",
         names[i], exact[i].inside, repeats, 100.0 * std::sqrt(exact[i].square / repeats),
         100.0 * exact[i].error / repeats, 100.0 * exact[i].stated / repeats, 100.0 * bound[i],
-        exact[i].deviations / repeats);
+        exact[i].deviations / repeats, held.judge(100.0 * exact[i].inside / repeats));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     std::printf(
@@ -83,11 +85,15 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed, "of the noise and of what is off");
   app.add_option("--row", only, "of Table 4; else all")->check(CLI::Range(1, 4));
   app.add_option("--colour", colour)->check(CLI::IsMember({"white", "coloured", "pink"}));
+  std::vector<double> hold;
+  HeldCoverage::add_option(app, hold);
   CLI11_PARSE(app, argc, argv);
+  HeldCoverage held(hold, repeats);
+  held.state();
   for (std::size_t row = 0; row < testing::kTable4.size(); ++row) {
     if (only == 0 || only == row + 1) {
-      judge(row, repeats, testing::colour_named(colour), seed);
+      judge(row, repeats, testing::colour_named(colour), seed, held);
     }
   }
-  return 0;
+  return held.missed() > 0 ? 1 : 0;
 }
