@@ -222,12 +222,11 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
     : length_m_(bar.length_m),
       period_s_(period_s),
       band_limit_Hz_(band_limit_Hz),
-      front_speed_m_per_s_(front_speed_m_per_s(bar, compliance)),
       samples_(gauges.empty() ? 0 : gauges.front().values.size()),
       lead_(0) {
   require_gauges(bar, gauges, ends);
   // Waves are looked for where they came from, before the gauges saw them: room for two passages.
-  const double passage_s = length_m_ / front_speed_m_per_s_;
+  const double passage_s = length_m_ / front_speed_m_per_s(bar, compliance);
   lead_ = static_cast<std::size_t>(std::ceil(2.5 * passage_s / period_s_)) + 16;
   work_ = std::make_unique<Work>(samples_ + 2 * lead_, period_s_);
   const std::size_t bins = BandLimit::bins_within(work_->transform, band_limit_Hz_);
@@ -240,6 +239,9 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
   stiffness_.reserve(bins);
   for (std::size_t k = 0; k < bins; ++k) {
     const Complex slowness = modes_[k].gamma / path_[k];
+    if (path_[k].imag() <= 2.0 * std::numbers::pi * band_limit_Hz_) {
+      slowest_s_per_m_ = std::max(slowest_s_per_m_, std::abs(slowness));
+    }
     across_.push_back(std::exp(-modes_[k].gamma * length_m_));
     stiffness_.push_back(bar.density_kg_m3.value / (slowness * slowness) *
                          modes_[k].mean_over_surface);
@@ -336,8 +338,7 @@ std::size_t WaveSeparation::known(double position_m) const {
   for (const Share& share : shares_) {
     nearest_m = std::min(nearest_m, std::abs(share.position_m - position_m));
   }
-  const auto travel =
-      static_cast<std::size_t>(std::ceil(nearest_m / front_speed_m_per_s_ / period_s_));
+  const auto travel = static_cast<std::size_t>(std::ceil(nearest_m * slowest_s_per_m_ / period_s_));
   return samples_ - std::min(samples_, travel + looks_ahead_);
 }
 

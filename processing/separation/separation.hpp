@@ -106,7 +106,7 @@ class WaveSeparation {
   double length_m_;
   double period_s_;
   double band_limit_Hz_;
-  double front_speed_m_per_s_;
+  double slowest_s_per_m_ = 0.0;  ///< within the band
   std::size_t samples_;
   std::size_t lead_;
   std::size_t looks_ahead_ = 0;

@@ -21,6 +21,7 @@ Command model_waterfall_command();
 Command fit_command();
 Command compare_command();
 Command diagnose_command();
+Command dispersion_command();
 Command selftest_command();
 Command tour_command();
 Command diagnose_live_command();
@@ -36,6 +37,7 @@ Command force_trigger_command();
 Command shots_command();
 Command get_command();
 Command watch_command();
+Command waves_command();
 Command reload_command();
 Command release_command();
 Command stop_command();
@@ -50,6 +52,8 @@ std::vector<Command> all_commands() {
       identify_specimen_command(),
       plan_command(),
       reduce_command(),
+      waves_command(),
+      dispersion_command(),
       effects_command(),
       model_new_command(),
       model_add_command(),

@@ -1,0 +1,256 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <memory>
+#include <ostream>
+
+#include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/command.hpp"
+#include "clients/cli/reports/reduced_shot.hpp"
+#include "clients/figure/layout.hpp"
+#include "clients/report/svg.hpp"
+#include "clients/terminal/plot.hpp"
+#include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/settings/bench_file.hpp"
+#include "processing/base/bar_model_check.hpp"
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
+#include "processing/waves/wave_table.hpp"
+
+namespace kolsky::cli {
+namespace {
+
+constexpr mode_t kReadableByAll = 0644;
+constexpr std::array kTheories = {WaveTheory::elementary, WaveTheory::love, WaveTheory::exact};
+
+struct Settings {
+  std::string bench;
+  std::optional<std::string> bar;
+  std::optional<std::string> bar_model;
+  std::optional<std::string> dispersion;
+  std::optional<double> highest_Hz;
+  std::optional<std::uint64_t> points;
+  std::optional<std::string> csv;
+  std::optional<std::string> svg;
+};
+
+/// A bar, what it is made of, and how waves go in it by each theory.
+struct Tabulated {
+  std::string bar;
+  std::string bar_model;  ///< for people
+  WaveTheory theory = WaveTheory::exact;
+  std::array<std::vector<WaveRow>, kTheories.size()> tables;
+
+  [[nodiscard]] const std::vector<WaveRow>& table() const {
+    return tables.at(
+        static_cast<std::size_t>(std::ranges::find(kTheories, theory) - kTheories.begin()));
+  }
+};
+
+std::vector<WaveRow> table_of(const Settings& settings, WaveTheory theory, const Bar& bar,
+                              const Compliance& compliance) {
+  constexpr std::uint64_t kPoints = 120;
+  try {
+    return wave_table(theory, bar, compliance,
+                      settings.highest_Hz.value_or(thick_from_Hz(bar, compliance)),
+                      settings.points.value_or(kPoints));
+  } catch (const InputError& error) {
+    throw InputError(
+        std::string("kolsky dispersion: ") + (error.place() == "points" ? "--points" : "--to"),
+        error.problem(), error.mend());
+  }
+}
+
+Tabulated tabulate(const Settings& settings) {
+  constexpr std::uint64_t kMostPoints = 100'000;
+  if (settings.points.value_or(1) > kMostPoints) {
+    throw InputError("kolsky dispersion: --points", "are more than 100000", "give fewer");
+  }
+  const Bench bench = read_bench(settings.bench).bench;
+  Tabulated result;
+  result.bar = settings.bar.value_or("input");
+  if (result.bar == "output" && !bench.output) {
+    throw InputError(settings.bench + ": bars.output", "is missing", "leave out --bar output");
+  }
+  const Bar& bar = result.bar == "output" ? *bench.output : bench.input;
+  std::optional<BarModelFile> model;
+  if (settings.bar_model) {
+    model = read_bar_model(*settings.bar_model);
+    require_holds(*model, bench);
+  }
+  if (settings.dispersion) {
+    result.theory = wave_theory(*settings.dispersion);
+  }
+  if (bar.youngs_modulus_Pa) {
+    result.bar_model = "elastic, modulus from the bench";
+  } else {
+    result.bar_model =
+        model ? model->prior.material.source
+              : assumed_bars(bench).source + ", assumed because no bar model was given";
+  }
+  const auto compliance = compliance_of(bar, model ? model->prior.material : assumed_bars(bench));
+  for (std::size_t i = 0; i < kTheories.size(); ++i) {
+    result.tables.at(i) = table_of(settings, kTheories.at(i), bar, *compliance);
+  }
+  return result;
+}
+
+std::vector<double> column(const std::vector<WaveRow>& table, double WaveRow::*number) {
+  std::vector<double> values;
+  values.reserve(table.size());
+  for (const WaveRow& row : table) {
+    values.push_back(row.*number);
+  }
+  return values;
+}
+
+Panel panel(const Tabulated& result, const std::string& title, const Axis& y,
+            double WaveRow::*number) {
+  Panel panel{title, {"frequency", "Hz"}, y, {}};
+  for (std::size_t i = 0; i < kTheories.size(); ++i) {
+    panel.series.push_back({name_of(kTheories.at(i)),
+                            column(result.tables.at(i), &WaveRow::frequency_Hz),
+                            column(result.tables.at(i), number)});
+  }
+  return panel;
+}
+
+std::array<Panel, 2> panels(const Tabulated& result) {
+  return {panel(result, "phase speed", {"speed", "m/s"}, &WaveRow::phase_speed_m_per_s),
+          panel(result, "attenuation", {"attenuation", "1/m"}, &WaveRow::attenuation_per_m)};
+}
+
+std::string report(const Tabulated& result, const Terminal& terminal) {
+  std::string text = report_row("bar", result.bar + ": " + result.bar_model);
+  text += report_row("waves", name_of(result.theory));
+  text += fmt::format("\n  {:>9}  {:>10}  {:>9}  {:>10}  {:>12}\n", "f [kHz]", "c [m/s]", "α [1/m]",
+                      "k [rad/m]", "mean/surface");
+  constexpr std::size_t kRows = 12;
+  const std::vector<WaveRow>& table = result.table();
+  const std::size_t every = std::max<std::size_t>(1, table.size() / kRows);
+  for (std::size_t n = every - 1; n < table.size(); n += every) {
+    const WaveRow& row = table[n];
+    text += fmt::format("  {:>9.4g}  {:>10.2f}  {:>9.5f}  {:>10.4f}  {:>12.5f}\n",
+                        1e-3 * row.frequency_Hz, row.phase_speed_m_per_s, row.attenuation_per_m,
+                        row.wavenumber_per_m, std::abs(row.mean_over_surface));
+  }
+  constexpr int kColumns = 100;
+  constexpr int kPlotRows = 12;
+  for (const Panel& each : panels(result)) {
+    text +=
+        "\n" + plot_text(each, {std::min(terminal.columns, kColumns), kPlotRows}, terminal.colour);
+  }
+  return text;
+}
+
+struct Column {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// The table as files have it.
+std::vector<Column> columns(const Tabulated& result) {
+  const auto of = [&](const std::string& name, const auto& number) {
+    Column column{name, {}};
+    std::ranges::transform(result.table(), std::back_inserter(column.values), number);
+    return column;
+  };
+  using Row = const WaveRow&;
+  return {
+      of("frequency_Hz", [](Row row) { return row.frequency_Hz; }),
+      of("phase_speed_m_per_s", [](Row row) { return row.phase_speed_m_per_s; }),
+      of("alpha_per_m", [](Row row) { return row.attenuation_per_m; }),
+      of("wavenumber_per_m", [](Row row) { return row.wavenumber_per_m; }),
+      of("mean_over_surface_real", [](Row row) { return row.mean_over_surface.real(); }),
+      of("mean_over_surface_imag", [](Row row) { return row.mean_over_surface.imag(); }),
+      of("stress_over_strain_real_Pa", [](Row row) { return row.stress_over_strain_Pa.real(); }),
+      of("stress_over_strain_imag_Pa", [](Row row) { return row.stress_over_strain_Pa.imag(); })};
+}
+
+JsonValue describe(const Tabulated& result) {
+  JsonObject object{
+      {"bar", result.bar}, {"bar_model", result.bar_model}, {"dispersion", name_of(result.theory)}};
+  for (Column& column : columns(result)) {
+    object.push_back({column.name, std::move(column.values)});
+  }
+  return object;
+}
+
+std::string csv(const Tabulated& result) {
+  const std::vector<Column> all = columns(result);
+  std::string text;
+  for (const Column& column : all) {
+    text += (text.empty() ? "" : ",") + column.name;
+  }
+  for (std::size_t n = 0; n < result.table().size(); ++n) {
+    for (const Column& column : all) {
+      text += fmt::format("{}{:.12g}", &column == &all.front() ? "\n" : ",", column.values[n]);
+    }
+  }
+  return text + "\n";
+}
+
+void write(const std::string& path, const std::string& text) {
+  NewFile file(path);
+  file.write(text);
+  file.publish(kReadableByAll);
+}
+
+int run(const Settings& settings, Context& context) {
+  const Tabulated result = tabulate(settings);
+  if (settings.csv) {
+    write(*settings.csv, csv(result));
+  }
+  if (settings.svg) {
+    const std::array<Panel, 2> both = panels(result);
+    write(*settings.svg, render_svg({"waves in the " + result.bar + " bar",
+                                     {result.bar_model},
+                                     {both.begin(), both.end()}}));
+  }
+  context.out << (context.json ? to_text(describe(result)) + "\n"
+                               : report(result, context.terminal));
+  return kDone;
+}
+
+}  // namespace
+
+Command dispersion_command() {
+  auto settings = std::make_shared<Settings>();
+  Settings& s = *settings;
+  Argument bar = option("--bar", "NAME", "input (default) or output", &s.bar);
+  bar.choices = {"input", "output"};
+  Argument dispersion =
+      option("--dispersion", "THEORY",
+             "which waves are tabulated: exact (default), love or elementary; plots show all",
+             &s.dispersion);
+  dispersion.choices = {"elementary", "love", "exact"};
+  Command command;
+  command.name = "dispersion";
+  command.purpose =
+      "how waves travel in a bench's bar: speed, attenuation, wavenumber by frequency\n"
+      "Of an elastic bar or a bar model: elementary, Love's, and exact waves (Pochhammer and "
+      "Chree,\n"
+      "first mode), with mean over surface strain (what gauges miss) and mean stress over strain.";
+  command.examples =
+      "  kolsky dispersion --bench bench.toml\n"
+      "  kolsky dispersion --bench bench.toml --bar-model pmma.toml --to 60e3 --csv pmma.csv\n"
+      "  kolsky dispersion --bench bench.toml --bar output --svg waves.svg\n";
+  command.arguments = {
+      needed("--bench", "B.toml", "bench file with the bar", &s.bench),
+      bar,
+      option("--bar-model", "M.toml", "material file of viscoelastic bars; else the paper's PMMA",
+             &s.bar_model),
+      dispersion,
+      option("--to", "HZ",
+             "highest frequency, in Hz; by default where the radius is 0.3 wavelengths",
+             &s.highest_Hz),
+      option("--points", "N", "how many frequencies, evenly; 120 by default", &s.points),
+      option("--csv", "FILE", "the whole table to write", &s.csv),
+      option("--svg", "FILE", "a page of plots to write", &s.svg)};
+  command.run = [settings](Context& context) { return run(*settings, context); };
+  return command;
+}
+
+}  // namespace kolsky::cli

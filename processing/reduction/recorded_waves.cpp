@@ -1,0 +1,225 @@
+#include "processing/reduction/recorded_waves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "processing/base/bar_model_check.hpp"
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
+#include "processing/reduction/first_pulse.hpp"
+#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/requested.hpp"
+#include "processing/reduction/stations.hpp"
+#include "processing/waves/band_limit.hpp"
+#include "processing/waves/seen_modes.hpp"
+#include "processing/waves/transform.hpp"
+
+namespace kolsky {
+
+namespace {
+
+const Bar& bar_named(const Bench& bench, const std::string& name) {
+  if (name == "input") {
+    return bench.input;
+  }
+  if (name == "output" && bench.output) {
+    return *bench.output;
+  }
+  throw InputError("bar", "\"" + name + "\" is not a bar of this bench",
+                   bench.output ? "give input or output" : "give input: there is no other");
+}
+
+std::vector<std::size_t> channels_on(const Bench& bench, const std::string& bar) {
+  std::vector<std::size_t> channels;
+  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
+    if (bench.gauges[i].bar == bar) {
+      channels.push_back(i);
+    }
+  }
+  return channels;
+}
+
+/// What is known of a bar's ends. The start is struck, or at the specimen.
+FreeEnds ends_of(const Bench& bench, const Bar& bar, const RecordedWavesOptions& options) {
+  const bool at_specimen = bench.kind == BenchKind::shpb && options.bar == "input";
+  if (at_specimen || options.gauges_only) {
+    return {};
+  }
+  const bool matched = bar.far_end == FarEnd::matched;
+  return {.start = false, .end = !matched, .end_matched = matched};
+}
+
+/// The records of one bar's gauges, silent before the first of their pulses.
+struct Records {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> strains;
+  std::vector<double> noise_rms;
+  std::vector<SeparationGauge> gauges;
+  std::size_t quiet = 0;
+  std::size_t first = 0;  ///< of the gauges: which sees the pulse first
+
+  Records(const Shot& shot, const std::string& bar) {
+    const std::vector<std::size_t> channels = channels_on(shot.bench, bar);
+    find_quiet(shot, channels, bar);
+    for (const std::size_t channel : channels) {
+      names.push_back(shot.channels[channel].gauge);
+      auto& strain = strains.emplace_back(shot.samples());
+      read_station(shot, Station{.channels = {channel}}, quiet, strain);
+      noise_rms.push_back(quiet_before(strain, quiet).noise_rms);
+      std::fill_n(strain.begin(), quiet, 0.0);
+    }
+    // A converter of few bits makes no noise while nothing moves: then all count alike.
+    const bool all_noisy = std::ranges::all_of(noise_rms, [](double rms) { return rms > 0.0; });
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      gauges.push_back({.position_m = shot.bench.gauges[channels[j]].position_m,
+                        .values = strains[j],
+                        .noise_rms = all_noisy ? noise_rms[j] : 0.0});
+    }
+  }
+
+ private:
+  void find_quiet(const Shot& shot, const std::vector<std::size_t>& channels,
+                  const std::string& bar) {
+    std::vector<double> readings(shot.samples());
+    quiet = shot.samples();
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      read_raw_station(shot, Station{.channels = {channels[j]}}, readings);
+      const auto pulse = first_pulse(readings, shot.rate.Hz());
+      if (pulse && pulse->quiet < quiet) {
+        quiet = pulse->quiet;
+        first = j;
+      }
+    }
+    if (quiet == shot.samples()) {
+      throw InputError("record",
+                       channels.empty() ? "has no gauge on the " + bar + " bar"
+                                        : "shows no pulse on the " + bar + " bar's gauges",
+                       channels.empty() ? "give a bar that has gauges"
+                                        : "give a shot's whole record, from before the impact");
+    }
+  }
+};
+
+/// Where the bar's gauges go blind, `highest_Hz` where they do not up to there.
+double blind_from(const Bar& bar, const Compliance& compliance, WaveTheory theory,
+                  double highest_Hz) {
+  constexpr std::size_t kSteps = 512;
+  std::vector<Complex> path;
+  path.reserve(kSteps);
+  for (std::size_t n = 1; n <= kSteps; ++n) {
+    path.emplace_back(0.0, 2.0 * std::numbers::pi * highest_Hz * static_cast<double>(n) / kSteps);
+  }
+  return blind_from_Hz(bar_modes(theory, bar, compliance, path), path);
+}
+
+/// A record that ends while waves ring jumps there to nothing, which is in all frequencies: its
+/// last tenth is let go gradually.
+std::vector<double> faded(std::span<const double> record) {
+  std::vector<double> gradual(record.begin(), record.end());
+  const std::size_t tail = record.size() / 10;
+  for (std::size_t n = 0; n < tail; ++n) {
+    const double left = static_cast<double>(tail - n) / static_cast<double>(tail + 1);
+    gradual[record.size() - tail + n] *= 0.5 - 0.5 * std::cos(std::numbers::pi * left);
+  }
+  return gradual;
+}
+
+double band_limit_of(const Shot& shot, const Records& records, const Bar& bar,
+                     const Compliance& compliance, const RecordedWavesOptions& options) {
+  const double nyquist_Hz = shot.rate.Hz() / 2.0;
+  const double blind_Hz =
+      blind_from(bar, compliance, options.theory, options.band_limit_Hz.value_or(nyquist_Hz));
+  if (options.band_limit_Hz) {
+    require_band_of_record(options.band_limit_Hz, shot.rate.Hz());
+    require_band_seen(*options.band_limit_Hz, blind_Hz);
+    return *options.band_limit_Hz;
+  }
+  const std::vector<double> pulse =
+      faded(std::span(records.strains[records.first]).subspan(records.quiet));
+  const DampedTransform transform(shot.samples(), shot.rate.period_s());
+  BandLimit band(transform, pulse.size());
+  const double limit_Hz = band.from_noise(pulse, records.noise_rms[records.first]);
+  return blind_Hz < nyquist_Hz ? std::min(limit_Hz, highest_band_limit_Hz(blind_Hz)) : limit_Hz;
+}
+
+/// Root of the mean square of what the waves leave of each record, from the pulse to `known`.
+std::vector<GaugeLeft> what_is_left(const Records& records, const WaveSeparation& separation,
+                                    double period_s, double band_limit_Hz, std::size_t known) {
+  std::vector<GaugeLeft> all;
+  DampedTransform transform(records.strains.front().size(), period_s);
+  BandLimit band(transform, 0);
+  std::vector<Complex> spectrum(BandLimit::bins_within(transform, band_limit_Hz));
+  std::vector<double> filtered(records.strains.front().size());
+  for (std::size_t j = 0; j < records.gauges.size(); ++j) {
+    transform.forward(records.strains[j], spectrum);
+    band.apply(band_limit_Hz, spectrum);
+    transform.inverse(spectrum, filtered);
+    const SeparatedWaves waves = separation.at(records.gauges[j].position_m);
+    double squares = 0.0;
+    for (std::size_t n = records.quiet; n < known; ++n) {
+      const double left = filtered[n] - waves.right_going[n] - waves.left_going[n];
+      squares += left * left;
+    }
+    const auto counted = static_cast<double>(std::max<std::size_t>(1, known - records.quiet));
+    all.push_back({records.names[j], std::sqrt(squares / counted),
+                   records.noise_rms[j] * band.noise_share(band_limit_Hz)});
+  }
+  return all;
+}
+
+std::vector<double> places_of(const RecordedWavesOptions& options, const Bar& bar) {
+  if (options.positions_m.empty()) {
+    return {0.0, bar.length_m};
+  }
+  for (const double position_m : options.positions_m) {
+    if (!(position_m >= 0.0 && position_m <= bar.length_m)) {
+      throw InputError("position", "at " + in_words(position_m, "m") + " is off the bar",
+                       "give metres from the bar's start, at most " + in_words(bar.length_m, "m"));
+    }
+  }
+  return options.positions_m;
+}
+
+}  // namespace
+
+RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& options) {
+  const Bar& bar = bar_named(shot.bench, options.bar);
+  const std::vector<double> places = places_of(options, bar);
+  const Records records(shot, options.bar);
+  const std::optional<Material>& given = options.bar_model ? options.bar_model : shot.bar_model;
+  const auto compliance = compliance_of(bar, given ? *given : assumed_bars(shot.bench));
+  const FreeEnds ends = ends_of(shot.bench, bar, options);
+  const double period_s = shot.rate.period_s();
+
+  RecordedWaves all;
+  all.gauges = records.names;
+  all.end_known = ends.end || ends.end_matched;
+  all.band_limit_Hz = band_limit_of(shot, records, bar, *compliance, options);
+  all.quiet = records.quiet;
+  const WaveSeparation separation(bar, *compliance, options.theory, records.gauges, ends, period_s,
+                                  all.band_limit_Hz);
+  all.blind =
+      blind_frequencies(bar, *compliance, options.theory, records.gauges, ends, all.band_limit_Hz);
+  all.known = shot.samples();
+  // What lies beyond the record comes back through the filter.
+  const auto smear =
+      static_cast<std::size_t>(std::ceil(BandLimit::smear_s(all.band_limit_Hz) * shot.rate.Hz()));
+  for (const double position_m : places) {
+    const std::size_t told = separation.known(position_m);
+    all.known = std::min(all.known, told - std::min(told, smear));
+    all.places.push_back(
+        {position_m, separation.at(position_m), separation.stress_noise_Pa(position_m, all.quiet)});
+  }
+  if (all.known <= all.quiet) {
+    throw InputError("record", "ends before it tells the waves at the places asked for",
+                     "record for longer, or ask for places nearer to a gauge");
+  }
+  if (records.gauges.size() > (all.end_known ? 1U : 2U)) {
+    all.left = what_is_left(records, separation, period_s, all.band_limit_Hz, all.known);
+  }
+  return all;
+}
+
+}  // namespace kolsky
