@@ -1,17 +1,12 @@
 #include "daemon/shots/summary.hpp"
 
-#include <algorithm>
-
 #include "processing/base/error.hpp"
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/requested.hpp"
 
 namespace kolsky {
 
 namespace {
-
-double largest(const std::vector<double>& values) {
-  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
-}
 
 const char* name_of(Verdict verdict) {
   switch (verdict) {
@@ -50,8 +45,9 @@ CatalogueEntry summarise(const Shot& shot, const Reduction& reduction, const std
   entry.verdict = name_of(reduction.quality.verdict());
   entry.reducible = reduction.quality.reducible;
   entry.reason = reduction.quality.reason;
-  entry.peak_stress_Pa = largest(reduction.stress_Pa);
-  entry.peak_strain = largest(reduction.strain);
+  const LoopSummary loop = summarise(reduction);
+  entry.peak_stress_Pa = loop.peak_stress_Pa;
+  entry.peak_strain = loop.peak_strain;
   if (reduction.ball) {
     entry.peak_force_N = reduction.ball->peak_force_N;
     entry.restitution = reduction.ball->restitution().value_or(Measured{});

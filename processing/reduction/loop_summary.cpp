@@ -82,20 +82,28 @@ bool push_hidden(const Quality& quality) {
   return overlap != nullptr && overlap->verdict == Verdict::fail;
 }
 
-Loading loading_of(const Reduction& r) {
-  const std::size_t pass = first_pass(r, 1.0);
-  const auto stress_Pa = std::span(r.stress_Pa).first(pass);
-  const auto strain = std::span(r.strain).first(pass);
+/// A history counted positive in the sense of the loading.
+std::vector<double> in_sense(std::span<const double> history, double sense) {
+  std::vector<double> turned(history.begin(), history.end());
+  std::ranges::for_each(turned, [sense](double& value) { value *= sense; });
+  return turned;
+}
+
+Loading loading_of(const Reduction& r, double sense) {
+  const std::size_t pass = first_pass(r, sense);
+  const std::vector<double> stress_Pa = in_sense(std::span(r.stress_Pa).first(pass), sense);
+  const std::vector<double> strain = in_sense(std::span(r.strain).first(pass), sense);
   if (pass == 0) {
     return {0, 0, "the specimen is nowhere loaded"};
   }
   const double peak_Pa = stress_Pa[index_of_largest(stress_Pa)];
   const double most = strain[index_of_largest(strain)];
   if (peak_Pa <= 0.0) {
-    return {0, 0, "the stress is nowhere compressive"};
+    return {0, 0, "there is nowhere any stress"};
   }
   if (most <= 0.0) {
-    return {0, 0, "the specimen is nowhere shortened"};
+    return {0, 0,
+            formatted("the specimen is nowhere %s", sense < 0.0 ? "lengthened" : "shortened")};
   }
   // A step may begin so; of a hidden push it is what the separation made of it.
   if (push_hidden(r.quality) && stress_Pa.front() > kRisen * peak_Pa) {
@@ -128,12 +136,13 @@ LoopSummary summarise(const Reduction& reduction) {
   if (reduction.stress_Pa.empty()) {
     return {.no_loading = "there are no histories"};
   }
-  const std::size_t peak = index_of_largest(reduction.stress_Pa);
+  const double sense = sense_of(reduction.stress_Pa);
+  const std::size_t peak = index_of_largest(in_sense(reduction.stress_Pa, sense));
   LoopSummary summary;
   summary.peak_stress_Pa = reduction.stress_Pa[peak];
   summary.strain_at_peak = reduction.strain[peak];
-  summary.peak_strain = reduction.strain[index_of_largest(reduction.strain)];
-  const Loading loading = loading_of(reduction);
+  summary.peak_strain = reduction.strain[index_of_largest(in_sense(reduction.strain, sense))];
+  const Loading loading = loading_of(reduction, sense);
   if (!loading.missing.empty()) {
     summary.no_loading = loading.missing;
     if (push_hidden(reduction.quality)) {

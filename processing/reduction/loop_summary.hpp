@@ -6,7 +6,8 @@
 
 namespace kolsky {
 
-/// The numbers of a loop that go into one line.
+/// The numbers of a loop that go into one line. Largest in the sense of the loading: of a specimen
+/// that is pulled, stress and strain are negative.
 struct LoopSummary {
   double peak_stress_Pa = 0.0;
   double strain_at_peak = 0.0;  ///< at the peak stress

@@ -75,10 +75,11 @@ class Pass {
       fill_histories();
     }
     fill_strain();
-    judge_quality();
+    // The checks go by the sense in which the stress loads.
     set_stress(options_.stress, options_.corrections, *shot_.bench.specimen,
                std::span<const double>(front_rate_per_s_).first(reduction_.time_s.size()),
                reduction_);
+    judge_quality();
     reduction_.assumed_from_s = assumed_from_s();
     return std::move(reduction_);
   }

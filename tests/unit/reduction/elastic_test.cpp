@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "processing/base/error.hpp"
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/reduction/validity.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/unit/reduction/solved_bench.hpp"
 
@@ -144,6 +146,23 @@ TEST(ElasticReduction, TensionIsCompressionWithTheSignTurned) {
   expect_truth(stretched, records.truth, 5e-4);
   EXPECT_LT(*std::min_element(stretched.strain.begin(), stretched.strain.end()), -0.01);
   EXPECT_NEAR(stretched.arrival_s, compressed.arrival_s, 1e-9);
+  // What is said of both is the same but for the sign.
+  const LoopSummary shortened = summarise(compressed);
+  const LoopSummary lengthened = summarise(stretched);
+  EXPECT_EQ(lengthened.no_loading, "");
+  EXPECT_NEAR(lengthened.peak_stress_Pa, -shortened.peak_stress_Pa,
+              1e-3 * shortened.peak_stress_Pa);
+  EXPECT_NEAR(lengthened.peak_strain, -shortened.peak_strain, 1e-3 * shortened.peak_strain);
+  EXPECT_NEAR(lengthened.loading_s, shortened.loading_s, 1e-6);
+  ASSERT_EQ(stretched.quality.checks.size(), compressed.quality.checks.size());
+  for (const Check& check : compressed.quality.checks) {
+    const Check& turned = check_of(stretched, check.name);
+    EXPECT_EQ(turned.verdict, check.verdict) << check.name << ": " << turned.text;
+    EXPECT_NEAR(turned.value, check.value, 2e-3 * std::max(1.0, std::abs(check.value)))
+        << check.name << ": " << turned.text;
+  }
+  EXPECT_TRUE(quotable_part(compressed).any);
+  EXPECT_TRUE(quotable_part(stretched).any);
 }
 
 TEST(ElasticReduction, ABenchThatCountsTensionPositiveGivesTheSameCompression) {
