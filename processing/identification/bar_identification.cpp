@@ -100,6 +100,13 @@ BarTheory theory_of(const BarFit& fit) {
   return {fit.theory, fit.solid, fit.far_end, fit.lossless};
 }
 
+/// Whether there is a loss, and not only what noise makes of one.
+bool loss_shows(const BarFit& fit) {
+  constexpr double kDetermined = 0.3;
+  const FittedNumber& E2 = fit.parameters[1];
+  return !fit.lossless && E2.sd <= kDetermined * E2.value;
+}
+
 /// Whether the loss is so clear that to fit a bar without any would be a waste.
 bool loss_stands_out(const BarFit& fit) {
   const FittedNumber& E2 = fit.parameters[1];
@@ -143,8 +150,7 @@ void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warn
   if (result.fit.solid != SolidKind::three_element) {
     warn_of_misfit(result.fit, name_of(result.fit.solid), warnings);
   }
-  const FittedNumber& E2 = three.parameters[1];
-  if (three.lossless || E2.sd > 0.3 * E2.value) {
+  if (!loss_shows(three)) {
     warnings.push_back(result.spectrum.mean_loss.gains()
                            ? "E2 and eta2 are not determined: they stand for a loss, and there is "
                              "none"
@@ -391,7 +397,8 @@ std::vector<SolidKind> solids_to_try(const BarIdentificationOptions& options,
   for (const SolidKind solid : {SolidKind::two_kelvin, SolidKind::four_element_fluid,
                                 SolidKind::fractional, SolidKind::three_kelvin}) {
     const bool asked = options.solid == solid;
-    const bool compared = (options.compare_solids || !options.solid) && !three_element.lossless &&
+    // Families differ in how they lose: of a bar that loses nothing none is better than another.
+    const bool compared = (options.compare_solids || !options.solid) && loss_shows(three_element) &&
                           solid != SolidKind::three_kelvin;
     if (asked || compared) {
       solids.push_back(solid);
@@ -417,7 +424,8 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
                      ? *asked
                      : fit_bar(data, {three_element.theory, *options.solid, three_element.far_end});
   }
-  if (!(options.compare_solids || !options.solid) || three_element.lossless) {
+  if (!(options.compare_solids || !options.solid) || result.three_element.lossless ||
+      !loss_shows(three_element)) {
     return;
   }
   std::vector<const BarFit*>& over_solids = solids.others;
@@ -458,7 +466,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   result.two_passes = data.two_passes();
   const BarFit* three_element = choose_three_elements(options, data, explanations, result);
   choose_solid(options, data, *three_element, explanations, result);
-  if (three_element->lossless) {
+  if (result.three_element.lossless) {
     for (BarFit* fit : {&result.three_element, &result.fit}) {
       for (std::size_t i = 1; fit->lossless && i < fit->parameters.size(); ++i) {
         fit->parameters[i].sd = fit->parameters[i].value;

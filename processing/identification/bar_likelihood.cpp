@@ -169,6 +169,22 @@ double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
                   data.judged_s() / static_cast<double>(kMostReturns));
 }
 
+/// Normal numbers of variances v scatter in their squares' sum as (sum v)^2 / sum v^2 of one
+/// variance do. Each v is known by what the shots do not have in common, n - 1 squares, so that
+/// their own squares are too large by (n + 1) / (n - 1).
+double count_as(const Eigen::Ref<const Eigen::MatrixXd>& own,
+                const Eigen::Ref<const Eigen::VectorXd>& alike) {
+  const auto numbers = static_cast<double>(own.rows());
+  const auto apart = static_cast<double>(own.cols()) - 1.0;
+  if (apart < 1.0) {
+    return numbers;
+  }
+  const Eigen::VectorXd variances =
+      (own.rowwise().squaredNorm() - alike.cwiseAbs2()).cwiseMax(0.0) / apart;
+  const double squares = variances.squaredNorm() * apart / (apart + 2.0);
+  return squares > 0.0 ? std::min(numbers, std::pow(variances.sum(), 2) / squares) : numbers;
+}
+
 }  // namespace
 
 BarLikelihood::BarLikelihood(const BarData& data, BarModel model)
@@ -723,7 +739,8 @@ std::vector<OctaveLeft> BarLikelihood::left_over() {
     list.push_back(
         {frequency_Hz(firsts[i]), frequency_Hz(firsts[i + 1] - 1), numbers,
          own.middleRows(begin, count).squaredNorm() / (numbers * static_cast<double>(shots)),
-         alike.segment(begin, count).squaredNorm() / numbers});
+         alike.segment(begin, count).squaredNorm() / numbers,
+         count_as(own.middleRows(begin, count), alike.segment(begin, count))});
   }
   return list;
 }

@@ -31,7 +31,7 @@ std::optional<CommonMisfit> common_misfit(const std::vector<OctaveLeft>& left, s
   for (const OctaveLeft& octave : left) {
     const double power = octave.in_common / octave.apart(shots);
     const double deviations = normal_of_variance_ratio(
-        power, octave.numbers, octave.numbers * (static_cast<double>(shots) - 1.0));
+        power, octave.count_as, octave.count_as * (static_cast<double>(shots) - 1.0));
     if (deviations > kBeyondChance && (!worst || deviations > worst->deviations)) {
       worst = CommonMisfit{octave.low_Hz, octave.high_Hz, power, deviations};
     }

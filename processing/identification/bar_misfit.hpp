@@ -14,6 +14,9 @@ struct OctaveLeft {
   double numbers = 0.0;    ///< that are judged of each shot
   double of_all = 1.0;     ///< mean over the shots
   double in_common = 1.0;  ///< of what they have in common, as one shot (see BarData::all_as_one)
+  /// As how many numbers of one variance they scatter: fewer where weights are not the noise's
+  /// everywhere, as where a bar without loss rings in what its first gauge does not see.
+  double count_as = 0.0;
 
   /// Of what they do not have in common; of a single shot there is no such thing.
   [[nodiscard]] double apart(std::size_t shots) const;

@@ -279,14 +279,21 @@ Explanations::Solids Explanations::solids(const BarFit& three_element,
   }
   Solids result;
   const BarFit start = three_element;
+  std::optional<BarFit> to_end;
   // The longest first.
   workers_.run(1 + entries.size(), [&](std::size_t index, std::size_t /*worker*/) {
     if (index == 0) {
-      result.three_element = searched_to_end(held);
+      to_end = if_it_ends(held);
     } else {
       compare_from(*entries[index - 1], start, weights);
     }
   });
+  if (!to_end) {
+    result.three_element = without_loss(held.theory);
+    result.others.resize(entries.size());
+    return result;
+  }
+  result.three_element = std::move(*to_end);
   for (const Entry* entry : entries) {
     result.others.push_back(entry->fit ? &*entry->fit : nullptr);
   }
@@ -344,6 +351,26 @@ const BarFit* Explanations::finished(const BarTheory& theory) {
     entry.failed = error.problem();
     return nullptr;
   }
+}
+
+/// Nothing where a loss that does not stand out of the noise is sought without end.
+std::optional<BarFit> Explanations::if_it_ends(Entry& entry) {
+  try {
+    return searched_to_end(entry);
+  } catch (const InputError&) {
+    if (!may_be_elastic(entry.theory)) {
+      throw;
+    }
+    return std::nullopt;
+  }
+}
+
+BarFit Explanations::without_loss(BarTheory theory) {
+  theory.lossless = true;
+  if (at(theory) == nullptr) {
+    throw InputError("fit", find(theory)->failed, "try another --dispersion or a narrower band");
+  }
+  return searched_to_end(*find(theory));
 }
 
 BarFit Explanations::searched_to_end(Entry& entry) {

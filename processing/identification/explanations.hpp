@@ -48,7 +48,8 @@ class Explanations {
   [[nodiscard]] const BarFit* at_if_better(const BarTheory& theory);
 
   /// Three elements searched to the end, with the shots' own estimates, and other families of
-  /// solids from where they are at their best, to compare.
+  /// solids from where they are at their best, to compare. Where that search has no end, for there
+  /// is no loss to find, an elastic bar, and nothing to compare it with.
   struct Solids {
     BarFit three_element;
     std::vector<const BarFit*> others;
@@ -91,6 +92,8 @@ class Explanations {
   void compare_from(Entry& entry, const BarFit& three_element,
                     const BarLikelihood::Weights& weights);
   [[nodiscard]] BarFit searched_to_end(Entry& entry);
+  [[nodiscard]] std::optional<BarFit> if_it_ends(Entry& entry);
+  [[nodiscard]] BarFit without_loss(BarTheory theory);
   void compare(Entry& entry, const std::function<void(BarSearch&)>& closely);
   /// By another search, where that ends better.
   using Start = std::function<std::unique_ptr<BarSearch>(const BarData&, const BarTheory&)>;

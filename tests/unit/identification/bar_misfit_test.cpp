@@ -22,7 +22,7 @@ std::vector<OctaveLeft> drawn(std::size_t shots, double wrong, std::mt19937_64& 
     std::chi_squared_distribution<double> common(numbers);
     std::chi_squared_distribution<double> apart(numbers * (static_cast<double>(shots) - 1.0));
     OctaveLeft octave;
-    octave.numbers = numbers;
+    octave.numbers = octave.count_as = numbers;
     octave.in_common = (1.0 + wrong) * common(random) / numbers;
     octave.of_all = (octave.in_common + apart(random) / numbers) / static_cast<double>(shots);
     left.push_back(octave);
@@ -49,7 +49,7 @@ TEST(BarMisfit, NoiseIsNotTakenForMisfitNorMisfitForNoise) {
 TEST(BarMisfit, OfOneShotNothingIsSaid) {
   std::mt19937_64 random(3);
   OctaveLeft octave;
-  octave.numbers = 12.0;
+  octave.numbers = octave.count_as = 12.0;
   octave.of_all = octave.in_common = 30.0;
   EXPECT_FALSE(common_misfit({octave}, 1).has_value());
 }
