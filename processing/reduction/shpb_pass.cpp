@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/reduction/corrections.hpp"
 #include "processing/reduction/formatted.hpp"
 #include "processing/reduction/loop_summary.hpp"
@@ -197,12 +199,29 @@ class Pass {
     const double blind_from_Hz = bars_.blind_from_Hz(t_, bins_);
     if (options_.band_limit_Hz) {
       require_band_seen(limit_Hz, blind_from_Hz);
+      require_band_of_pulse(limit_Hz);
     } else {
       limit_Hz = std::min(limit_Hz, highest_band_limit_Hz(blind_from_Hz));
       bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
     }
     reduction_.band_limit_Hz = limit_Hz;
     band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);
+  }
+
+  /// Below that the filter mixes the pulse with the specimen's answer to it, and what is carried
+  /// back with it grows without bounds.
+  void require_band_of_pulse(double limit_Hz) const {
+    const double alone_s = (static_cast<double>(split_) - gauge_foot_) * period_s_;
+    if (BandLimit::smear_s(limit_Hz) > alone_s) {
+      throw InputError(
+          "band_limit_Hz",
+          formatted("%s is too low: a filter with that limit reaches over %.0f us, and %s sees the "
+                    "pulse alone for %.0f us",
+                    in_words(limit_Hz, "Hz").c_str(), 1e6 * BandLimit::smear_s(limit_Hz),
+                    first_gauge().c_str(), 1e6 * alone_s),
+          formatted("give at least %.0f Hz",
+                    std::ceil(limit_Hz * BandLimit::smear_s(limit_Hz) / alone_s)));
+    }
   }
 
   /// All of a spectrum that the band limit leaves.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -96,6 +97,18 @@ std::string bar_in_words(const Told& told) {
          doubts_in_brackets(*given, told.shot);
 }
 
+/// What was asked for is named as it was given, all else as the capture's.
+InputError as_given(const InputError& error, const std::string& capture) {
+  constexpr std::array<std::pair<const char*, const char*>, 3> kOptions = {
+      {{"position", "--at"}, {"band_limit_Hz", "--band-limit"}, {"bar", "--bar"}}};
+  for (const auto& [key, option] : kOptions) {
+    if (error.place() == key) {
+      return {std::string("kolsky waves: ") + option, error.problem(), error.mend()};
+    }
+  }
+  return error.inside(capture);
+}
+
 Told tell(const Settings& settings) {
   Told told;
   std::optional<BarModelFile> bars;
@@ -112,7 +125,7 @@ Told tell(const Settings& settings) {
   try {
     told.waves = recorded_waves(told.shot, told.options);
   } catch (const InputError& error) {
-    throw error.inside(settings.capture);
+    throw as_given(error, settings.capture);
   }
   told.bar_model = bar_in_words(told);
   return told;

@@ -245,6 +245,8 @@ TEST_P(FiniteElementShots, TellHowTheOutputBarsFaceMoves) {
   EXPECT_NE(text.out.find("told apart by"), std::string::npos) << text.out << text.err;
   EXPECT_TRUE(scene::refused(scene::kolsky({"waves", capture_, "--at", "0"}), {"two gauges"}));
   EXPECT_TRUE(scene::refused(scene::kolsky({"waves", capture_, "--at", "x"}), {"--at", "\"x\""}));
+  EXPECT_TRUE(scene::refused(scene::kolsky({"waves", capture_, "--bar", "output", "--at", "9"}),
+                             {"--at", "9 m"}));
 }
 
 // A person who does not ask for it is told that time alone does not part these waves, and what

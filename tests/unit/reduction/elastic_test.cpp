@@ -273,6 +273,20 @@ TEST(ElasticReduction, ABandBelowThePulseLeavesItsArrivalAsFarOffAsItSays) {
   }
 }
 
+TEST(ElasticReduction, ABandThatHoldsNoPulseIsRefused) {
+  const ElasticShpb model;
+  const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 1);
+  ReductionOptions options;
+  for (const double limit_Hz : {1.0, 100.0, 1e3}) {
+    options.band_limit_Hz = limit_Hz;
+    EXPECT_THROW((void)Reducer(options).reduce(shot), InputError) << limit_Hz;
+  }
+  options.band_limit_Hz = 5e3;
+  for (const double stress_Pa : Reducer(options).reduce(shot).stress_Pa) {
+    ASSERT_TRUE(std::isfinite(stress_Pa));
+  }
+}
+
 TEST(ElasticReduction, TheSameShotGivesTheSameBitsWhateverCameBefore) {
   const ElasticShpb model;
   const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 7);
