@@ -13,6 +13,7 @@
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/criticism/records/ball_gate.hpp"
+#include "processing/criticism/records/lost_samples.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/ball/ball_flight.hpp"
 #include "processing/reduction/first_pulse.hpp"
@@ -325,6 +326,14 @@ std::string bad_data(const Shot& shot) {
   if (pulse->quiet < kFewestQuiet) {
     return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
            " of at least " + std::to_string(kFewestQuiet);
+  }
+  for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
+    if (const auto lost = lost_samples(readings_of(shot.channels[j]), pulse->quiet)) {
+      return "gauge " + shot.channels[j].gauge + " jumps away and back over " +
+             std::to_string(lost->count) + (lost->count == 1 ? " sample" : " samples") + " from " +
+             std::to_string(lost->first) +
+             " on: strain does not, the digitiser lost what was there";
+    }
   }
   return shot.bench.kind == BenchKind::impact ? no_ball_does(shot) : std::string();
 }

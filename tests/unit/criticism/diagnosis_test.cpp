@@ -634,6 +634,20 @@ TEST(BadData, IsNotARoundTopInCoarseSteps) {
   EXPECT_EQ(bad_data(shot), "");
 }
 
+TEST(BadData, IsASampleThatWasLost) {
+  Made made = make(83, {});
+  Shot& shot = made.shots.front();
+  std::vector<std::int32_t>& codes = shot.channels[1].codes;
+  ASSERT_EQ(bad_data(shot), "");
+  const auto top =
+      std::ranges::max_element(codes, {}, [](std::int32_t code) { return std::abs(code); });
+  *top = 0;
+  const std::string said = bad_data(shot);
+  EXPECT_NE(said.find("over 1 sample from " + std::to_string(top - codes.begin())),
+            std::string::npos)
+      << said;
+}
+
 /// A pulse of flat top between edges of 25 samples, in codes, at whose end noise shows.
 void put_trapezoid(std::vector<std::int32_t>& codes, double height) {
   for (std::size_t n = 0; n < codes.size(); ++n) {
