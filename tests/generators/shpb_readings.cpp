@@ -108,7 +108,8 @@ Strains march(const ShpbWorld& world, const TrueShot& shot, const Mesh& mesh,
     output.advance();
     input.close_left(stress_of(shot.source, source, static_cast<double>(n) * out.step_s));
     contact->close(input, output);
-    output.close_right(0.0);
+    // A dashpot that takes r/2 of what a wall would: all but r of the wave comes back.
+    output.close_right(0.5 * base.end_r.value_or(0.0) * output.right().free);
     for (std::size_t i = 0; i < stations.size(); ++i) {
       out.history[i].push_back(stations[i].first->strain_at(stations[i].second));
     }
@@ -218,8 +219,8 @@ void plant(ShpbWorld& world, const HiddenEffect& effect) {
     world.output_length_m += effect.strength;
     return;
   }
-  if (effect.id == "end-reflection" || effect.id == "geometric-dispersion" ||
-      effect.id == "bending" || effect.id == "x-clamp" || effect.id == "x-taper") {
+  if (effect.id == "geometric-dispersion" || effect.id == "bending" || effect.id == "x-clamp" ||
+      effect.id == "x-taper") {
     throw InputError("--effect " + effect.id, "is not made on split bars yet",
                      "take a bar campaign");
   }
@@ -273,6 +274,7 @@ std::vector<double> key_of(const ShpbWorld& world) {
                           world.base.material.density_kg_m3,
                           world.base.material.poisson_ratio,
                           world.output_length_m,
+                          world.base.end_r.value_or(0.0),
                           world.base.timing.window_s(),
                           world.base.timing.knot_s(),
                           s.length_m,

@@ -65,7 +65,7 @@ struct ShpbNumerics {
 };
 
 /// Both bars by characteristics with the specimen between them solved at every step; free outer
-/// ends.
+/// ends, or at the output bar's a dashpot that takes end_r of a wave.
 [[nodiscard]] Readings shpb_readings(const ShpbWorld& world, const ShpbNumerics& numerics = {},
                                      std::vector<SpecimenHistory>* histories = nullptr);
 

@@ -12,6 +12,14 @@
 namespace kolsky::cli {
 namespace {
 
+std::vector<std::string> kinds_of(const EffectAbout& about) {
+  std::vector<std::string> kinds;
+  for (const BenchKind kind : about.kinds) {
+    kinds.push_back(name_of(kind));
+  }
+  return kinds;
+}
+
 JsonValue describe(const EffectAbout& about) {
   JsonList parameters;
   for (const EffectParameter& parameter : about.parameters) {
@@ -26,15 +34,11 @@ JsonValue describe(const EffectAbout& about) {
                    {"typical", parameter.typical},
                    {"auxiliary", parameter.auxiliary()}});
   }
-  std::vector<std::string> kinds;
-  for (const BenchKind kind : about.kinds) {
-    kinds.push_back(name_of(kind));
-  }
   return JsonObject{{"id", about.id},
                     {"stage", kolsky::name_of(about.stage)},
                     {"definition", about.definition},
                     {"reference", about.reference},
-                    {"kinds", kinds},
+                    {"kinds", kinds_of(about)},
                     {"per_gauge", about.per_gauge},
                     {"base", about.base},
                     {"parameters", std::move(parameters)}};
@@ -44,6 +48,14 @@ std::string list_of(const std::vector<double>& values) {
   std::string list;
   for (const double value : values) {
     list += (list.empty() ? "" : ", ") + fmt::format("{:g}", value);
+  }
+  return list;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) {
+    list += (list.empty() ? "" : ", ") + word;
   }
   return list;
 }
@@ -71,7 +83,8 @@ std::string table() {
     for (const EffectParameter& p : about.parameters) {
       text += parameter_text(p);
     }
-    text += about.reference.empty() ? "" : "    " + about.reference + "\n";
+    text += "    models of kind " + joined(kinds_of(about)) +
+            (about.reference.empty() ? "" : "; " + about.reference) + "\n";
   }
   std::string text;
   for (const auto& [stage, own] : stages) {
@@ -101,7 +114,7 @@ Command effects_command() {
   command.purpose =
       "the library of effects that a model may hold\n"
       "Each with the stage it acts at, its parameters with unit, bounds and the value at which it\n"
-      "is not there, and its reference.";
+      "is not there, the kinds of models that may hold it, and its reference.";
   command.examples = "  kolsky effects\n  kolsky effects --json\n";
   command.run = [](Context& context) { return run(context); };
   return command;

@@ -175,6 +175,19 @@ Diagnosis diagnosed_split(const testing::Campaign& truth) {
   return diagnose(study, filed_split_bar(truth), {});
 }
 
+// The output bar's far end is free in the paper's model; it may as well be glued, or stand at a
+// stop.
+TEST(Diagnosis, NamesAFarEndOfTheOutputBarThatKeepsSomeOfAWave) {
+  testing::Campaign truth = testing::draw_campaign(split_wishes(3, 5, 2048));
+  testing::hide(truth, testing::parse_effect("end-reflection=0.06"));
+  const Diagnosis diagnosis = diagnosed_split(truth);
+  ASSERT_EQ(diagnosis.effects, std::vector<std::string>{"end-reflection"});
+  // The dashpot of the generator takes of slow waves a few per cent more than of quick ones.
+  const CandidateResult& result = result_of(diagnosis, "end-reflection");
+  EXPECT_NEAR(result.strength, 0.06, 0.06 * 0.06 + 3.0 * result.sd);
+  EXPECT_LT(diagnosis.held_out.after, 1.1 * diagnosis.held_out.floor);
+}
+
 // By chance the shots scatter more in the direction of what is there than in that of a rival which
 // fits worse: the true one must not fall behind for it.
 TEST(Diagnosis, DoesNotRankRivalsByHowMuchTheirShotsScatter) {
