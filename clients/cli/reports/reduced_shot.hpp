@@ -59,7 +59,9 @@ inline constexpr const char* kTrueHelp =
     "strain), for a specimen that keeps its volume";
 
 /// The uncertainty's part of both.
-void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object);
+/// @param front_known  false where equilibrium was taken for granted: the front force is the back's
+/// then, and how far off that is no draw tells
+void describe_uncertainty(const Uncertainty& uncertainty, bool front_known, JsonObject& object);
 [[nodiscard]] std::string uncertainty_report(const Uncertainty& uncertainty);
 
 /// What `reduce --json` and `get --json` print.

@@ -124,7 +124,8 @@ JsonValue describe(const ReducedShot& reduced) {
     object.push_back({"asked", describe_request(reduced.request)});
   }
   if (reduced.uncertainty) {
-    describe_uncertainty(*reduced.uncertainty, object);
+    describe_uncertainty(*reduced.uncertainty, reduction.separation != Separation::equilibrium,
+                         object);
   }
   if (reduced.as_filed) {
     const Reduction& before = *reduced.as_filed;

@@ -46,11 +46,13 @@ bool files_a_deviation(const Uncertainty& uncertainty) {
 
 }  // namespace
 
-void describe_uncertainty(const Uncertainty& uncertainty, JsonObject& object) {
+void describe_uncertainty(const Uncertainty& uncertainty, bool front_known, JsonObject& object) {
   add_band(uncertainty.stress_Pa, "stress", "_Pa", object);
   add_band(uncertainty.strain, "strain", "", object);
   add_band(uncertainty.strain_rate_per_s, "strain_rate", "_per_s", object);
-  add_band(uncertainty.force_front_N, "force_front", "_N", object);
+  if (front_known) {
+    add_band(uncertainty.force_front_N, "force_front", "_N", object);
+  }
   add_band(uncertainty.force_back_N, "force_back", "_N", object);
   JsonList sources;
   for (const UncertaintySource& source : uncertainty.sources) {

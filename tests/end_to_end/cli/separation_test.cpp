@@ -249,6 +249,14 @@ TEST_P(FiniteElementShots, TellHowTheOutputBarsFaceMoves) {
                              {"--at", "9 m"}));
 }
 
+// Equilibrium makes the front force the back's; no draw tells how far off that is.
+TEST_P(FiniteElementShots, HaveNoBandOfAForceThatWasTakenForGranted) {
+  const json result = scene::json_of(scene::kolsky({"reduce", capture_, "--separate", "equilibrium",
+                                                    "--uncertainty", "--draws", "20", "--json"}));
+  EXPECT_TRUE(result.contains("force_back_sd_N"));
+  EXPECT_FALSE(result.contains("force_front_sd_N"));
+}
+
 // A person who does not ask for it is told that time alone does not part these waves, and what
 // does. Of copper's pulse, which rises for 90 us, the reflection hides the peak.
 TEST_P(FiniteElementShots, AreCalledUnreliableByTimeAlone) {
