@@ -515,6 +515,9 @@ class Diagnostician {
       if (blames_bar_of_two_gauges(diagnosis_, study_.campaign())) {
         diagnosis_.notes.push_back(two_gauges_text());
       }
+      if (blames_times_of_several_gauges(diagnosis_, study_.campaign())) {
+        diagnosis_.notes.push_back(several_times_text());
+      }
     } else {
       // What shots or gauges have of their own says nothing of what the search began with.
       if (remains && left.common_log_p < options_.log_alpha && outweighed_by(excess)) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -11,6 +12,9 @@
 namespace kolsky {
 
 namespace {
+
+/// What one gauge may have that moves its pulses in time.
+constexpr std::array kOfTimes = {"gauge-position:", "channel-delay:", "amplifier-bandwidth:"};
 
 std::string chance_text(double log_p) {
   constexpr double kLeast = -27.6;  // 1e-12: below, normal noise is no longer what one knows it as
@@ -151,6 +155,30 @@ std::string two_gauges_text() {
          "all "
          "it reads (an amplifier that droops, an echo in a cable): exchange the channels, or add a "
          "gauge, and ask again";
+}
+
+bool blames_times_of_several_gauges(const Diagnosis& diagnosis, const Campaign& campaign) {
+  const auto at_gauge_of = [&](const std::string& id, const std::string& bar) {
+    return std::ranges::any_of(campaign.bench.gauges, [&](const Gauge& gauge) {
+      return gauge.bar == bar && id.ends_with(":" + gauge.name);
+    });
+  };
+  for (const std::string& bar : {std::string("input"), std::string("output")}) {
+    const auto gauges = std::ranges::count_if(diagnosis.effects, [&](const std::string& id) {
+      return at_gauge_of(id, bar) &&
+             std::ranges::any_of(kOfTimes, [&](const char* kind) { return id.starts_with(kind); });
+    });
+    if (gauges > 1) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string several_times_text() {
+  return "several gauges of one bar are said to be reached at other times than foretold: a speed "
+         "that changes along the bar (its temperature, its section) does so with one cause, which "
+         "the library lacks; measure the bar along its length before these are added";
 }
 
 std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign) {

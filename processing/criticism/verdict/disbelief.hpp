@@ -27,6 +27,12 @@ inline constexpr std::size_t kMostBelieved = 2;
 [[nodiscard]] bool blames_bar_of_two_gauges(const Diagnosis& diagnosis, const Campaign& campaign);
 [[nodiscard]] std::string two_gauges_text();
 
+/// Whether claims have waves reach several gauges of one bar at other times than foretold: a speed
+/// that changes along the bar, which the library lacks, does so with one cause.
+[[nodiscard]] bool blames_times_of_several_gauges(const Diagnosis& diagnosis,
+                                                  const Campaign& campaign);
+[[nodiscard]] std::string several_times_text();
+
 /// What gauges that are loud show, in a sentence. @param loud  the least likely first
 [[nodiscard]] std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign);
 /// At which gauge most is; nothing where it is not one gauge's.

@@ -175,6 +175,18 @@ Diagnosis diagnosed_split(const testing::Campaign& truth) {
   return diagnose(study, filed_split_bar(truth), {});
 }
 
+TEST(Diagnosis, SaysThatTimesOfSeveralGaugesMayHaveOneCause) {
+  const Campaign campaign = read_campaign(make(77, {}).shots);
+  const auto blamed = [&](std::vector<std::string> effects) {
+    Diagnosis diagnosis;
+    diagnosis.effects = std::move(effects);
+    return blames_times_of_several_gauges(diagnosis, campaign);
+  };
+  EXPECT_TRUE(blamed({"gauge-position:g2", "channel-delay:g3"}));
+  EXPECT_FALSE(blamed({"gauge-position:g2"}));
+  EXPECT_FALSE(blamed({"gauge-factor:g2", "channel-delay:g3"}));
+}
+
 // The output bar's far end is free in the paper's model; it may as well be glued, or stand at a
 // stop.
 TEST(Diagnosis, NamesAFarEndOfTheOutputBarThatKeepsSomeOfAWave) {
