@@ -152,7 +152,7 @@ std::vector<GaugeLeft> what_is_left(const Records& records, const WaveSeparation
   BandLimit band(transform, 0);
   std::vector<Complex> spectrum(BandLimit::bins_within(transform, band_limit_Hz));
   std::vector<double> filtered(records.strains.front().size());
-  for (std::size_t j = 0; j < records.gauges.size(); ++j) {
+  for (std::size_t j = 0; j < records.names.size(); ++j) {
     transform.forward(records.strains[j], spectrum);
     band.apply(band_limit_Hz, spectrum);
     transform.inverse(spectrum, filtered);
@@ -167,6 +167,35 @@ std::vector<GaugeLeft> what_is_left(const Records& records, const WaveSeparation
                    records.noise_rms[j] * band.noise_share(band_limit_Hz)});
   }
   return all;
+}
+
+/// The stress at the input bar's end that has the force at the output bar's beginning.
+struct StressAtEnd {
+  std::vector<double> values;
+  std::vector<double> noise_Pa;  ///< one standard deviation
+  std::size_t known = 0;         ///< samples
+
+  StressAtEnd(const Shot& shot, RecordedWavesOptions options, double band_limit_Hz) {
+    options.bar = "output";
+    options.positions_m = {0.0};
+    options.band_limit_Hz = band_limit_Hz;
+    options.equilibrium = false;
+    const RecordedWaves waves = recorded_waves(shot, options);
+    values = waves.places.front().waves.stress_Pa;
+    noise_Pa = waves.places.front().stress_noise_Pa;
+    known = waves.known;
+    const double ratio = shot.bench.output->area_m2() / shot.bench.input.area_m2();
+    for (std::vector<double>* history : {&values, &noise_Pa}) {
+      std::ranges::for_each(*history, [ratio](double& stress_Pa) { stress_Pa *= ratio; });
+    }
+  }
+};
+
+void require_specimen_at_end(const Bench& bench, const RecordedWavesOptions& options) {
+  if (options.equilibrium && (bench.kind != BenchKind::shpb || options.bar != "input")) {
+    throw InputError("equilibrium", "is of a specimen at the input bar's end, and there is none",
+                     "leave it out, or ask for the input bar of split bars");
+  }
 }
 
 std::vector<double> places_of(const RecordedWavesOptions& options, const Bar& bar) {
@@ -187,7 +216,8 @@ std::vector<double> places_of(const RecordedWavesOptions& options, const Bar& ba
 RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& options) {
   const Bar& bar = bar_named(shot.bench, options.bar);
   const std::vector<double> places = places_of(options, bar);
-  const Records records(shot, options.bar);
+  require_specimen_at_end(shot.bench, options);
+  Records records(shot, options.bar);
   const std::optional<Material>& given = options.bar_model ? options.bar_model : shot.bar_model;
   const auto compliance = compliance_of(bar, given ? *given : assumed_bars(shot.bench));
   const FreeEnds ends = ends_of(shot.bench, bar, options);
@@ -195,14 +225,23 @@ RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& optio
 
   RecordedWaves all;
   all.gauges = records.names;
-  all.end_known = ends.end || ends.end_matched;
+  all.end_known = ends.end || ends.end_matched || options.equilibrium;
   all.band_limit_Hz = band_limit_of(shot, records, bar, *compliance, options);
   all.quiet = records.quiet;
+  all.known = shot.samples();
+  std::optional<StressAtEnd> at_end;
+  if (options.equilibrium) {
+    at_end.emplace(shot, options, all.band_limit_Hz);
+    all.known = at_end->known;
+    records.gauges.push_back({.position_m = bar.length_m,
+                              .values = at_end->values,
+                              .noise_rms = records.gauges.front().noise_rms,
+                              .record = SeparationRecord::mean_stress_Pa});
+  }
   const WaveSeparation separation(bar, *compliance, options.theory, records.gauges, ends, period_s,
                                   all.band_limit_Hz);
   all.blind =
       blind_frequencies(bar, *compliance, options.theory, records.gauges, ends, all.band_limit_Hz);
-  all.known = shot.samples();
   // What lies beyond the record comes back through the filter.
   const auto smear =
       static_cast<std::size_t>(std::ceil(BandLimit::smear_s(all.band_limit_Hz) * shot.rate.Hz()));
@@ -216,7 +255,7 @@ RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& optio
     throw InputError("record", "ends before it tells the waves at the places asked for",
                      "record for longer, or ask for places nearer to a gauge");
   }
-  if (records.gauges.size() > (all.end_known ? 1U : 2U)) {
+  if (records.names.size() > (all.end_known ? 1U : 2U)) {
     all.left = what_is_left(records, separation, period_s, all.band_limit_Hz, all.known);
   }
   return all;

@@ -19,7 +19,9 @@ struct RecordedWavesOptions {
   WaveTheory theory = WaveTheory::elementary;
   std::optional<double> band_limit_Hz{};  ///< else what the noise allows
   bool gauges_only = false;               ///< nothing is taken for known of the bar's far end
-  std::optional<Material> bar_model{};    ///< of a viscoelastic bar; else the shot's own
+  /// Of the input bar at a specimen: the output bar's force is taken for the force at its end.
+  bool equilibrium = false;
+  std::optional<Material> bar_model{};  ///< of a viscoelastic bar; else the shot's own
 };
 
 /// What the waves leave of a gauge's record.
@@ -39,7 +41,7 @@ struct WavesAtPlace {
 /// One bar's right- and left-going waves (see WaveSeparation).
 struct RecordedWaves {
   std::vector<std::string> gauges;
-  bool end_known = false;  ///< what the far end returns was used
+  bool end_known = false;  ///< what the far end returns, or the force at it, was used
   double band_limit_Hz = 0.0;
   std::size_t quiet = 0;  ///< samples before the first pulse: baselines and noise are theirs
   std::size_t known = 0;  ///< samples up to which the records tell the waves at all places
@@ -49,9 +51,10 @@ struct RecordedWaves {
 };
 
 /// Left- and right-going waves from all gauges of a bar, and from what its far end does where that
-/// is known: free or matched as filed, of a bar whose other end is at a specimen unknown.
-/// @throws InputError where gauges do not suffice or none shows a pulse, a place is off the bar, or
-/// the band is beyond the record or what the gauges see
+/// is known: free or matched as filed; at a specimen nothing, or the other bar's force.
+/// @throws InputError where gauges do not suffice or none shows a pulse, a place is off the bar,
+/// the band is beyond the record or what the gauges see, or equilibrium is asked for without a
+/// specimen at the bar's end
 [[nodiscard]] RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& options);
 
 }  // namespace kolsky

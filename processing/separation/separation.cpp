@@ -258,7 +258,10 @@ WaveSeparation::~WaveSeparation() = default;
 
 void WaveSeparation::share_out(const std::vector<SeparationGauge>& gauges, const FreeEnds& ends) {
   for (const SeparationGauge& gauge : gauges) {
-    shares_.push_back({gauge.position_m, gauge.noise_rms, {}, {}});
+    // Of a stress the noise is filed as the strain that it would be of long waves.
+    const double unit =
+        gauge.record == SeparationRecord::mean_stress_Pa ? std::abs(stiffness_.front()) : 1.0;
+    shares_.push_back({gauge.position_m, unit * gauge.noise_rms, {}, {}});
     shares_.back().right.reserve(path_.size());
     shares_.back().left.reserve(path_.size());
   }

@@ -33,6 +33,7 @@ struct Settings {
   std::optional<std::string> dispersion;
   std::optional<double> band_limit_Hz;
   bool gauges_only = false;
+  bool equilibrium = false;
   std::optional<std::string> csv;
   std::optional<std::string> svg;
 };
@@ -77,6 +78,7 @@ RecordedWavesOptions options_of(const Settings& settings, const std::optional<Ba
   }
   options.band_limit_Hz = settings.band_limit_Hz;
   options.gauges_only = settings.gauges_only;
+  options.equilibrium = settings.equilibrium;
   if (bars) {
     options.bar_model = bars->prior.material;
   }
@@ -99,8 +101,11 @@ std::string bar_in_words(const Told& told) {
 
 /// What was asked for is named as it was given, all else as the capture's.
 InputError as_given(const InputError& error, const std::string& capture) {
-  constexpr std::array<std::pair<const char*, const char*>, 3> kOptions = {
-      {{"position", "--at"}, {"band_limit_Hz", "--band-limit"}, {"bar", "--bar"}}};
+  constexpr std::array<std::pair<const char*, const char*>, 4> kOptions = {
+      {{"position", "--at"},
+       {"band_limit_Hz", "--band-limit"},
+       {"bar", "--bar"},
+       {"equilibrium", "--equilibrium"}}};
   for (const auto& [key, option] : kOptions) {
     if (error.place() == key) {
       return {std::string("kolsky waves: ") + option, error.problem(), error.mend()};
@@ -163,6 +168,7 @@ JsonValue describe(const Told& told) {
                     {"dispersion", name_of(told.options.theory)},
                     {"gauges", told.waves.gauges},
                     {"far_end_known", told.waves.end_known},
+                    {"equilibrium", told.options.equilibrium},
                     {"band_limit_Hz", told.waves.band_limit_Hz},
                     {"quiet_until_s", told.time_s(told.waves.quiet)},
                     {"known_until_s", told.time_s(told.waves.known)},
@@ -218,15 +224,21 @@ std::string blind_text(const RecordedWaves& waves) {
   return report_row("blind", "at " + text);
 }
 
+std::string end_text(const Told& told) {
+  if (told.options.equilibrium) {
+    return " and the output bar's force, as if the specimen were in equilibrium";
+  }
+  return told.waves.end_known ? " and the far end as filed" : "";
+}
+
 std::string report(const Told& told, const Terminal& terminal) {
   const RecordedWaves& waves = told.waves;
   std::string text = told.shot.id + "  " + told.capture + "\n";
   text += report_row("bar", told.options.bar + ": " + told.bar_model + "; " +
                                 name_of(told.options.theory) + " waves up to " +
                                 with_unit(waves.band_limit_Hz, "Hz"));
-  text += report_row("told apart by", joined(waves.gauges) +
-                                          (waves.end_known ? " and the far end as filed" : "") +
-                                          ", until " + with_unit(told.time_s(waves.known), "s"));
+  text += report_row("told apart by", joined(waves.gauges) + end_text(told) + ", until " +
+                                          with_unit(told.time_s(waves.known), "s"));
   for (const WavesAtPlace& place : waves.places) {
     text += place_text(told, place);
   }
@@ -326,6 +338,10 @@ Command waves_command() {
       flag("--gauges-only",
            "take nothing for known of the bar's far end, which else is free, or matched as filed",
            &s.gauges_only),
+      flag("--equilibrium",
+           "of the input bar: take the output bar's force for the force at its end, as of a\n"
+           "specimen in equilibrium; one gauge is enough then",
+           &s.equilibrium),
       option("--csv", "FILE", "a table of the histories to write", &s.csv),
       option("--svg", "FILE", "a page of plots to write", &s.svg)};
   command.run = [settings](Context& context) { return run(*settings, context); };

@@ -174,6 +174,24 @@ TEST(RecordedWaves, OneGaugeOnABarThatEndsFreeForetellsTheOthers) {
   }
 }
 
+// Of a stiff short specimen both faces carry the same force but for its start.
+TEST(RecordedWaves, OneGaugeAndTheOtherBarsForceServeLikeTwoGauges) {
+  const SolvedShot shot = solved(0.0);
+  const Shot one = without_gauge(without_gauge(shot.shot, 2), 0);
+  const RecordedWaves waves = recorded_waves(one, {.positions_m = {0.2}, .equilibrium = true});
+  EXPECT_EQ(waves.gauges, std::vector<std::string>{"g2"});
+  // A force that is off by d sends a wave of d to the gauge, and once more what that leaves there.
+  double apart_N = 0.0;
+  for (std::size_t n = 0; n < shot.truth.force_front_N.size(); ++n) {
+    apart_N = std::max(apart_N, std::abs(shot.truth.force_front_N[n] - shot.truth.force_back_N[n]));
+  }
+  const std::vector<double> truth = record_of(shot.shot, 0);
+  const double largest_N = kPmma.E1_Pa * kArea_m2 * std::ranges::max(truth);
+  const double error = off(waves, strain_of(waves.places.front().waves), truth);
+  EXPECT_LT(error, 2.0 * apart_N / largest_N);
+  EXPECT_LT(error, 0.05);
+}
+
 TEST(RecordedWaves, WhatCannotBeToldIsRefused) {
   const Shot shot = solved(4e-6).shot;
   const auto place = [](const Shot& of, const RecordedWavesOptions& options) {
@@ -190,6 +208,7 @@ TEST(RecordedWaves, WhatCannotBeToldIsRefused) {
   EXPECT_EQ(place(shot, {.theory = WaveTheory::exact, .band_limit_Hz = 200e3}), "band_limit_Hz");
   EXPECT_EQ(place(without_gauge(without_gauge(shot, 0), 0), {}), "gauges");
   EXPECT_EQ(place(without_gauge(shot, 3), {.bar = "output"}), "record");
+  EXPECT_EQ(place(shot, {.bar = "output", .equilibrium = true}), "equilibrium");
   Shot silent = shot;
   for (ChannelRecord& channel : silent.channels) {
     channel.codes.resize(300);  // the impact comes after 400
