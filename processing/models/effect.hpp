@@ -35,7 +35,7 @@ struct EffectParameter {
   /// The records change with this power of it near null: fits move value^power.
   double power = 1.0;
   /// |value|, or |value| x peak strain, beyond which nothing is built so and a fit is one to noise
-  /// or to what the library lacks; 0: no such limit.
+  /// or to what the library lacks; 0: no such limit. Of two it is only beyond both.
   double most = 0.0;
   double most_times_peak = 0.0;
   /// First order at null says nothing of a finite size, in which it acts otherwise (a gap that

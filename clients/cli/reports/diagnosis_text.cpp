@@ -83,7 +83,7 @@ std::string legend_text(const std::vector<CandidateResult>& shown) {
   constexpr std::array<std::array<const char*, 2>, 3> kMeanings{
       {{"rejected",
         "it gains, but other shots do not foretell it, the shots disagree on it, the quiet before "
-        "the pulse lacks it, or it stands in for something else"},
+        "the pulse lacks it, nothing is built so strong, or it stands in for something else"},
        {"unconfirmed",
         "it gains with a strength of each shot's own, as slow noise would, and nothing else in the "
         "records shows it"},

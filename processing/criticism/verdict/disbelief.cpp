@@ -91,9 +91,47 @@ std::string undone_text(const Cancelling& pair) {
       pair.one, pair.other, pair.left);
 }
 
+double peak_strain_of(const Campaign& campaign) {
+  double peak = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    peak = std::max(peak, shot.facts.peak_strain);
+  }
+  return peak;
+}
+
+/// Beyond the limit that a parameter has, beyond both where it has two: each is of something else
+/// that is built so.
+bool stronger_than_built(const EffectParameter& parameter, double value, double sd, double peak,
+                         double slack) {
+  // What is as strong as anything built comes out stronger every other time.
+  constexpr double kDeviations = 3.0;
+  constexpr double kExcused = 0.02;
+  constexpr double kMostExcused = 0.1;
+  const auto within = [&](double unit, double most) {
+    const double excused =
+        std::clamp(kDeviations * unit * sd, kExcused * most, kMostExcused * most);
+    return most > 0.0 && unit * std::abs(value) - excused <= slack * most;
+  };
+  const bool limited = parameter.most > 0.0 || parameter.most_times_peak > 0.0;
+  return limited && !within(1.0, parameter.most) && !within(peak, parameter.most_times_peak);
+}
+
+/// Why what was rejected is not it, though noise hardly explains as much.
+std::string rejected_text(const CandidateResult& own, const Campaign& campaign) {
+  // None that a model file declares has a limit.
+  const Effect* effect = find_effect(own.effect);
+  const bool stronger =
+      effect != nullptr && stronger_than_built(effect->about().parameters[effect->about().strength],
+                                               own.strength, own.sd, peak_strain_of(campaign), 1.0);
+  return fmt::format("{} explains what noise leaves {}, but {}: something else is there",
+                     own.effect, chance_text(own.log_p),
+                     stronger ? "would have to be stronger than anything is built"
+                              : "shots do not foretell it of each other or disagree on it");
+}
+
 /// What explains so much that noise hardly would, though the shots do not foretell it of each other
-/// or disagree on it: something is there, and it is not that. @return nothing where something is
-/// claimed
+/// or disagree on it, or nothing is built so: something is there, and it is not that.
+/// @return nothing where something is claimed
 const CandidateResult* surest_rejected(const Diagnosis& diagnosis) {
   constexpr double kSure = -11.5;  // 1e-5, the search counted
   const CandidateResult* surest = nullptr;
@@ -118,23 +156,10 @@ bool beyond_belief(const Studied& studied, const std::string& id, const Campaign
   if (use == nullptr) {
     return false;
   }
-  double peak = 0.0;
-  for (const CampaignShot& shot : campaign.shots) {
-    peak = std::max(peak, shot.facts.peak_strain);
-  }
+  const double peak = peak_strain_of(campaign);
   const auto& parameters = use->effect->about().parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    // What is as strong as anything built comes out stronger every other time.
-    constexpr double kDeviations = 3.0;
-    constexpr double kExcused = 0.02;
-    constexpr double kMostExcused = 0.1;
-    const auto beyond = [&](double unit, double most) {
-      const double size = unit * std::abs(use->values[p].value);
-      const double excused =
-          std::clamp(kDeviations * unit * use->values[p].sd, kExcused * most, kMostExcused * most);
-      return most > 0.0 && size - excused > slack * most;
-    };
-    if (beyond(1.0, parameters[p].most) || beyond(peak, parameters[p].most_times_peak)) {
+    if (stronger_than_built(parameters[p], use->values[p].value, use->values[p].sd, peak, slack)) {
       return true;
     }
   }
@@ -219,10 +244,7 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
     }
   }
   if (const CandidateResult* own = surest_rejected(diagnosis)) {
-    reasons.push_back(fmt::format(
-        "{} explains what noise leaves {}, but shots do not foretell it of each other or disagree "
-        "on it: something else is there",
-        own->effect, chance_text(own->log_p)));
+    reasons.push_back(rejected_text(*own, campaign));
   }
   if (at_all_gauges_but_one(diagnosis, campaign)) {
     reasons.emplace_back(

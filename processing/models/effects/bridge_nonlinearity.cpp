@@ -16,9 +16,11 @@ class BridgeNonlinearity final : public Effect {
             .parameters = {strength()},
         }) {}
 
-  /// Semiconductor gauges, the least linear, bend a few per cent at a millistrain.
+  /// A raw quarter bridge has half its gauge factor, of semiconductors up to 90, whatever the
+  /// strain; what follows the gauges bends by a share of what it is built to read.
   static EffectParameter strength() {
     EffectParameter b{"b", "-", 0.0, -500.0, 500.0, 0.5, {}};
+    b.most = 100.0;
     b.most_times_peak = 0.1;
     return b;
   }

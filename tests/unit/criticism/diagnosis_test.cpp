@@ -1,5 +1,6 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -319,6 +320,43 @@ TEST(Diagnosis, NamesAGaugeAsLongAsAnyIsBuilt) {
   EXPECT_GT(result_of(diagnosis, "gauge-length:g2").strength, 0.1);
 }
 
+// Half the gauge factor of semiconductors, which bends by more than a tenth at two millistrain and
+// was given up for stronger than anything built.
+class SemiconductorBridge : public ::testing::TestWithParam<double> {};
+
+TEST_P(SemiconductorBridge, IsNamedHoweverStrongTheShots) {
+  testing::Campaign truth = testing::draw_campaign(
+      {.seed = 303, .shots = 4, .gauges = 3, .samples = 1500, .rate_Hz = 1e6});
+  testing::hide(truth, testing::parse_effect(fmt::format("bridge-nonlinearity={}", GetParam())));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  ASSERT_EQ(diagnosis.effects, std::vector<std::string>{"bridge-nonlinearity"});
+  const CandidateResult& bridge = result_of(diagnosis, "bridge-nonlinearity");
+  EXPECT_LT(std::abs(bridge.strength - GetParam()), 4.0 * bridge.sd);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bends, SemiconductorBridge, ::testing::Values(60.0, -60.0));
+
+// A bridge is as built where its gauges are, or where it bends by no more than a share of what it
+// is built to read.
+TEST(Diagnosis, BelievesABridgeByItsGaugesOrByWhatItBends) {
+  const Made made = make(77, {});
+  Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  Studied studied = study.fit(paper_model(BenchKind::bar, false));
+  studied.model.effects.push_back(null_use(*find_effect("bridge-nonlinearity"), ""));
+  const auto beyond = [&](double b, double peak) {
+    studied.model.effects.back().values[0].value = b;
+    for (CampaignShot& shot : campaign.shots) {
+      shot.facts.peak_strain = peak;
+    }
+    return beyond_belief(studied, "bridge-nonlinearity", campaign, 1.0);
+  };
+  EXPECT_FALSE(beyond(90.0, 3e-3));
+  EXPECT_FALSE(beyond(300.0, 3e-4));
+  EXPECT_TRUE(beyond(150.0, 1e-3));
+  EXPECT_TRUE(beyond(-400.0, 3e-4));
+}
+
 // Anything can be expanded in three effects: what needs as many is likelier to be missing itself.
 TEST(LongDiagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
   const Made made =
@@ -448,7 +486,7 @@ TEST(Diagnosis, CallsUnknownWhatAGaugePicksUpBeforeItsPulse) {
 // bridge explained what noise leaves once in a million campaigns: shots disagreed on it.
 TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   const Made made = make(88, {});
-  const Campaign campaign = read_campaign(made.shots);
+  Campaign campaign = read_campaign(made.shots);
   Study study(campaign, 0.0, Workers{});
   const Studied current = study.fit(paper_model(BenchKind::bar, false));
   Diagnosis diagnosis;
@@ -463,6 +501,12 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   own.log_p = -8.0;
   EXPECT_EQ(reasons(), 0U) << "one campaign in three thousand";
   own.log_p = -14.0;
+  own.strength = 200.0;
+  for (CampaignShot& shot : campaign.shots) {
+    shot.facts.peak_strain = 2e-3;
+  }
+  EXPECT_NE(why_unknown(diagnosis, current, campaign, std::nullopt, -5.8)[0].find("stronger than"),
+            std::string::npos);
   own.per_shot = true;
   EXPECT_EQ(reasons(), 0U) << "strengths of single shots follow slow noise";
   own.per_shot = false;
