@@ -39,11 +39,15 @@ SlowWeights::SlowWeights(Eigen::MatrixXd parts, const Eigen::MatrixXd& residual)
   }
   modes_.conservativeResize(Eigen::NoChange, count);
   variances.conservativeResize(count);
-  std::vector<double> found;
-  for (const auto own : (modes_.transpose() * residual).colwise()) {
-    found.push_back(own.cwiseAbs2().cwiseQuotient(variances).mean());
+  double share = 1.0;
+  if (count > 0) {
+    std::vector<double> found;
+    const Eigen::MatrixXd of_modes = modes_.transpose() * residual;
+    for (const auto own : of_modes.colwise()) {
+      found.push_back(own.cwiseAbs2().cwiseQuotient(variances).mean());
+    }
+    share = std::min(1.0, median(std::move(found)));
   }
-  const double share = count > 0 ? std::min(1.0, median(std::move(found))) : 1.0;
   loss_ = 1.0 - (share * variances).cwiseMax(1.0).cwiseSqrt().cwiseInverse().array();
 }
 
