@@ -63,13 +63,14 @@ bool slopes_agree(const std::vector<double>& found, const std::vector<double>& b
   return found.size() > 2 && share > 0.5 && share < 1.5 && share > kSigma * sd;
 }
 
-/// Nearer to products than noise comes in one of a thousand, and not for one gauge's sake. What was
-/// found so once falls only by half: else it would come and go with the rest of the model.
+/// Nearer to products than noise comes in one of a thousand, or in one of a hundred where slow
+/// noise does not gain as much, and not for one gauge's sake. What was found so once falls only by
+/// half: else it would come and go with the rest of the model.
 bool are_products(const ProductTest& test, Claim claim) {
-  const double share = claim == Claim::fresh ? 1.0 : 0.5;
-  constexpr double kChance = -6.9;
+  const double share = claim == Claim::standing ? 0.5 : 1.0;
+  const double chance = claim == Claim::beyond_slow_noise ? -4.6 : -6.9;
   constexpr double kBeyond = 25.0;
-  return test.log_p < share * kChance && test.beyond_one_gauge > share * kBeyond;
+  return test.log_p < share * chance && test.beyond_one_gauge > share * kBeyond;
 }
 
 /// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
@@ -138,7 +139,7 @@ Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
 /// only a part may show, for waves from gauge to gauge carry the rest: more than its sign is not
 /// asked for. @param claim  what was found so once may fall by half, as in `are_products`
 bool seen_at_all_gauges(const Slopes& slopes, const Campaign& campaign, Claim claim) {
-  const double share = claim == Claim::fresh ? 1.0 : 0.5;
+  const double share = claim == Claim::standing ? 0.5 : 1.0;
   constexpr double kChance = -5.8;
   return std::inner_product(slopes.found.begin(), slopes.found.end(), slopes.before.begin(), 0.0) >
              0.0 &&
@@ -149,7 +150,7 @@ bool seen_at_all_gauges(const Slopes& slopes, const Campaign& campaign, Claim cl
 /// it: with phases free, whatever wanders slowly and alike at all gauges is a hum of some
 /// amplitude, but none that is well known.
 bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim) {
-  const double share = claim == Claim::fresh ? 1.0 : 0.5;
+  const double share = claim == Claim::standing ? 0.5 : 1.0;
   constexpr double kSigma = 5.0;
   const Amplitude amplitude = amplitude_over_shots(studied, id);
   return amplitude.value > share * kSigma * amplitude.sd;
@@ -190,7 +191,7 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
 }
 
 bool slow_noise_excluded(double log_chance, Claim claim) {
-  const double share = claim == Claim::fresh ? 1.0 : 0.5;
+  const double share = claim == Claim::standing ? 0.5 : 1.0;
   constexpr double kChance = -5.8;
   return log_chance < share * kChance;
 }

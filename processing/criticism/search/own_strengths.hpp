@@ -8,16 +8,18 @@
 
 namespace kolsky {
 
-/// Whether a claim is made or was made before and is looked at again.
-enum class Claim { fresh, standing };
+/// Whether a claim is made, is made of what slow noise is known not to do, or was made before and
+/// is looked at again.
+enum class Claim { fresh, beyond_slow_noise, standing };
 
 /// Whether strengths that every shot has of its own are more than slow noise that they followed. No
 /// other shot can confirm them, so something else has to:
 ///   a drift must show in the samples before the pulse, too, with the same slopes;
 ///   a hum has one phase in a shot, whatever the gauge: its amplitudes by shot and gauge are
 ///   products of a complex number per shot and a real one per gauge, nearer than noise comes to it
-///   and than one noisy gauge explains; one that is alike at all gauges must show before the pulse,
-///   too, as a drift must.
+///   (of few gauges that says little by itself, and less is asked for where slow noise does not
+///   gain as much) and than one noisy gauge explains; one that is alike at all gauges must show
+///   before the pulse, too, as a drift must.
 /// True for effects without strengths of their own.
 [[nodiscard]] bool own_strengths_confirmed(const Studied& studied, const std::string& id,
                                            const Campaign& campaign, Claim claim);

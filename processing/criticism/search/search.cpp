@@ -68,6 +68,12 @@ bool may_be_slow_noise(const Candidate& candidate) {
   return use.per_shot && is_addition(*use.effect) && (use.alike || !use.effect->about().each_gauge);
 }
 
+/// A hum in shares of each gauge's own, which is judged by its products.
+bool has_shares(const Candidate& candidate) {
+  const EffectUse& use = candidate.use;
+  return use.per_shot && use.effect->about().quadrature && !use.alike;
+}
+
 bool of_material(const Candidate& candidate) {
   return candidate.use.effect->about().stage == Stage::material;
 }
@@ -195,13 +201,23 @@ bool Search::admissible(Refit& refit) {
 }
 
 bool Search::confirmed(Refit& refit) {
+  const std::string id = candidates_[refit.candidate].id();
+  const auto by_itself = [&](Claim claim) {
+    return own_strengths_confirmed(refit.studied, id, study_.campaign(), claim);
+  };
+  // By products first: slow noise takes longer to ask.
+  if (refit.products && by_itself(Claim::fresh)) {
+    return true;
+  }
+  if (refit.products && !by_itself(Claim::beyond_slow_noise)) {
+    return false;
+  }
   const SlowChance chance = slow_chance(refit.candidate);
   if (slow_noise_excluded(chance.least(), Claim::fresh)) {
     refit.slow = chance;
     return true;
   }
-  return own_strengths_confirmed(refit.studied, candidates_[refit.candidate].id(),
-                                 study_.campaign(), Claim::fresh);
+  return !refit.products && by_itself(Claim::fresh);
 }
 
 /// ln of the chances of the best of all additions of each shot's own on slow noise.
@@ -209,7 +225,7 @@ SlowChance Search::slow_chance(std::size_t index) {
   const Candidate& candidate = candidates_[index];
   const Direction& direction = directions_[index];
   // Far from the records, what repeats is most of what slow noise would be.
-  if (!may_be_slow_noise(candidate) || direction.freedom < 1.0 ||
+  if (!(may_be_slow_noise(candidate) || has_shares(candidate)) || direction.freedom < 1.0 ||
       base_.misfit.chi2_reduced > kFarOff) {
     return {};
   }

@@ -218,5 +218,38 @@ TEST(RandomWalk, IsNeitherHumNorDrift) {
   EXPECT_EQ(claimed, 0U);
 }
 
+testing::Campaign three_gauges(std::uint64_t seed) {
+  return testing::draw_campaign({.seed = seed,
+                                 .shots = 8,
+                                 .gauges = 3,
+                                 .noise_strain = 3.3e-6,
+                                 .samples = 4000,
+                                 .rate_Hz = 1e6});
+}
+
+// Of three gauges there are two differences to a slope each, of which products of any shares
+// explain nine tenths by chance: by that alone hardly one of these was more than noise.
+TEST(MainsHum, InSharesOfThreeGaugesIsNamed) {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 701; seed < 705; ++seed) {
+    testing::Campaign campaign = three_gauges(seed);
+    testing::hide(campaign, testing::parse_effect("mains-hum=2.3e-5"));
+    campaign.world.hum.share = {-0.75, 0.74, -0.83};
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(campaign));
+    found += diagnosis.effects == std::vector<std::string>{"mains-hum"} ? 1 : 0;
+  }
+  EXPECT_GE(found, 3U);
+}
+
+// Slopes that every gauge has of its own in every shot are products by chance only.
+TEST(Drifts, OfAllGaugesAreNoHum) {
+  for (const std::uint64_t seed : {52U, 53U}) {
+    const testing::Campaign campaign = elastic_bar(seed, 7, 3, 5e-6);
+    const Diagnosis diagnosis =
+        diagnosed_elastic(testing::shots_of(campaign, sloping(campaign, {0, 1, 2}, seed)));
+    EXPECT_NE(diagnosis.effects, std::vector<std::string>{"mains-hum"}) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace kolsky
