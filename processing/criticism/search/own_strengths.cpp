@@ -157,10 +157,14 @@ bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim
 }
 
 /// Less the hum that was found in all of a record, what came before the pulse slopes no longer as
-/// gauges do together. What wanders turns otherwise there than a hum would.
-bool wanders_on(const Slopes& slopes, const Campaign& campaign) {
+/// gauges do together. What wanders turns otherwise there than a hum would. But of a hum in shares
+/// the source takes up whatever part all gauges have alike, and what is found of it may be far off:
+/// gauges that did not slope together before it was taken off do not wander.
+bool wanders_on(const Slopes& slopes, const Campaign& campaign, bool alike) {
   constexpr double kChance = -5.8;
-  return log_chance_of_common_slopes(campaign, slopes.found_by_gauge) < kChance;
+  constexpr double kOrdinary = -3.0;
+  return log_chance_of_common_slopes(campaign, slopes.found_by_gauge) < kChance &&
+         (alike || log_chance_of_common_slopes(campaign) < kOrdinary);
 }
 
 }  // namespace
@@ -175,7 +179,7 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
     return false;
   }
   const Slopes slopes = slopes_of(studied, id, campaign);
-  if (use->effect->about().quadrature && wanders_on(slopes, campaign)) {
+  if (use->effect->about().quadrature && wanders_on(slopes, campaign, use->alike)) {
     return false;
   }
   if (const auto test = product_test_of(studied, id, campaign)) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/criticism/search/own_strengths.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/unit/criticism/filed_bars.hpp"
@@ -239,6 +240,47 @@ TEST(MainsHum, InSharesOfThreeGaugesIsNamed) {
     found += diagnosis.effects == std::vector<std::string>{"mains-hum"} ? 1 : 0;
   }
   EXPECT_GE(found, 3U);
+}
+
+/// A hum fitted at every gauge and shot.
+Studied with_hum(Study& study) {
+  Model model = paper_model(BenchKind::bar, true);
+  EffectUse hum = null_use(*find_effect("mains-hum"), "");
+  hum.per_shot = true;
+  for (const std::size_t part : {0U, 1U}) {
+    hum.values[part].free = true;
+    hum.values[part].prior_sd = 1e-4;
+  }
+  hum.values[2].value = 50.0;
+  hum.values[2].free = false;
+  model.effects.push_back(hum);
+  return study.fit(model, LearnNoise::no);
+}
+
+// In a metal bar the source takes up what all gauges have alike. A hum whose shares cancel, found
+// with such a part, leaves gauges that slope together before the pulses, as they did not with it,
+// and was taken for wander.
+TEST(MainsHum, IsNoWanderForAPartThatTheSourceTakesUp) {
+  constexpr double kAmplitude = 4e-5;
+  testing::Campaign truth = elastic_bar(712, 4, 5, 4.7e-6);
+  testing::hide(truth, testing::parse_effect("mains-hum=4e-5"));
+  truth.world.hum.share = {0.8, -0.5, -0.5, 0.3, -0.1};
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  Studied studied = with_hum(study);
+  const auto confirmed = [&] {
+    return own_strengths_confirmed(studied, "mains-hum", campaign, Claim::fresh);
+  };
+  EXPECT_TRUE(confirmed());
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.shot >= 0) {
+      const double phase = truth.world.shots[static_cast<std::size_t>(number.shot)].hum_phase;
+      const double part = number.parameter == 0 ? std::cos(phase) : -std::sin(phase);
+      studied.fit.theta[i] += kAmplitude * part / number.scale;
+    }
+  }
+  EXPECT_TRUE(confirmed());
 }
 
 // Slopes that every gauge has of its own in every shot are products by chance only.
