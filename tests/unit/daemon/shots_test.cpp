@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <algorithm>
 
 #include <filesystem>
 
@@ -343,6 +344,7 @@ TEST(Summary, TakesPeaksAndVerdict) {
   shot.id = "one";
   shot.utc_ns = 5;
   Reduction reduction;
+  reduction.time_s = {0.0, 1e-6, 2e-6};
   reduction.stress_Pa = {0.0, 3e6, 1e6};
   reduction.strain = {0.0, 0.01, 0.02};
   reduction.quality.reducible = true;
@@ -351,6 +353,12 @@ TEST(Summary, TakesPeaksAndVerdict) {
   EXPECT_EQ(entry.peak_stress_Pa, 3e6);
   EXPECT_EQ(entry.peak_strain, 0.02);
   EXPECT_EQ(entry.capture, "one.h5");
+  for (std::vector<double>* history : {&reduction.stress_Pa, &reduction.strain}) {
+    std::ranges::for_each(*history, [](double& value) { value = -value; });
+  }
+  const CatalogueEntry pulled = summarise(shot, reduction, "");
+  EXPECT_EQ(pulled.peak_stress_Pa, -3e6);
+  EXPECT_EQ(pulled.peak_strain, -0.02);
   const CatalogueEntry failed = summarise(shot, Reduction{}, "");
   EXPECT_EQ(failed.verdict, "fail");
   EXPECT_EQ(failed.peak_stress_Pa, 0.0);

@@ -38,6 +38,12 @@ TEST_P(EveryLibraryEffect, PassesTheChecksOfAdmission) {
       EXPECT_EQ(problem->check, known->second);
       continue;
     }
+    if (about.id == "end-reflection" && kind == BenchKind::shpb) {
+      // Of split bars the end returns waves anyway: that it is present changes nothing there.
+      ASSERT_TRUE(problem);
+      EXPECT_NE(problem->what.find("present changes nothing"), std::string::npos);
+      continue;
+    }
     EXPECT_FALSE(problem) << problem->check << ": " << problem->what << ": " << problem->mend;
   }
 }
