@@ -31,4 +31,11 @@ void require_picture_output(const std::optional<std::string>& path) {
   require(path, "<svg ");
 }
 
+void write_output(const std::filesystem::path& path, const std::string& text) {
+  constexpr mode_t kReadableByAll = 0644;
+  NewFile file(path);
+  file.write(text);
+  file.publish(kReadableByAll);
+}
+
 }  // namespace kolsky::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -15,5 +16,8 @@ void require_model_output(const std::optional<std::string>& path);
 void require_page_output(const std::optional<std::string>& path);
 /// @throws InputError where the file cannot be written or is there and no picture
 void require_picture_output(const std::optional<std::string>& path);
+
+/// Writes a file that is not there yet, readable by all. @throws InputError as NewFile does
+void write_output(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace kolsky::cli

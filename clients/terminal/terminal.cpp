@@ -89,6 +89,14 @@ std::string padded_left(std::string_view text, std::size_t columns) {
   return std::string(columns > taken ? columns - taken : 0, ' ').append(text);
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) {
+    list += (list.empty() ? "" : ", ") + word;
+  }
+  return list;
+}
+
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   std::vector<std::string> lines;
   std::istringstream stream(text);

@@ -33,6 +33,9 @@ enum class Ink { plain, dim, bold, good, doubtful, bad, first, second, third };
 [[nodiscard]] std::string padded_right(std::string_view text, std::size_t columns);
 [[nodiscard]] std::string padded_left(std::string_view text, std::size_t columns);
 
+/// Words as a list, with commas between.
+[[nodiscard]] std::string joined(const std::vector<std::string>& words);
+
 /// The words of a text in lines of at most so many columns; a longer word has a line of its own.
 [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
 

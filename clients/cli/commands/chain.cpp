@@ -11,12 +11,12 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/chain_run.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
@@ -26,7 +26,6 @@
 namespace kolsky::cli {
 namespace {
 
-constexpr mode_t kReadableByAll = 0644;
 constexpr const char* kPlace = "kolsky chain: ";
 constexpr double kWithoutMeasurement_Hz = 50e3;
 
@@ -461,9 +460,7 @@ int run_command(const Settings& settings, Context& context) {
   }
   add_remarks(run);
   if (settings.svg) {
-    NewFile page(*settings.svg);
-    page.write(render_svg(chain_figure(run)));
-    page.publish(kReadableByAll);
+    write_output(*settings.svg, render_svg(chain_figure(run)));
   }
   context.out << (context.json ? to_text(describe(run)) + "\n" : report(run, context.terminal));
   return kDone;

@@ -8,11 +8,11 @@
 
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/report/svg.hpp"
 #include "clients/terminal/plot.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
@@ -22,7 +22,6 @@
 namespace kolsky::cli {
 namespace {
 
-constexpr mode_t kReadableByAll = 0644;
 constexpr std::array kTheories = {WaveTheory::elementary, WaveTheory::love, WaveTheory::exact};
 
 struct Settings {
@@ -192,22 +191,16 @@ std::string csv(const Tabulated& result) {
   return text + "\n";
 }
 
-void write(const std::string& path, const std::string& text) {
-  NewFile file(path);
-  file.write(text);
-  file.publish(kReadableByAll);
-}
-
 int run(const Settings& settings, Context& context) {
   const Tabulated result = tabulate(settings);
   if (settings.csv) {
-    write(*settings.csv, csv(result));
+    write_output(*settings.csv, csv(result));
   }
   if (settings.svg) {
     const std::array<Panel, 2> both = panels(result);
-    write(*settings.svg, render_svg({"waves in the " + result.bar + " bar",
-                                     {result.bar_model},
-                                     {both.begin(), both.end()}}));
+    write_output(*settings.svg, render_svg({"waves in the " + result.bar + " bar",
+                                            {result.bar_model},
+                                            {both.begin(), both.end()}}));
   }
   context.out << (context.json ? to_text(describe(result)) + "\n"
                                : report(result, context.terminal));

@@ -52,14 +52,6 @@ std::string list_of(const std::vector<double>& values) {
   return list;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) {
-    list += (list.empty() ? "" : ", ") + word;
-  }
-  return list;
-}
-
 /// "D [1/Pa], none at 0, from 0 to 1e-09"; what means nothing while the strength is null has no
 /// value at which nothing is there.
 std::string parameter_text(const EffectParameter& p) {

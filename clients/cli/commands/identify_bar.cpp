@@ -10,7 +10,6 @@
 #include "clients/cli/slow_work.hpp"
 #include "clients/cli/threads.hpp"
 #include "clients/report/svg.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/identification/better_solid.hpp"
@@ -18,7 +17,6 @@
 namespace kolsky::cli {
 namespace {
 
-constexpr mode_t kReadableByAll = 0644;
 constexpr const char* kName = "kolsky identify bar";
 
 struct Settings {
@@ -81,10 +79,9 @@ void write_material(const std::string& path, const BarIdentification& result,
                            : mend_of(fit.solid));
   }
   const auto better = better_solid(result);
-  NewFile file(path);
-  file.write(format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced, !grows,
-                                        better ? cost_of_filing(fit, *better) : ""}));
-  file.publish(kReadableByAll);
+  write_output(
+      path, format_material(material, {shots.size(), name_of(fit.theory), fit.chi2_reduced, !grows,
+                                       better ? cost_of_filing(fit, *better) : ""}));
 }
 
 std::optional<FitDraws> drawn(const std::vector<Shot>& shots, const BarIdentification& result,
@@ -127,9 +124,7 @@ int run(const Settings& settings, Context& context) {
   context.out << (context.json ? to_text(describe(result, told, draws)) + "\n"
                                : report(result, draws));
   if (settings.svg) {
-    NewFile page(*settings.svg);
-    page.write(render_svg(bar_figure(result, foretold.front())));
-    page.publish(kReadableByAll);
+    write_output(*settings.svg, render_svg(bar_figure(result, foretold.front())));
   }
   if (settings.model_out) {
     write_material(*settings.model_out, result, shots);

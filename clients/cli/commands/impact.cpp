@@ -6,8 +6,8 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/impact_run.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
 #include "drivers/files/settings/toml_table.hpp"
@@ -19,7 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr mode_t kReadableByAll = 0644;
 constexpr double kTellEvery_s = 1.0;
 constexpr double kLogEvery_s = 15.0;
 
@@ -307,9 +306,7 @@ int run_command(const Settings& settings, Context& context) {
   prepare(run, settings, context.json);
   simulate(run, settings);
   if (settings.svg.has_value()) {
-    NewFile file(*settings.svg);
-    file.write(page(run));
-    file.publish(kReadableByAll);
+    write_output(*settings.svg, page(run));
   }
   context.out << (context.json ? to_text(describe(run)) + "\n" : report(run, context.terminal));
   return kDone;

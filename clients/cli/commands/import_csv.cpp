@@ -45,14 +45,6 @@ std::vector<std::string> channel_names(const Shot& shot) {
   return names;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
-}
-
 int run(const Settings& settings, Context& context) {
   TableImport request;
   request.tables.assign(settings.tables.begin(), settings.tables.end());

@@ -7,6 +7,7 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/doubts.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/ball_report.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/cli/threads.hpp"
@@ -14,15 +15,12 @@
 #include "clients/figure/reduction_figure.hpp"
 #include "clients/report/svg.hpp"
 #include "drivers/files/captures/capture.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/exports/export.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/requested.hpp"
 
 namespace kolsky::cli {
 namespace {
-
-constexpr mode_t kReadableByAll = 0644;
 
 constexpr const char* kName = "kolsky reduce";
 
@@ -105,11 +103,10 @@ void write_files(const Settings& settings, const ReducedShot& reduced) {
     write_capture(corrected, *settings.save);
   }
   if (settings.svg.has_value()) {
-    NewFile page(*settings.svg);
-    page.write(render_svg(reduced.reduction.ball
-                              ? ball_figure(reduced.reduction, reduced.shot.id)
-                              : reduction_figure(reduced.reduction, reduced.shot.id)));
-    page.publish(kReadableByAll);
+    write_output(
+        *settings.svg,
+        render_svg(reduced.reduction.ball ? ball_figure(reduced.reduction, reduced.shot.id)
+                                          : reduction_figure(reduced.reduction, reduced.shot.id)));
   }
   if (settings.csv.has_value()) {
     export_shot(reduced.shot, reduced.reduction, ExportFormat::csv, *settings.csv);

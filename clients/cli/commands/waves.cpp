@@ -10,20 +10,18 @@
 
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/figure/recorded_waves_figure.hpp"
 #include "clients/report/svg.hpp"
 #include "clients/terminal/plot.hpp"
 #include "drivers/files/captures/capture.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
 namespace {
-
-constexpr mode_t kReadableByAll = 0644;
 
 struct Settings {
   std::string capture;
@@ -178,14 +176,6 @@ JsonValue describe(const Told& told) {
                     {"places", std::move(places)}};
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
-}
-
 double most(const std::vector<double>& history, std::size_t known) {
   double largest = 0.0;
   for (std::size_t n = 0; n < known; ++n) {
@@ -277,20 +267,14 @@ std::string table(const Told& told) {
   return text;
 }
 
-void write(const std::string& path, const std::string& text) {
-  NewFile file(path);
-  file.write(text);
-  file.publish(kReadableByAll);
-}
-
 int run(const Settings& settings, Context& context) {
   const Told told = tell(settings);
   if (settings.csv) {
-    write(*settings.csv, table(told));
+    write_output(*settings.csv, table(told));
   }
   if (settings.svg) {
-    write(*settings.svg,
-          render_svg(recorded_waves_figure(told.waves, told.period_s(), told.shot.id)));
+    write_output(*settings.svg,
+                 render_svg(recorded_waves_figure(told.waves, told.period_s(), told.shot.id)));
   }
   context.out << (context.json ? to_text(describe(told)) + "\n" : report(told, context.terminal));
   return kDone;

@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/terminal/terminal.hpp"
+
 namespace kolsky::cli {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
-}
 
 const StepTest* test_of(const ModelStep& step, const std::string& id) {
   const auto found = std::find_if(step.tests.begin(), step.tests.end(),
