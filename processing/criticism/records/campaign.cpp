@@ -113,17 +113,6 @@ double beyond_run(const std::vector<double>& readings, const Run& run) {
   return std::copysign(1.0, extreme) * (least_squares(powers, values)[0] - extreme);
 }
 
-/// The least by which two of a record's values differ.
-double least_step(std::vector<double> readings) {
-  std::ranges::sort(readings);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t n = 1; n < readings.size(); ++n) {
-    const double step = readings[n] - readings[n - 1];
-    least = step > 0.0 ? std::min(least, step) : least;
-  }
-  return least;
-}
-
 /// Whether a record comes to a run, or leaves it, within a few steps between codes: a pulse that
 /// was cut off comes and leaves steeply.
 bool level_beside(const std::vector<double>& readings, const Run& run, double most) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "processing/reduction/pulse.hpp"
 
@@ -27,16 +28,6 @@ double largest_step(std::span<const double> readings) {
   return largest;
 }
 
-/// The least by which a record changes: a step of its converter.
-double least_step(std::span<const double> readings) {
-  double least = HUGE_VAL;
-  for (std::size_t n = 1; n < readings.size(); ++n) {
-    const double step = std::abs(readings[n] - readings[n - 1]);
-    least = step > 0.0 ? std::min(least, step) : least;
-  }
-  return least;
-}
-
 /// A run of one reading with kSide samples to either side of it.
 /// @param quiet  of the record before its pulse
 /// @param step   of its converter
@@ -56,9 +47,19 @@ bool jumps_and_is_back(std::span<const double> readings, const LostSamples& run,
 
 }  // namespace
 
+double least_step(std::vector<double> readings) {
+  std::ranges::sort(readings);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 1; n < readings.size(); ++n) {
+    const double step = readings[n] - readings[n - 1];
+    least = step > 0.0 ? std::min(least, step) : least;
+  }
+  return least;
+}
+
 std::optional<LostSamples> lost_samples(std::span<const double> readings, std::size_t quiet) {
   const Quiet before = quiet_before(readings, quiet);
-  const double step = least_step(readings);
+  const double step = least_step({readings.begin(), readings.end()});
   LostSamples run{0, 1};
   for (std::size_t n = 1; n + kSide <= readings.size(); ++n) {
     if (readings[n] == readings[n - 1]) {
