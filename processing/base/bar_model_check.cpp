@@ -63,14 +63,8 @@ void require_density(const Material& model, const Bench& bench, const std::strin
   });
 }
 
-bool any_viscoelastic(const Bench& bench) {
-  bool any = false;
-  for_viscoelastic_bars(bench, [&](std::string_view, const Bar&) { any = true; });
-  return any;
-}
-
 void require_moduli(const Material& model, const Bench& bench, const std::string& name) {
-  if (any_viscoelastic(bench)) {
+  if (!all_elastic(bench)) {
     require_passive(model, name);
   }
   require_density(model, bench, name);
@@ -104,14 +98,14 @@ std::optional<double> temperature_of(const Shot& shot) {
 
 void require_bar_model_holds(const Material& model, const Bench& bench, const std::string& name) {
   require_moduli(model, bench, name);
-  if (any_viscoelastic(bench) && bench.temperature_K) {
+  if (!all_elastic(bench) && bench.temperature_K) {
     require_temperature(model, bench.temperature_K->value, "the bench is filed", name);
   }
 }
 
 void require_bar_model_holds(const Material& model, const Shot& shot, const std::string& name) {
   require_moduli(model, shot.bench, name);
-  if (any_viscoelastic(shot.bench)) {
+  if (!all_elastic(shot.bench)) {
     require_temperature(model, temperature_of(shot), "capture " + shot.id + " was taken", name);
   }
 }
@@ -123,7 +117,7 @@ void require_band_known(const Material& model, std::optional<double> asked_Hz,
     throw InputError(name,
                      "was identified up to " + with_decimals(*known_Hz, 0) + " Hz, and " +
                          with_decimals(*asked_Hz, 0) + " Hz are asked for",
-                     "give a lower --band-limit, or identify the bars with shorter pulses");
+                     "ask for no more, or identify the bars with shorter pulses");
   }
 }
 
@@ -162,6 +156,13 @@ Material assumed_bars(const Bench& bench) {
     }
   });
   return pmma;
+}
+
+std::string viscoelastic_in_words(const Bench& bench, const std::optional<Material>& given) {
+  if (!given) {
+    return assumed_bars(bench).source + ", assumed because no bar model was given";
+  }
+  return given->source.empty() ? "the bar model given" : given->source;
 }
 
 }  // namespace kolsky

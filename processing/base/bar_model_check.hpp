@@ -44,4 +44,9 @@ void require_band_known(const Material& model, std::optional<double> asked_Hz,
 /// @throws InputError where a bar without a modulus is more than 5 % denser or lighter than that
 [[nodiscard]] Material assumed_bars(const Bench& bench);
 
+/// What viscoelastic bars are taken to be, for people: the source of the model given, else of that
+/// which is assumed. @throws InputError as assumed_bars
+[[nodiscard]] std::string viscoelastic_in_words(const Bench& bench,
+                                                const std::optional<Material>& given);
+
 }  // namespace kolsky

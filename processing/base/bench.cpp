@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -60,6 +62,21 @@ std::vector<BenchChannel> Bench::channels() const {
     list.push_back({sensor.name, "V"});
   }
   return list;
+}
+
+bool all_elastic(const Bench& bench) {
+  return bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa);
+}
+
+const Bar& bar_named(const Bench& bench, const std::string& name) {
+  if (name == "input") {
+    return bench.input;
+  }
+  if (name == "output" && bench.output) {
+    return *bench.output;
+  }
+  throw InputError("bar", "\"" + name + "\" is not a bar of this bench",
+                   bench.output ? "give input or output" : "give input: there is no other");
 }
 
 }  // namespace kolsky

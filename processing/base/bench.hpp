@@ -137,6 +137,12 @@ struct Bench {
   [[nodiscard]] std::vector<BenchChannel> channels() const;
 };
 
+/// Whether the modulus of every bar is filed: none is viscoelastic.
+[[nodiscard]] bool all_elastic(const Bench& bench);
+
+/// The input or the output bar. @throws InputError "bar" where the bench has none of that name
+[[nodiscard]] const Bar& bar_named(const Bench& bench, const std::string& name);
+
 /// Checks what a single number cannot show: ranges that catch unit mistakes (a 15 m bar, a density
 /// of 1.18), gauges off their bar, parts that the kind needs or does not have, names used twice.
 /// @throws InputError whose place is the key inside the bench file, as "bars.input.length_m"

@@ -55,10 +55,6 @@ ModelNumber of_material(CalibratedNumber::Of of, std::size_t parameter, const st
   return number;
 }
 
-bool elastic(const Bench& bench) {
-  return bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa);
-}
-
 /// Bars of which nothing is filed are of one material: one gauge on each would not tell two apart.
 bool each_bar_has_moduli(const Bench& bench, const CalibrationOptions& options) {
   return options.bars && bench.output && !bench.input.youngs_modulus_Pa &&
@@ -150,7 +146,7 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
     number.least_sd = kExactly * kPlaceStep_m;
     list.push_back(number);
   }
-  if (elastic(bench)) {
+  if (all_elastic(bench)) {
     ModelNumber number;
     number.of = Of::elastic_modulus;
     number.id = number.effect = "bar-modulus";
@@ -175,7 +171,7 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
                  const std::set<std::string>& released, double loosen) {
   Model model;
   model.kind = bench.kind;
-  if (!elastic(bench)) {
+  if (!all_elastic(bench)) {
     add_bars(bench, options, material_of(part, options), model);
   }
   model.effects.push_back(use_named("elementary-waves"));

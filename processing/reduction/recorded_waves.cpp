@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
 
@@ -9,8 +10,9 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/reduction/first_pulse.hpp"
-#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/quality.hpp"
 #include "processing/reduction/requested.hpp"
+#include "processing/reduction/separation_records.hpp"
 #include "processing/reduction/stations.hpp"
 #include "processing/waves/band_limit.hpp"
 #include "processing/waves/seen_modes.hpp"
@@ -19,27 +21,6 @@
 namespace kolsky {
 
 namespace {
-
-const Bar& bar_named(const Bench& bench, const std::string& name) {
-  if (name == "input") {
-    return bench.input;
-  }
-  if (name == "output" && bench.output) {
-    return *bench.output;
-  }
-  throw InputError("bar", "\"" + name + "\" is not a bar of this bench",
-                   bench.output ? "give input or output" : "give input: there is no other");
-}
-
-std::vector<std::size_t> channels_on(const Bench& bench, const std::string& bar) {
-  std::vector<std::size_t> channels;
-  for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
-    if (bench.gauges[i].bar == bar) {
-      channels.push_back(i);
-    }
-  }
-  return channels;
-}
 
 /// What is known of a bar's ends. The start is struck, or at the specimen.
 FreeEnds ends_of(const Bench& bench, const Bar& bar, const RecordedWavesOptions& options) {
@@ -51,67 +32,53 @@ FreeEnds ends_of(const Bench& bench, const Bar& bar, const RecordedWavesOptions&
   return {.start = false, .end = !matched, .end_matched = matched};
 }
 
-/// The records of one bar's gauges, silent before the first of their pulses.
-struct Records {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> strains;
-  std::vector<double> noise_rms;
-  std::vector<SeparationGauge> gauges;
-  std::size_t quiet = 0;
-  std::size_t first = 0;  ///< of the gauges: which sees the pulse first
-
-  Records(const Shot& shot, const std::string& bar) {
-    const std::vector<std::size_t> channels = channels_on(shot.bench, bar);
-    find_quiet(shot, channels, bar);
-    for (const std::size_t channel : channels) {
-      names.push_back(shot.channels[channel].gauge);
-      auto& strain = strains.emplace_back(shot.samples());
-      read_station(shot, Station{.channels = {channel}}, quiet, strain);
-      noise_rms.push_back(quiet_before(strain, quiet).noise_rms);
-      std::fill_n(strain.begin(), quiet, 0.0);
-    }
-    // A converter of few bits makes no noise while nothing moves: then all count alike.
-    const bool all_noisy = std::ranges::all_of(noise_rms, [](double rms) { return rms > 0.0; });
-    for (std::size_t j = 0; j < channels.size(); ++j) {
-      gauges.push_back({.position_m = shot.bench.gauges[channels[j]].position_m,
-                        .values = strains[j],
-                        .noise_rms = all_noisy ? noise_rms[j] : 0.0});
-    }
-  }
-
- private:
-  void find_quiet(const Shot& shot, const std::vector<std::size_t>& channels,
-                  const std::string& bar) {
-    std::vector<double> readings(shot.samples());
-    quiet = shot.samples();
-    for (std::size_t j = 0; j < channels.size(); ++j) {
-      read_raw_station(shot, Station{.channels = {channels[j]}}, readings);
-      const auto pulse = first_pulse(readings, shot.rate.Hz());
-      if (pulse && pulse->quiet < quiet) {
-        quiet = pulse->quiet;
-        first = j;
-      }
-    }
-    if (quiet == shot.samples()) {
-      throw InputError("record",
-                       channels.empty() ? "has no gauge on the " + bar + " bar"
-                                        : "shows no pulse on the " + bar + " bar's gauges",
-                       channels.empty() ? "give a bar that has gauges"
-                                        : "give a shot's whole record, from before the impact");
-    }
-  }
+/// Where a bar's gauges see a pulse first.
+struct FirstSeen {
+  std::size_t gauge = 0;  ///< of the bar's
+  std::size_t quiet = 0;  ///< samples before it
 };
 
-/// Where the bar's gauges go blind, `highest_Hz` where they do not up to there.
-double blind_from(const Bar& bar, const Compliance& compliance, WaveTheory theory,
-                  double highest_Hz) {
-  constexpr std::size_t kSteps = 512;
-  std::vector<Complex> path;
-  path.reserve(kSteps);
-  for (std::size_t n = 1; n <= kSteps; ++n) {
-    path.emplace_back(0.0, 2.0 * std::numbers::pi * highest_Hz * static_cast<double>(n) / kSteps);
+FirstSeen first_seen(const Shot& shot, const std::string& bar) {
+  FirstSeen first{0, shot.samples()};
+  std::vector<double> readings(shot.samples());
+  std::size_t gauge = 0;
+  for (std::size_t i = 0; i < shot.bench.gauges.size(); ++i) {
+    if (shot.bench.gauges[i].bar != bar) {
+      continue;
+    }
+    read_raw_station(shot, Station{.channels = {i}}, readings);
+    const auto pulse = first_pulse(readings, shot.rate.Hz());
+    if (pulse && pulse->quiet < first.quiet) {
+      first = {gauge, pulse->quiet};
+    }
+    ++gauge;
   }
-  return blind_from_Hz(bar_modes(theory, bar, compliance, path), path);
+  if (gauge == 0) {
+    throw InputError("record", "has no gauge on the " + bar + " bar", "give a bar that has gauges");
+  }
+  if (first.quiet == shot.samples()) {
+    throw InputError("record", "shows no pulse on the " + bar + " bar's gauges",
+                     "give a shot's whole record, from before the impact");
+  }
+  return first;
+}
+
+/// What a bar is made of, and up to where that is known: of an elastic bar without an end.
+struct BarModel {
+  std::unique_ptr<const Compliance> compliance;
+  std::optional<double> most_band_Hz;
+};
+
+BarModel bar_model_of(const Shot& shot, const Bar& bar, const RecordedWavesOptions& options) {
+  const std::optional<Material>& given = options.bar_model ? options.bar_model : shot.bar_model;
+  if (bar.youngs_modulus_Pa || !given) {
+    return {compliance_of(bar, bar.youngs_modulus_Pa ? Material{} : assumed_bars(shot.bench)), {}};
+  }
+  const char* name = options.bar_model ? "the bar model given" : "the capture's bar model";
+  require_bar_model_holds(*given, shot, name);
+  require_band_known(*given, options.band_limit_Hz, name);
+  return {compliance_of(*given),
+          given->identified ? given->identified->band_limit_Hz : std::optional<double>{}};
 }
 
 /// A record that ends while waves ring jumps there to nothing, which is in all frequencies: its
@@ -126,27 +93,29 @@ std::vector<double> faded(std::span<const double> record) {
   return gradual;
 }
 
-double band_limit_of(const Shot& shot, const Records& records, const Bar& bar,
-                     const Compliance& compliance, const RecordedWavesOptions& options) {
+double band_limit_of(const Shot& shot, const SeparationRecords& records, const FirstSeen& first,
+                     const Bar& bar, const BarModel& model, const RecordedWavesOptions& options) {
   const double nyquist_Hz = shot.rate.Hz() / 2.0;
-  const double blind_Hz =
-      blind_from(bar, compliance, options.theory, options.band_limit_Hz.value_or(nyquist_Hz));
   if (options.band_limit_Hz) {
     require_band_of_record(options.band_limit_Hz, shot.rate.Hz());
-    require_band_seen(*options.band_limit_Hz, blind_Hz);
+    require_band_seen(*options.band_limit_Hz, blind_from_Hz(options.theory, bar, *model.compliance,
+                                                            *options.band_limit_Hz));
     return *options.band_limit_Hz;
   }
+  const double blind_Hz = blind_from_Hz(options.theory, bar, *model.compliance, nyquist_Hz);
   const std::vector<double> pulse =
-      faded(std::span(records.strains[records.first]).subspan(records.quiet));
+      faded(std::span(records.strains[first.gauge]).subspan(first.quiet));
   const DampedTransform transform(shot.samples(), shot.rate.period_s());
   BandLimit band(transform, pulse.size());
-  const double limit_Hz = band.from_noise(pulse, records.noise_rms[records.first]);
+  const double limit_Hz = std::min(band.from_noise(pulse, records.noise_rms[first.gauge]),
+                                   model.most_band_Hz.value_or(nyquist_Hz));
   return blind_Hz < nyquist_Hz ? std::min(limit_Hz, highest_band_limit_Hz(blind_Hz)) : limit_Hz;
 }
 
 /// Root of the mean square of what the waves leave of each record, from the pulse to `known`.
-std::vector<GaugeLeft> what_is_left(const Records& records, const WaveSeparation& separation,
-                                    double period_s, double band_limit_Hz, std::size_t known) {
+std::vector<GaugeLeft> what_is_left(const SeparationRecords& records,
+                                    const WaveSeparation& separation, double period_s,
+                                    double band_limit_Hz, std::size_t known) {
   std::vector<GaugeLeft> all;
   DampedTransform transform(records.strains.front().size(), period_s);
   BandLimit band(transform, 0);
@@ -158,11 +127,11 @@ std::vector<GaugeLeft> what_is_left(const Records& records, const WaveSeparation
     transform.inverse(spectrum, filtered);
     const SeparatedWaves waves = separation.at(records.gauges[j].position_m);
     double squares = 0.0;
-    for (std::size_t n = records.quiet; n < known; ++n) {
+    for (std::size_t n = records.least_quiet; n < known; ++n) {
       const double left = filtered[n] - waves.right_going[n] - waves.left_going[n];
       squares += left * left;
     }
-    const auto counted = static_cast<double>(std::max<std::size_t>(1, known - records.quiet));
+    const auto counted = static_cast<double>(std::max<std::size_t>(1, known - records.least_quiet));
     all.push_back({records.names[j], std::sqrt(squares / counted),
                    records.noise_rms[j] * band.noise_share(band_limit_Hz)});
   }
@@ -198,6 +167,12 @@ void require_specimen_at_end(const Bench& bench, const RecordedWavesOptions& opt
   }
 }
 
+void require_whole(const Shot& shot) {
+  if (const std::string reason = unusable_because(shot); !reason.empty()) {
+    throw InputError("record", "cannot be used: " + reason, kRepeatOrLeaveOut);
+  }
+}
+
 std::vector<double> places_of(const RecordedWavesOptions& options, const Bar& bar) {
   if (options.positions_m.empty()) {
     return {0.0, bar.length_m};
@@ -217,31 +192,29 @@ RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& optio
   const Bar& bar = bar_named(shot.bench, options.bar);
   const std::vector<double> places = places_of(options, bar);
   require_specimen_at_end(shot.bench, options);
-  Records records(shot, options.bar);
-  const std::optional<Material>& given = options.bar_model ? options.bar_model : shot.bar_model;
-  const auto compliance = compliance_of(bar, given ? *given : assumed_bars(shot.bench));
+  require_whole(shot);
+  const FirstSeen first = first_seen(shot, options.bar);
+  SeparationRecords records(shot, options.bar, [&](const Gauge&) { return first.quiet; });
+  const BarModel model = bar_model_of(shot, bar, options);
   const FreeEnds ends = ends_of(shot.bench, bar, options);
   const double period_s = shot.rate.period_s();
 
   RecordedWaves all;
   all.gauges = records.names;
   all.end_known = ends.end || ends.end_matched || options.equilibrium;
-  all.band_limit_Hz = band_limit_of(shot, records, bar, *compliance, options);
-  all.quiet = records.quiet;
+  all.band_limit_Hz = band_limit_of(shot, records, first, bar, model, options);
+  all.quiet = first.quiet;
   all.known = shot.samples();
   std::optional<StressAtEnd> at_end;
   if (options.equilibrium) {
     at_end.emplace(shot, options, all.band_limit_Hz);
     all.known = at_end->known;
-    records.gauges.push_back({.position_m = bar.length_m,
-                              .values = at_end->values,
-                              .noise_rms = records.gauges.front().noise_rms,
-                              .record = SeparationRecord::mean_stress_Pa});
+    records.add_end(bar, at_end->values);
   }
-  const WaveSeparation separation(bar, *compliance, options.theory, records.gauges, ends, period_s,
-                                  all.band_limit_Hz);
-  all.blind =
-      blind_frequencies(bar, *compliance, options.theory, records.gauges, ends, all.band_limit_Hz);
+  const WaveSeparation separation(bar, *model.compliance, options.theory, records.gauges, ends,
+                                  period_s, all.band_limit_Hz);
+  all.blind = blind_frequencies(bar, *model.compliance, options.theory, records.gauges, ends,
+                                all.band_limit_Hz);
   // What lies beyond the record comes back through the filter.
   const auto smear =
       static_cast<std::size_t>(std::ceil(BandLimit::smear_s(all.band_limit_Hz) * shot.rate.Hz()));

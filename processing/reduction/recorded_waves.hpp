@@ -17,7 +17,7 @@ struct RecordedWavesOptions {
   std::vector<double> positions_m{};  ///< where the waves are wanted, from the bar's start; its two
                                       ///< ends where empty
   WaveTheory theory = WaveTheory::elementary;
-  std::optional<double> band_limit_Hz{};  ///< else what the noise allows
+  std::optional<double> band_limit_Hz{};  ///< else what noise and bar model allow
   bool gauges_only = false;               ///< nothing is taken for known of the bar's far end
   /// Of the input bar at a specimen: the output bar's force is taken for the force at its end.
   bool equilibrium = false;
@@ -52,9 +52,9 @@ struct RecordedWaves {
 
 /// Left- and right-going waves from all gauges of a bar, and from what its far end does where that
 /// is known: free or matched as filed; at a specimen nothing, or the other bar's force.
-/// @throws InputError where gauges do not suffice or none shows a pulse, a place is off the bar,
-/// the band is beyond the record or what the gauges see, or equilibrium is asked for without a
-/// specimen at the bar's end
+/// @throws InputError where samples are missing or cut off, gauges do not suffice or none shows a
+/// pulse, a place is off the bar, the band is beyond the record or what the gauges see, or
+/// equilibrium is asked for without a specimen at the bar's end
 [[nodiscard]] RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& options);
 
 }  // namespace kolsky

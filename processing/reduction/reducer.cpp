@@ -14,19 +14,6 @@ namespace kolsky {
 
 namespace {
 
-std::string describe(const Bench& bench, const Material& viscoelastic, bool assumed) {
-  const bool elastic_input = bench.input.youngs_modulus_Pa.has_value();
-  const bool elastic_output = bench.output->youngs_modulus_Pa.has_value();
-  if (elastic_input && elastic_output) {
-    return "elastic bars, moduli from the bench";
-  }
-  std::string text = viscoelastic.source.empty() ? "the bar model given" : viscoelastic.source;
-  if (assumed) {
-    text += ", assumed because no bar model was given";
-  }
-  return text;
-}
-
 void require_reducible_bench(const Shot& shot) {
   if (shot.bench.kind == BenchKind::bar) {
     throw InputError("kind", "is \"bar\", a bar by itself: there is no specimen to reduce",
@@ -132,7 +119,10 @@ Reduction Reducer::State::reduce(const Shot& shot) {
                                             material, in, out);
       });
   Reduction reduction = shpb_pass(shot, in, out, told, own_plans, own_tables);
-  reduction.bar_model = describe(shot.bench, material, assumed);
+  reduction.bar_model =
+      all_elastic(shot.bench)
+          ? "elastic bars, moduli from the bench"
+          : viscoelastic_in_words(shot.bench, assumed ? std::nullopt : std::optional(material));
   return reduction;
 }
 

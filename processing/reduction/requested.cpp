@@ -67,15 +67,10 @@ void require_band_of_model(const std::optional<double>& band_limit_Hz, const Mat
 /// Before any shot is there; a shot's own tables say it again.
 void require_bar_seen(double band_limit_Hz, WaveTheory theory, const Bar& bar,
                       const Material& viscoelastic) {
-  constexpr std::size_t kSteps = 256;
   constexpr double kBeyond = 1.01;
-  const double step_Hz = kBeyond * band_limit_Hz / static_cast<double>(kSteps);
-  std::vector<Complex> path;
-  for (std::size_t n = 1; n <= kSteps; ++n) {
-    path.emplace_back(0.0, 2.0 * std::numbers::pi * step_Hz * static_cast<double>(n));
-  }
   const std::unique_ptr<const Compliance> compliance = compliance_of(bar, viscoelastic);
-  require_band_seen(band_limit_Hz, blind_from_Hz(bar_modes(theory, bar, *compliance, path), path));
+  require_band_seen(band_limit_Hz,
+                    blind_from_Hz(theory, bar, *compliance, kBeyond * band_limit_Hz));
 }
 
 }  // namespace

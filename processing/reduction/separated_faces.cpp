@@ -6,58 +6,30 @@
 #include <utility>
 
 #include "processing/base/error.hpp"
-#include "processing/reduction/pulse.hpp"
+#include "processing/reduction/separation_records.hpp"
 #include "processing/separation/separation.hpp"
 
 namespace kolsky {
 
 namespace {
 
-/// One bar's gauges with their records.
-struct BarRecords {
-  std::vector<std::vector<double>> strains;
-  std::vector<SeparationGauge> gauges;
-  std::string names;        ///< as "g1 and g2"
-  std::size_t least_quiet;  ///< samples before the pulse at all of them
+/// Samples before the pulse at a gauge: fewer where it stands before the one that gave `quiet`.
+std::size_t quiet_at(const Shot& shot, const ShpbBar& model, const Gauge& gauge,
+                     std::size_t quiet) {
+  const double ahead_m = gauge.bar == "input" ? shot.bench.distance_to_specimen_m(gauge) -
+                                                    model.waves.gauge_to_specimen_m
+                                              : 0.0;
+  const double earlier = std::ceil(std::max(0.0, model.front_time_s(ahead_m)) * shot.rate.Hz());
+  return quiet - std::min(quiet, static_cast<std::size_t>(earlier));
+}
 
-  BarRecords(const Shot& shot, const ShpbBar& model, const std::string& bar, std::size_t quiet)
-      : least_quiet(quiet) {
-    const Bench& bench = shot.bench;
-    std::vector<double> noise;
-    for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
-      const Gauge& gauge = bench.gauges[i];
-      if (gauge.bar != bar) {
-        continue;
-      }
-      const std::size_t before = quiet_of(shot, model, gauge, quiet);
-      least_quiet = std::min(least_quiet, before);
-      auto& strain = strains.emplace_back(shot.samples());
-      read_station(shot, Station{.channels = {i}}, before, strain);
-      noise.push_back(quiet_before(strain, before).noise_rms);
-      std::fill_n(strain.begin(), before, 0.0);
-      gauges.push_back({.position_m = gauge.position_m, .values = {}});
-      names += (names.empty() ? "" : " and ") + gauge.name;
-    }
-    // A converter of few bits makes no noise while nothing moves: then all count alike.
-    const bool all_noisy =
-        std::all_of(noise.begin(), noise.end(), [](double n) { return n > 0.0; });
-    for (std::size_t j = 0; j < gauges.size(); ++j) {
-      gauges[j].values = strains[j];
-      gauges[j].noise_rms = all_noisy ? noise[j] : 0.0;
-    }
+std::string all_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : " and ") + name;
   }
-
- private:
-  /// Samples before the pulse at a gauge: fewer where it stands before the one that gave `quiet`.
-  static std::size_t quiet_of(const Shot& shot, const ShpbBar& model, const Gauge& gauge,
-                              std::size_t quiet) {
-    const double ahead_m = gauge.bar == "input" ? shot.bench.distance_to_specimen_m(gauge) -
-                                                      model.waves.gauge_to_specimen_m
-                                                : 0.0;
-    const double earlier = std::ceil(std::max(0.0, model.front_time_s(ahead_m)) * shot.rate.Hz());
-    return quiet - std::min(quiet, static_cast<std::size_t>(earlier));
-  }
-};
+  return text;
+}
 
 std::vector<double> times(const std::vector<double>& values, double factor) {
   std::vector<double> scaled(values);
@@ -120,21 +92,21 @@ SeparatedFaces separated_faces(const Shot& shot, const ShpbTables& bars, Separat
     require_two_places(shot.bench);
   }
   const double period_s = shot.rate.period_s();
-  const BarRecords out(shot, bars.output, "output", quiet);
+  const SeparationRecords out(shot, "output", [&](const Gauge& gauge) {
+    return quiet_at(shot, bars.output, gauge, quiet);
+  });
   const bool matched = bars.output_bar.far_end == FarEnd::matched;
   const WaveSeparation back(bars.output_bar, *bars.output.compliance, bars.theory, out.gauges,
                             {.start = false, .end = !matched, .end_matched = matched}, period_s,
                             band_limit_Hz);
   SeparatedWaves at_back = back.at(0.0, StrainOf::section);
 
-  BarRecords in(shot, bars.input, "input", quiet);
+  SeparationRecords in(
+      shot, "input", [&](const Gauge& gauge) { return quiet_at(shot, bars.input, gauge, quiet); });
   std::vector<double> stress_front;
   if (how == Separation::equilibrium) {
     stress_front = times(at_back.stress_Pa, bars.output.waves.area_m2 / bars.input.waves.area_m2);
-    in.gauges.push_back({.position_m = bars.input_bar.length_m,
-                         .values = stress_front,
-                         .noise_rms = in.gauges.front().noise_rms,
-                         .record = SeparationRecord::mean_stress_Pa});
+    in.add_end(bars.input_bar, stress_front);
   }
   const WaveSeparation front(bars.input_bar, *bars.input.compliance, bars.theory, in.gauges, {},
                              period_s, band_limit_Hz);
@@ -161,7 +133,7 @@ SeparatedFaces separated_faces(const Shot& shot, const ShpbTables& bars, Separat
                                                        bars.theory, in.gauges, {}, band_limit_Hz)) {
     faces.blind_Hz.push_back(blind.frequency_Hz);
   }
-  faces.gauges = in.names;
+  faces.gauges = all_of(in.names);
   faces.quiet = in.least_quiet;
   faces.known = std::min(front.known(bars.input_bar.length_m), back.known(0.0));
   return faces;

@@ -100,7 +100,7 @@ void add_bar(Sources& sources, const Bench& bench, const BarPrior& bars, bool in
 
 /// Of viscoelastic bars.
 void add_moduli(Sources& sources, const Bench& bench, const BarPrior& bars) {
-  if (bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa)) {
+  if (all_elastic(bench)) {
     return;
   }
   const Eigen::MatrixXd directions = moduli_directions(bench, bars);

@@ -69,6 +69,17 @@ double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> pa
   return path.back().imag() / (2.0 * std::numbers::pi);
 }
 
+double blind_from_Hz(WaveTheory theory, const Bar& bar, const Compliance& compliance,
+                     double highest_Hz) {
+  constexpr std::size_t kSteps = 512;
+  std::vector<Complex> path;
+  path.reserve(kSteps);
+  for (std::size_t n = 1; n <= kSteps; ++n) {
+    path.emplace_back(0.0, 2.0 * std::numbers::pi * highest_Hz * static_cast<double>(n) / kSteps);
+  }
+  return blind_from_Hz(bar_modes(theory, bar, compliance, path), path);
+}
+
 double front_speed_m_per_s(const Bar& bar, const Compliance& compliance) {
   return 1.0 / std::sqrt(bar.density_kg_m3 * compliance.instantaneous());
 }

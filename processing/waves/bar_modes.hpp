@@ -28,6 +28,10 @@ inline constexpr double kBlindMeanOverSurface = 2.0;
 /// half of the mean strain. The path's highest frequency where that does not happen.
 [[nodiscard]] double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path);
 
+/// The same of a bar; `highest_Hz` where that does not happen up to there.
+[[nodiscard]] double blind_from_Hz(WaveTheory theory, const Bar& bar, const Compliance& compliance,
+                                   double highest_Hz);
+
 /// Speed of a wave's very front [m/s], 1 / sqrt(rho J(infinity)).
 [[nodiscard]] double front_speed_m_per_s(const Bar& bar, const Compliance& compliance);
 

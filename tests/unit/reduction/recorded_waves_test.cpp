@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/unit/reduction/solved_bench.hpp"
@@ -192,16 +193,19 @@ TEST(RecordedWaves, OneGaugeAndTheOtherBarsForceServeLikeTwoGauges) {
   EXPECT_LT(error, 0.05);
 }
 
+/// The place of the error, or nothing.
+std::string refusal(const Shot& shot, const RecordedWavesOptions& options) {
+  try {
+    (void)recorded_waves(shot, options);
+  } catch (const InputError& error) {
+    return error.place();
+  }
+  return "nothing";
+}
+
 TEST(RecordedWaves, WhatCannotBeToldIsRefused) {
   const Shot shot = solved(4e-6).shot;
-  const auto place = [](const Shot& of, const RecordedWavesOptions& options) {
-    try {
-      (void)recorded_waves(of, options);
-    } catch (const InputError& error) {
-      return error.place();
-    }
-    return std::string("nothing");
-  };
+  const auto place = refusal;
   EXPECT_EQ(place(shot, {.bar = "third"}), "bar");
   EXPECT_EQ(place(shot, {.positions_m = {0.71}}), "position");
   EXPECT_EQ(place(shot, {.band_limit_Hz = 0.6e6}), "band_limit_Hz");
@@ -214,6 +218,30 @@ TEST(RecordedWaves, WhatCannotBeToldIsRefused) {
     channel.codes.resize(300);  // the impact comes after 400
   }
   EXPECT_EQ(place(silent, {}), "record");
+}
+
+TEST(RecordedWaves, OfRecordsThatAreNotWholeAreRefused) {
+  const Shot shot = solved(4e-6).shot;
+  Shot holed = shot;
+  holed.gaps.push_back({.first_tick = shot.first_tick + 900, .samples = 3});
+  EXPECT_EQ(refusal(holed, {}), "record");
+  Shot clipped = shot;
+  clipped.channels[1].codes[900] = clipped.channels[1].code_max;
+  EXPECT_EQ(refusal(clipped, {}), "record");
+}
+
+// Moduli are known as far as the bars were identified: no default goes further, and no one may ask.
+TEST(RecordedWaves, StayWithinTheBandOfTheBarModel) {
+  const Shot shot = solved(4e-6).shot;
+  const double free_Hz = recorded_waves(shot, {}).band_limit_Hz;
+  Material model = assumed_bars(shot.bench);
+  model.identified.emplace().band_limit_Hz = 0.5 * free_Hz;
+  EXPECT_DOUBLE_EQ(recorded_waves(shot, {.bar_model = model}).band_limit_Hz, 0.5 * free_Hz);
+  EXPECT_EQ(refusal(shot, {.band_limit_Hz = 0.6 * free_Hz, .bar_model = model}),
+            "the bar model given");
+  Shot filed = shot;
+  filed.bar_model = model;
+  EXPECT_DOUBLE_EQ(recorded_waves(filed, {}).band_limit_Hz, 0.5 * free_Hz);
 }
 
 }  // namespace
