@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/bar_options.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/outputs.hpp"
@@ -103,12 +104,6 @@ struct Bars {
   std::string name;  ///< of what they were given by; empty: by the captures
 };
 
-/// Nothing: what the shots are evidence for.
-std::optional<SolidKind> bar_solid_of(const Settings& settings) {
-  const std::string solid = settings.bar_solid.value_or(name_of(SolidKind::three_element));
-  return solid == "auto" ? std::nullopt : std::optional(solid_kind(solid));
-}
-
 Bars bars_of(const Settings& settings, ChainRun& run) {
   if (settings.bar_solid && settings.bar_shots.empty()) {
     throw InputError(std::string(kPlace) + "--bar-solid", "is of the bar that --bar-shots identify",
@@ -132,7 +127,7 @@ Bars bars_of(const Settings& settings, ChainRun& run) {
   require_kind(shots, BenchKind::bar, "--bar-shots", "bar");
   say_to_a_person(fmt::format("identifying the bar from {} shots", shots.size()));
   BarIdentificationOptions options;
-  options.solid = bar_solid_of(settings);
+  options.solid = solid_asked(settings.bar_solid);
   run.bar = identify_bar(shots, options, all_cores());
   run.bars = fmt::format("identified from {} shots", shots.size());
   const Material material =
@@ -487,14 +482,11 @@ Command chain_command() {
   command.arguments = {
       option("--bar-shots", "CAPTURE",
              "shots on the specimens' bar alone, kind \"bar\"; captures or folders", &s.bar_shots),
-      Argument{"--bar-solid",
-               "FAMILY",
-               "family of solids that --bar-shots identify: three-element (default), or what they\n"
-               "are evidence for (auto)",
-               &s.bar_solid,
-               false,
-               {"three-element", "four-element-fluid", "two-kelvin", "three-kelvin", "fractional",
-                "auto"}},
+      solid_option("--bar-solid",
+                   "family of solids that --bar-shots identify: three-element (default), or what "
+                   "they\n"
+                   "are evidence for (auto)",
+                   &s.bar_solid),
       option("--bar-model", "M.toml",
              "what identify bar --model-out wrote, in place of --bar-shots; with neither, elastic "
              "bars, the captures' own bar model or the paper's PMMA",

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <ostream>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/bar_options.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
@@ -48,13 +50,10 @@ struct Tabulated {
   }
 };
 
-std::vector<WaveRow> table_of(const Settings& settings, WaveTheory theory, const Bar& bar,
-                              const Compliance& compliance) {
-  constexpr std::uint64_t kPoints = 120;
+std::vector<WaveRow> table_of(WaveTheory theory, const Bar& bar, const Compliance& compliance,
+                              double highest_Hz, std::uint64_t points) {
   try {
-    return wave_table(theory, bar, compliance,
-                      settings.highest_Hz.value_or(thick_from_Hz(bar, compliance)),
-                      settings.points.value_or(kPoints));
+    return wave_table(theory, bar, compliance, highest_Hz, points);
   } catch (const InputError& error) {
     throw InputError(
         std::string("kolsky dispersion: ") + (error.place() == "points" ? "--points" : "--to"),
@@ -62,36 +61,57 @@ std::vector<WaveRow> table_of(const Settings& settings, WaveTheory theory, const
   }
 }
 
+const Bar& bar_of(const Bench& bench, const std::string& name) {
+  try {
+    return bar_named(bench, name);
+  } catch (const InputError& error) {
+    throw InputError("kolsky dispersion: --bar", error.problem(), error.mend());
+  }
+}
+
+/// The bar model given, and up to where it is known: nothing and without an end of elastic bars.
+struct BarModel {
+  std::optional<Material> material;
+  double most_band_Hz = std::numeric_limits<double>::infinity();
+};
+
+BarModel bar_model_of(const Settings& settings, const Bench& bench, const Bar& bar) {
+  if (!settings.bar_model) {
+    return {};
+  }
+  const BarModelFile file = read_bar_model(*settings.bar_model);
+  require_holds(file, bench);
+  if (bar.youngs_modulus_Pa) {
+    return {};
+  }
+  require_band(file, settings.highest_Hz);
+  BarModel model{file.prior.material};
+  model.most_band_Hz = file.band_limit_Hz.value_or(model.most_band_Hz);
+  return model;
+}
+
 Tabulated tabulate(const Settings& settings) {
+  constexpr std::uint64_t kPoints = 120;
   constexpr std::uint64_t kMostPoints = 100'000;
-  if (settings.points.value_or(1) > kMostPoints) {
+  const std::uint64_t points = settings.points.value_or(kPoints);
+  if (points > kMostPoints) {
     throw InputError("kolsky dispersion: --points", "are more than 100000", "give fewer");
   }
   const Bench bench = read_bench(settings.bench).bench;
   Tabulated result;
   result.bar = settings.bar.value_or("input");
-  if (result.bar == "output" && !bench.output) {
-    throw InputError(settings.bench + ": bars.output", "is missing", "leave out --bar output");
-  }
-  const Bar& bar = result.bar == "output" ? *bench.output : bench.input;
-  std::optional<BarModelFile> model;
-  if (settings.bar_model) {
-    model = read_bar_model(*settings.bar_model);
-    require_holds(*model, bench);
-  }
+  const Bar& bar = bar_of(bench, result.bar);
   if (settings.dispersion) {
     result.theory = wave_theory(*settings.dispersion);
   }
-  if (bar.youngs_modulus_Pa) {
-    result.bar_model = "elastic, modulus from the bench";
-  } else {
-    result.bar_model =
-        model ? model->prior.material.source
-              : assumed_bars(bench).source + ", assumed because no bar model was given";
-  }
-  const auto compliance = compliance_of(bar, model ? model->prior.material : assumed_bars(bench));
+  const BarModel model = bar_model_of(settings, bench, bar);
+  result.bar_model = bar_in_words(bar, bench, model.material);
+  const auto compliance =
+      compliance_of(bar, model.material ? *model.material : assumed_bars(bench));
+  const double highest_Hz =
+      settings.highest_Hz.value_or(std::min(thick_from_Hz(bar, *compliance), model.most_band_Hz));
   for (std::size_t i = 0; i < kTheories.size(); ++i) {
-    result.tables.at(i) = table_of(settings, kTheories.at(i), bar, *compliance);
+    result.tables.at(i) = table_of(kTheories.at(i), bar, *compliance, highest_Hz, points);
   }
   return result;
 }
@@ -212,13 +232,6 @@ int run(const Settings& settings, Context& context) {
 Command dispersion_command() {
   auto settings = std::make_shared<Settings>();
   Settings& s = *settings;
-  Argument bar = option("--bar", "NAME", "input (default) or output", &s.bar);
-  bar.choices = {"input", "output"};
-  Argument dispersion =
-      option("--dispersion", "THEORY",
-             "which waves are tabulated: exact (default), love or elementary; plots show all",
-             &s.dispersion);
-  dispersion.choices = {"elementary", "love", "exact"};
   Command command;
   command.name = "dispersion";
   command.purpose =
@@ -232,13 +245,17 @@ Command dispersion_command() {
       "  kolsky dispersion --bench bench.toml --bar output --svg waves.svg\n";
   command.arguments = {
       needed("--bench", "B.toml", "bench file with the bar", &s.bench),
-      bar,
+      bar_option(&s.bar),
       option("--bar-model", "M.toml", "material file of viscoelastic bars; else the paper's PMMA",
              &s.bar_model),
-      dispersion,
-      option("--to", "HZ",
-             "highest frequency, in Hz; by default where the radius is 0.3 wavelengths",
-             &s.highest_Hz),
+      dispersion_option(
+          "which waves are tabulated: exact (default), love or elementary; plots show all",
+          &s.dispersion),
+      option(
+          "--to", "HZ",
+          "highest frequency, in Hz; by default where the radius is 0.3 wavelengths, or as far as\n"
+          "the bar model is known",
+          &s.highest_Hz),
       option("--points", "N", "how many frequencies, evenly; 120 by default", &s.points),
       option("--csv", "FILE", "the whole table to write", &s.csv),
       option("--svg", "FILE", "a page of plots to write", &s.svg)};

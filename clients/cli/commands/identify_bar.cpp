@@ -1,6 +1,7 @@
 #include <memory>
 #include <ostream>
 
+#include "clients/cli/bar_options.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/doubts.hpp"
@@ -36,10 +37,7 @@ BarIdentificationOptions options_from(const Settings& settings) {
   if (settings.dispersion && *settings.dispersion != "auto") {
     options.theory = wave_theory(*settings.dispersion);
   }
-  if (settings.solid) {
-    options.solid =
-        *settings.solid == "auto" ? std::nullopt : std::optional(solid_kind(*settings.solid));
-  }
+  options.solid = solid_asked(settings.solid);
   if (settings.far_end && *settings.far_end != "auto") {
     options.far_end = *settings.far_end == "free"   ? FarEndReturn::free
                       : *settings.far_end == "none" ? FarEndReturn::none
@@ -158,21 +156,15 @@ Command identify_bar_command() {
           "material file to write, for --bar-model: values, deviations, covariance of the solid\n"
           "that --solid asks for or chooses",
           &s.model_out),
-      Argument{"--solid",
-               "FAMILY",
-               "family of solids for the spectrum and the file: three-element (default), or what "
-               "the records\n"
-               "are evidence for (auto); the three-element parameters always come too",
-               &s.solid,
-               false,
-               {"three-element", "four-element-fluid", "two-kelvin", "three-kelvin", "fractional",
-                "auto"}},
-      Argument{"--dispersion",
-               "THEORY",
-               "how waves travel in the bar; auto (default): what the records are evidence for",
-               &s.dispersion,
-               false,
-               {"elementary", "love", "exact", "auto"}},
+      solid_option(
+          "--solid",
+          "family of solids for the spectrum and the file: three-element (default), or what the "
+          "records\n"
+          "are evidence for (auto); the three-element parameters always come too",
+          &s.solid),
+      dispersion_option(
+          "how waves travel in the bar; auto (default): what the records are evidence for",
+          &s.dispersion, "auto"),
       Argument{"--far-end",
                "RETURN",
                "what comes back from the far end; auto (default): what the records show",

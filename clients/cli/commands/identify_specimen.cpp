@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/bar_options.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/doubts.hpp"
@@ -245,9 +246,9 @@ Command identify_specimen_command() {
       option("--solid", "FAMILY",
              "three-element (default), four-element-fluid, two-kelvin, three-kelvin or fractional",
              &s.solid),
-      option("--dispersion", "THEORY",
-             "how waves travel in the bars: elementary, love or exact; else what the data say",
-             &s.dispersion),
+      dispersion_option(
+          "how waves travel in the bars: elementary, love or exact; else what the data say",
+          &s.dispersion),
       option("--specimen", "WAVES",
              "massless (the paper), rod (its mass) or lateral (in both directions); else what the "
              "data say",

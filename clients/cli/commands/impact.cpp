@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/numbers.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/impact_run.hpp"
 #include "drivers/files/settings/bench_file.hpp"
@@ -47,23 +48,14 @@ struct Settings {
 
 constexpr const char* kPlace = "kolsky impact: ";
 
-double number_in(const std::string& text, const std::string& option_name) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != '\0' || !std::isfinite(value)) {
-    throw InputError(kPlace + option_name, "\"" + text + "\" is not a number", "give a number");
-  }
-  return value;
-}
-
 std::pair<double, double> two_numbers_in(const std::string& text, const std::string& option_name,
                                          const std::string& mend) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) {
     throw InputError(kPlace + option_name, "\"" + text + "\" lacks a comma", mend);
   }
-  return {number_in(text.substr(0, comma), option_name),
-          number_in(text.substr(comma + 1), option_name)};
+  return {number_in(text.substr(0, comma), kPlace + option_name),
+          number_in(text.substr(comma + 1), kPlace + option_name)};
 }
 
 // "D,TAU".
@@ -232,7 +224,7 @@ void prepare(ImpactRun& run, const Settings& settings, bool json) {
                      "give --svg FILE or --json beside it");
   }
   for (const std::string& time : settings.fields) {
-    run.model.field_times_s.push_back(number_in(time, "--field"));
+    run.model.field_times_s.push_back(number_in(time, std::string(kPlace) + "--field"));
   }
   run.model.field_at_turn = settings.svg.has_value() && settings.fields.empty();
 }

@@ -209,10 +209,10 @@ Bars bars_of(const Settings& settings, const Bench& bench) {
   }
   try {
     const Material material = assumed_bars(bench);
-    if (bench.input.youngs_modulus_Pa && bench.output && bench.output->youngs_modulus_Pa) {
+    if (all_elastic(bench)) {
       return {material, "elastic, moduli from the bench", false};
     }
-    return {material, material.source + ", assumed because no bar model was given", true};
+    return {material, viscoelastic_in_words(bench, std::nullopt), true};
   } catch (const InputError& error) {
     throw error.inside(settings.bench);
   }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/bar_options.hpp"
 #include "clients/cli/command.hpp"
 #include "clients/cli/doubts.hpp"
 #include "clients/cli/outputs.hpp"
@@ -222,9 +223,9 @@ Command reduce_command() {
       option("--duration", "S",
              "length of the histories in s; else until a wave comes back from a bar's far end",
              &s.request.duration_s),
-      option("--dispersion", "THEORY",
-             "how waves travel in the bars: elementary (the paper, default), love or exact",
-             &s.request.dispersion),
+      dispersion_option(
+          "how waves travel in the bars: elementary (the paper, default), love or exact",
+          &s.request.dispersion),
       option(
           "--separate", "BY",
           "tell waves that overlap apart by gauges (two places on the input bar) or equilibrium\n"

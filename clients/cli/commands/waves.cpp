@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <ostream>
-#include <sstream>
 
 #include "clients/cli/bar_model_file.hpp"
+#include "clients/cli/bar_options.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/numbers.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/reduced_shot.hpp"
 #include "clients/figure/layout.hpp"
@@ -17,8 +17,8 @@
 #include "clients/report/svg.hpp"
 #include "clients/terminal/plot.hpp"
 #include "drivers/files/captures/capture.hpp"
-#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
+#include "processing/reduction/first_pulse.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -50,26 +50,11 @@ struct Told {
   }
 };
 
-std::vector<double> positions_of(const std::string& list) {
-  std::vector<double> positions_m;
-  std::istringstream words(list);
-  for (std::string word; std::getline(words, word, ',');) {
-    double position_m = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), position_m);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(position_m)) {
-      throw InputError("kolsky waves: --at", "\"" + word + "\" is not a number",
-                       "give metres from the bar's start, as 0.5 or 0,0.5,2");
-    }
-    positions_m.push_back(position_m);
-  }
-  return positions_m;
-}
-
 RecordedWavesOptions options_of(const Settings& settings, const std::optional<BarModelFile>& bars) {
   RecordedWavesOptions options;
   options.bar = settings.bar.value_or(options.bar);
   if (settings.at) {
-    options.positions_m = positions_of(*settings.at);
+    options.positions_m = numbers_in(*settings.at, "kolsky waves: --at");
   }
   if (settings.dispersion) {
     options.theory = wave_theory(*settings.dispersion);
@@ -83,18 +68,14 @@ RecordedWavesOptions options_of(const Settings& settings, const std::optional<Ba
   return options;
 }
 
-std::string bar_in_words(const Told& told) {
-  const Bench& bench = told.shot.bench;
-  const Bar& bar = told.options.bar == "output" && bench.output ? *bench.output : bench.input;
-  if (bar.youngs_modulus_Pa) {
-    return "elastic, modulus from the bench";
-  }
+std::string model_in_words(const Told& told) {
+  const Bar& bar = bar_named(told.shot.bench, told.options.bar);
   const auto& given = told.options.bar_model ? told.options.bar_model : told.shot.bar_model;
-  if (!given) {
-    return assumed_bars(bench).source + ", assumed because no bar model was given";
+  std::string text = bar_in_words(bar, told.shot.bench, given);
+  if (given && !bar.youngs_modulus_Pa) {
+    text += doubts_in_brackets(*given, told.shot);
   }
-  return (given->source.empty() ? "the bar model given" : given->source) +
-         doubts_in_brackets(*given, told.shot);
+  return text;
 }
 
 /// What was asked for is named as it was given, all else as the capture's.
@@ -130,7 +111,7 @@ Told tell(const Settings& settings) {
   } catch (const InputError& error) {
     throw as_given(error, settings.capture);
   }
-  told.bar_model = bar_in_words(told);
+  told.bar_model = model_in_words(told);
   return told;
 }
 
@@ -168,6 +149,7 @@ JsonValue describe(const Told& told) {
                     {"far_end_known", told.waves.end_known},
                     {"equilibrium", told.options.equilibrium},
                     {"band_limit_Hz", told.waves.band_limit_Hz},
+                    {"quiet_samples", static_cast<double>(told.waves.quiet)},
                     {"quiet_until_s", told.time_s(told.waves.quiet)},
                     {"known_until_s", told.time_s(told.waves.known)},
                     {"blind", std::move(blind)},
@@ -229,6 +211,12 @@ std::string report(const Told& told, const Terminal& terminal) {
                                 with_unit(waves.band_limit_Hz, "Hz"));
   text += report_row("told apart by", joined(waves.gauges) + end_text(told) + ", until " +
                                           with_unit(told.time_s(waves.known), "s"));
+  if (waves.quiet < kFewestQuiet) {
+    text += report_row("quiet start",
+                       fmt::format("baselines and noise are from {} samples before the pulse "
+                                   "(wanted: {})",
+                                   waves.quiet, kFewestQuiet));
+  }
   for (const WavesAtPlace& place : waves.places) {
     text += place_text(told, place);
   }
@@ -285,12 +273,6 @@ int run(const Settings& settings, Context& context) {
 Command waves_command() {
   auto settings = std::make_shared<Settings>();
   Settings& s = *settings;
-  Argument bar = option("--bar", "NAME", "input (default) or output", &s.bar);
-  bar.choices = {"input", "output"};
-  Argument dispersion = option(
-      "--dispersion", "THEORY",
-      "how waves travel in the bar: elementary (the paper, default), love or exact", &s.dispersion);
-  dispersion.choices = {"elementary", "love", "exact"};
   Command command;
   command.name = "waves";
   command.purpose =
@@ -307,7 +289,7 @@ Command waves_command() {
       "  kolsky waves bar.h5 --bar-model pmma.toml --dispersion exact --at 0.7\n";
   command.arguments = {
       needed("CAPTURE", "", "the capture, of a bench of any kind", &s.capture),
-      bar,
+      bar_option(&s.bar),
       option("--at", "M,M,...",
              "where, in m from the bar's start (its impacted end, or the specimen's); else at\n"
              "both of its ends",
@@ -315,9 +297,11 @@ Command waves_command() {
       option("--bar-model", "M.toml",
              "material file of viscoelastic bars; else the capture's own, else the paper's PMMA",
              &s.bar_model),
-      dispersion,
+      dispersion_option(
+          "how waves travel in the bar: elementary (the paper, default), love or exact",
+          &s.dispersion),
       option("--band-limit", "HZ",
-             "upper end of the frequencies used, in Hz; else what the noise allows",
+             "upper end of the frequencies used, in Hz; else what noise and bar model allow",
              &s.band_limit_Hz),
       flag("--gauges-only",
            "take nothing for known of the bar's far end, which else is free, or matched as filed",

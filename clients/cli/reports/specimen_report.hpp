@@ -28,11 +28,7 @@ struct IdentifiedSpecimen {
 /// The same for people.
 [[nodiscard]] std::string report(const IdentifiedSpecimen& outcome);
 
-[[nodiscard]] bool elastic_bars(const Bench& bench);
-
 /// What the bars were taken to be.
 [[nodiscard]] std::string bars_in_words(const IdentifiedSpecimen& outcome);
-
-[[nodiscard]] std::string name_of_theory(WaveTheory theory);
 
 }  // namespace kolsky::cli

@@ -72,7 +72,7 @@ JsonValue spectral_json(const IdentifiedSpecimen& outcome) {
 }
 
 JsonObject describe(const ShpbTheory& theory) {
-  return {{"bars", name_of_theory(theory.bars)}, {"specimen", name_of(theory.specimen)}};
+  return {{"bars", name_of(theory.bars)}, {"specimen", name_of(theory.specimen)}};
 }
 
 /// What three elements make of the same records; nothing where the family is those.
@@ -109,7 +109,7 @@ JsonValue describe(const IdentifiedSpecimen& outcome) {
     entry.push_back({"refused", theory.refused.empty() ? JsonValue(nullptr) : theory.refused});
     tried.push_back(std::move(entry));
   }
-  const bool assumed = !elastic_bars(outcome.shots.front().bench) && !outcome.bars &&
+  const bool assumed = !all_elastic(outcome.shots.front().bench) && !outcome.bars &&
                        !outcome.shots.front().bar_model;
   return JsonObject{
       {"solid", name_of(fit.solid)},

@@ -4,6 +4,7 @@
 #include "clients/cli/reports/fit_draws.hpp"
 #include "clients/cli/reports/specimen_report.hpp"
 #include "clients/figure/layout.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/identification/parameter_budget.hpp"
 
 namespace kolsky::cli {
@@ -20,26 +21,15 @@ std::string table_of(const std::vector<FittedNumber>& list) {
 
 }  // namespace
 
-bool elastic_bars(const Bench& bench) {
-  return bench.input.youngs_modulus_Pa && bench.output && bench.output->youngs_modulus_Pa;
-}
-
 std::string bars_in_words(const IdentifiedSpecimen& outcome) {
   const Shot& first = outcome.shots.front();
-  if (elastic_bars(first.bench)) {
+  if (all_elastic(first.bench)) {
     return "elastic, moduli from the bench";
   }
   if (outcome.bars) {
     return outcome.bars->name;
   }
-  return first.bar_model ? first.bar_model->source
-                         : paper_pmma().source + ", assumed because no bar model was given";
-}
-
-std::string name_of_theory(WaveTheory theory) {
-  return theory == WaveTheory::elementary ? "elementary"
-         : theory == WaveTheory::love     ? "love"
-                                          : "exact";
+  return viscoelastic_in_words(first.bench, first.bar_model);
 }
 
 std::string report(const IdentifiedSpecimen& outcome) {
@@ -53,12 +43,12 @@ std::string report(const IdentifiedSpecimen& outcome) {
   text += budget_table(parameter_budget(fit.parameters, fit.by_bench, fit.bench),
                        names_of(fit.parameters));
   text += fmt::format("    chi2 per degree of freedom {:.3f} ({} of them); bars {}, specimen {}\n",
-                      fit.chi2_reduced, fit.degrees_of_freedom, name_of_theory(fit.theory.bars),
+                      fit.chi2_reduced, fit.degrees_of_freedom, name_of(fit.theory.bars),
                       name_of(fit.theory.specimen));
   for (const TriedTheory& tried : fit.tried) {
     text +=
-        fmt::format("      tried: bars {:<10} specimen {:<9} {}{}\n",
-                    name_of_theory(tried.theory.bars), name_of(tried.theory.specimen),
+        fmt::format("      tried: bars {:<10} specimen {:<9} {}{}\n", name_of(tried.theory.bars),
+                    name_of(tried.theory.specimen),
                     tried.refused.empty() ? fmt::format("chi2 {:.1f}", tried.chi2) : tried.refused,
                     tried.solid == fit.solid ? "" : ", three elements");
   }

@@ -71,11 +71,28 @@ TEST(DispersionFiles, RefuseWhatCannotBeTabulated) {
   using scene::kolsky;
   using scene::refused;
   EXPECT_TRUE(refused(kolsky({"dispersion", "--bench", bench, "--bar", "output"}),
-                      {"bars.output", "is missing"}));
+                      {"--bar", "give input: there is no other"}));
   EXPECT_TRUE(refused(kolsky({"dispersion", "--bench", bench, "--to", "-1"}), {"--to", "0 Hz"}));
   EXPECT_TRUE(
       refused(kolsky({"dispersion", "--bench", bench, "--points", "2"}), {"--points", "or more"}));
   EXPECT_TRUE(refused(kolsky({"dispersion"}), {"--bench is missing"}));
+}
+
+// Beyond the band in which a bar was identified nobody knows how its waves go.
+TEST(DispersionFiles, EndWhereTheBarModelDoes) {
+  const scene::Folder folder;
+  folder.write("pmma.toml",
+               "density_kg_m3 = 1180.0\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\nE2_Pa = 37.0e9\n"
+               "eta2_Pa_s = 1.81e6\n[identified]\nband_limit_Hz = 8e3\n");
+  const std::vector<std::string> words{"dispersion", "--bench", kBenches + "paper-bar.toml",
+                                       "--bar-model", folder / "pmma.toml"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return scene::kolsky(more);
+  };
+  EXPECT_NEAR(scene::json_of(with({"--json"}))["frequency_Hz"].back().get<double>(), 8e3, 1e-6);
+  EXPECT_EQ(with({"--to", "7e3"}).code, 0);
+  EXPECT_TRUE(scene::refused(with({"--to", "9e3"}), {"identified up to 8000 Hz", "no more"}));
 }
 
 }  // namespace

@@ -243,6 +243,8 @@ TEST_P(FiniteElementShots, TellHowTheOutputBarsFaceMoves) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "waves.svg"));
   const scene::Answer text = scene::kolsky({"waves", capture_, "--bar", "output"});
   EXPECT_NE(text.out.find("told apart by"), std::string::npos) << text.out << text.err;
+  // The foam's records begin with the pulse.
+  EXPECT_EQ(text.out.find("(wanted: 32)") != std::string::npos, told["quiet_samples"] < 32);
   EXPECT_TRUE(scene::refused(scene::kolsky({"waves", capture_, "--at", "0"}), {"two gauges"}));
   EXPECT_TRUE(scene::refused(scene::kolsky({"waves", capture_, "--at", "x"}), {"--at", "\"x\""}));
   EXPECT_TRUE(scene::refused(scene::kolsky({"waves", capture_, "--bar", "output", "--at", "9"}),

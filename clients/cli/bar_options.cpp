@@ -1,0 +1,44 @@
+#include "clients/cli/bar_options.hpp"
+
+#include <utility>
+
+#include "processing/base/bar_model_check.hpp"
+
+namespace kolsky::cli {
+
+Argument bar_option(std::optional<std::string>* target) {
+  Argument bar = option("--bar", "NAME", "input (default) or output", target);
+  bar.choices = {"input", "output"};
+  return bar;
+}
+
+Argument dispersion_option(std::string help, std::optional<std::string>* target,
+                           const std::optional<std::string>& further) {
+  Argument dispersion = option("--dispersion", "THEORY", std::move(help), target);
+  dispersion.choices = {"elementary", "love", "exact"};
+  if (further) {
+    dispersion.choices.push_back(*further);
+  }
+  return dispersion;
+}
+
+Argument solid_option(std::string name, std::string help, std::optional<std::string>* target) {
+  Argument solid = option(std::move(name), "FAMILY", std::move(help), target);
+  solid.choices = {"three-element", "four-element-fluid", "two-kelvin",
+                   "three-kelvin",  "fractional",         "auto"};
+  return solid;
+}
+
+std::optional<SolidKind> solid_asked(const std::optional<std::string>& name) {
+  if (!name) {
+    return SolidKind::three_element;
+  }
+  return *name == "auto" ? std::nullopt : std::optional(solid_kind(*name));
+}
+
+std::string bar_in_words(const Bar& bar, const Bench& bench, const std::optional<Material>& given) {
+  return bar.youngs_modulus_Pa ? "elastic, modulus from the bench"
+                               : viscoelastic_in_words(bench, given);
+}
+
+}  // namespace kolsky::cli
