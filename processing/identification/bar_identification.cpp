@@ -1,7 +1,9 @@
 #include "processing/identification/bar_identification.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "processing/base/bar_model_check.hpp"
@@ -122,7 +124,9 @@ std::vector<FarEndReturn> ends_to_try(const BarIdentificationOptions& options, b
 }
 
 std::string rounded(double value) {
-  return in_words(value, "");
+  std::array<char, 32> text{};
+  (void)std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 /// @param name  of the solid in words

@@ -6,15 +6,12 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-
-#include "processing/identification/carried_noise.hpp"
+#include <random>
 
 namespace kolsky {
 
 namespace {
 
-/// With a record that holds many returns, those beyond this many are taken alike.
-constexpr std::size_t kMostReturns = 12;
 /// Bins whose noise is taken together: to 15 kHz in records of 4 ms. Where losses show in them, an
 /// average over returns states deviations that are 4 to 8 % small.
 constexpr std::size_t kLowestBins = 60;
@@ -162,11 +159,25 @@ bool moved(const BarNoise& before, const BarNoise& after) {
   return false;
 }
 
-double travel_there_and_back_s(const BarData& data, const MovedBench& moved,
-                               const Compliance& compliance) {
-  const double distance_m = 2.0 * (moved.bar.length_m - moved.position_m[0]);
-  return std::max(distance_m / front_speed_m_per_s(moved.bar, compliance),
-                  data.judged_s() / static_cast<double>(kMostReturns));
+NoiseArrivals::Times arrival_times(const BarData& data, const MovedBench& moved,
+                                   const Compliance& compliance, bool comes_back) {
+  const double speed_m_per_s = front_speed_m_per_s(moved.bar, compliance);
+  const BarRecords& records = data.records().front();
+  const BarData::Places& places = data.places();
+  const auto way_back_s = [&](std::size_t gauge) {
+    return 2.0 * (moved.bar.length_m - moved.position_m[gauge]) / speed_m_per_s;
+  };
+  NoiseArrivals::Times times{.turn_s = way_back_s(0), .judged_s = data.judged_s()};
+  times.lead_s =
+      (static_cast<double>(places.judged_begin) - places.records_begin) * places.period_s;
+  for (std::size_t j = 1; j < data.gauges(); ++j) {
+    times.first_s.push_back((moved.position_m[j] - moved.position_m[0]) / speed_m_per_s -
+                            records.late_of_s(j));
+    if (comes_back) {
+      times.back_s.push_back(way_back_s(j));
+    }
+  }
+  return times;
 }
 
 /// Normal numbers of variances v scatter in their squares' sum as (sum v)^2 / sum v^2 of one
@@ -206,49 +217,30 @@ std::size_t BarLikelihood::count_of(Shots which) const {
   return 1;
 }
 
-/// g after n returns is its first passage times
-///   sum_{i <= n} (-R q_0)^i + R q_j sum_{i < n} (-R q_0)^i.
-std::vector<BarLikelihood::Echoes> BarLikelihood::echoes(std::span<const double> at) {
+/// g is its first passage times (1 + R q_j) times the sum of (-R q_0)^i.
+std::vector<NoiseArrivals::Shown> BarLikelihood::echoes(std::span<const double> at) {
   const auto passages = model_.first_passages(at, data_.judged_path(), false);
-  const Eigen::Index others = this->others();
+  const auto others = static_cast<std::size_t>(this->others());
   const double R = model_.reflection(at);
   const auto returns =
       R != 0.0 ? model_.returns(at, data_.judged_path()) : std::vector<BarModel::Spectrum>{};
-  const double turn_s = travel_there_and_back_s(data_, model_.moved(at), *model_.solid(at));
-  const double turns = data_.judged_s() / turn_s;
-  std::vector<Echoes> list;
-  Eigen::VectorXcd g(others);
+  const NoiseArrivals arrivals(arrival_times(data_, model_.moved(at), *model_.solid(at), R != 0.0));
+  std::vector<NoiseArrivals::Shown> list;
+  std::vector<Complex> first(others);
+  std::vector<Complex> back(others);
   for (std::size_t k = 0; k < data_.judged_path().size(); ++k) {
-    Echoes& echoes = list.emplace_back();
-    echoes.mean_square = Eigen::MatrixXcd::Zero(others, others);
-    echoes.mean = Eigen::VectorXcd::Zero(others);
-    Complex series = 1.0;
-    Complex series_before = 0.0;
-    Complex power = 1.0;
-    for (double passed = 0.0; passed < turns; passed += 1.0) {
-      const double share = std::min(1.0, turns - passed) / turns;
-      for (Eigen::Index j = 0; j < others; ++j) {
-        const auto i = static_cast<std::size_t>(j);
-        const Complex echo =
-            R != 0.0 ? series + R * returns[i + 1][k] * series_before : Complex(1.0);
-        g[j] = passages.g[i][k] * echo;
-      }
-      echoes.mean_square += share * g * g.adjoint();
-      echoes.mean += share * g;
-      if (R == 0.0) {
-        continue;
-      }
-      power *= -R * returns[0][k];
-      series_before = series;
-      series += power;
+    for (std::size_t j = 0; j < others; ++j) {
+      first[j] = passages.g[j][k];
+      back[j] = R != 0.0 ? R * returns[j + 1][k] : Complex(0.0);
     }
+    list.push_back(arrivals.shown(first, back, R != 0.0 ? -R * returns[0][k] : Complex(0.0)));
   }
   return list;
 }
 
 BarLikelihood::Whitening BarLikelihood::whitening(std::span<const double> at, BarNoise noise) {
   const Eigen::Index others = this->others();
-  const std::vector<Echoes> echoes = this->echoes(at);
+  const std::vector<NoiseArrivals::Shown> echoes = this->echoes(at);
   Whitening whitening;
   for (std::size_t k = 0; k < echoes.size(); ++k) {
     const double power_of_first = noise.power[0][k];
@@ -278,7 +270,7 @@ std::optional<BarNoise> BarLikelihood::noise_by_residuals() {
   if (data_.shots() < 2) {
     return std::nullopt;
   }
-  const std::vector<Echoes> echoes = this->echoes(place_.at);
+  const std::vector<NoiseArrivals::Shown> echoes = this->echoes(place_.at);
   const std::vector<Eigen::MatrixXcd> scatter = scatter_of_residuals(echoes);
   BarNoise noise = data_.noise_with(expected_noise(weights_->noise, echoes, scatter));
   if (!moved(weights_->noise, noise)) {
@@ -292,7 +284,7 @@ std::optional<BarNoise> BarLikelihood::noise_by_residuals() {
 
 /// By gauge.
 std::vector<NoiseSpectrum::Seen> BarLikelihood::expected_noise(
-    const BarNoise& noise, const std::vector<Echoes>& echoes,
+    const BarNoise& noise, const std::vector<NoiseArrivals::Shown>& echoes,
     const std::vector<Eigen::MatrixXcd>& scatter) const {
   const auto gauges = static_cast<Eigen::Index>(data_.gauges());
   std::vector<NoiseSpectrum::Seen> seen(data_.gauges());
@@ -326,7 +318,7 @@ std::vector<NoiseSpectrum::Seen> BarLikelihood::expected_noise(
 /// that are none, and leaves more than any noise does: by gauge 0 alone, then.
 /// @return by bin and shot, of squares that add up to 1
 std::vector<std::vector<Complex>> BarLikelihood::along_waves(
-    const std::vector<Echoes>& echoes) const {
+    const std::vector<NoiseArrivals::Shown>& echoes) const {
   constexpr double kFarOff = 2.0;  // of reduced chi2
   const double chi2 = std::accumulate(place_.chi2.begin(), place_.chi2.end(), 0.0);
   const bool far = chi2 > kFarOff * static_cast<double>(residuals());
@@ -353,7 +345,7 @@ std::vector<std::vector<Complex>> BarLikelihood::along_waves(
 
 /// Mean over what is not along the shots' waves: what a model lacks leaves next to nothing there.
 std::vector<Eigen::MatrixXcd> BarLikelihood::scatter_of_residuals(
-    const std::vector<Echoes>& echoes) const {
+    const std::vector<NoiseArrivals::Shown>& echoes) const {
   const Eigen::Index others = this->others();
   const std::size_t shots = data_.shots();
   const std::vector<std::vector<Complex>> waves = along_waves(echoes);
@@ -733,8 +725,8 @@ std::vector<OctaveLeft> BarLikelihood::left_over() {
   const std::vector<std::size_t> firsts = octaves();
   std::vector<OctaveLeft> list;
   for (std::size_t i = 0; i + 1 < firsts.size(); ++i) {
-    const Eigen::Index begin = 2 * others() * static_cast<Eigen::Index>(firsts[i]);
-    const Eigen::Index count = 2 * others() * static_cast<Eigen::Index>(firsts[i + 1]) - begin;
+    const Eigen::Index begin = first_row(firsts[i]);
+    const Eigen::Index count = first_row(firsts[i + 1]) - begin;
     const auto numbers = static_cast<double>(count);
     list.push_back(
         {frequency_Hz(firsts[i]), frequency_Hz(firsts[i + 1] - 1), numbers,
@@ -745,19 +737,42 @@ std::vector<OctaveLeft> BarLikelihood::left_over() {
   return list;
 }
 
+CarriedNoise BarLikelihood::carried_noise() {
+  const std::span<const double> own = judge_.in_time(data_.unit_impulse());
+  const std::vector<double> own_response(own.begin(), own.end());
+  return {data_, weights_->noise, responses_to_first(place_.at), own_response};
+}
+
+/// (sum of variances)^2 / sum of squared covariances, both by what noise makes of sums with signs
+/// drawn at random: such a sum's mean square is the first, two sums' mean squared product the
+/// other.
+double BarLikelihood::independent_numbers(std::size_t octave) {
+  constexpr Eigen::Index kDrawn = 32;  // 496 pairs
+  const std::vector<std::size_t> firsts = octaves();
+  Eigen::MatrixXd signs = Eigen::MatrixXd::Zero(rows(), kDrawn);
+  std::mt19937 random(1);
+  for (Eigen::Index n = 0; n < kDrawn; ++n) {
+    for (Eigen::Index row = first_row(firsts[octave]); row < first_row(firsts[octave + 1]); ++row) {
+      signs(row, n) = random() % 2 == 0 ? 1.0 : -1.0;
+    }
+  }
+  const Eigen::MatrixXd covariance = carried_noise().covariance(unwhitened(std::move(signs)));
+  const double variances = covariance.diagonal().mean();
+  const double off_diagonal = covariance.squaredNorm() - covariance.diagonal().squaredNorm();
+  return variances * variances * (kDrawn * (kDrawn - 1)) / off_diagonal;
+}
+
 BarLikelihood::Scatter BarLikelihood::scatter_of_gradient(std::size_t as_it_is,
                                                           const std::vector<double>& power) {
   const auto parameters = static_cast<Eigen::Index>(model_.parameters());
   const std::vector<std::size_t> firsts = octaves();
   Eigen::VectorXd by_row(rows());
   for (std::size_t i = 0; i < power.size(); ++i) {
-    const Eigen::Index begin = 2 * others() * static_cast<Eigen::Index>(firsts[i]);
-    const Eigen::Index count = 2 * others() * static_cast<Eigen::Index>(firsts[i + 1]) - begin;
+    const Eigen::Index begin = first_row(firsts[i]);
+    const Eigen::Index count = first_row(firsts[i + 1]) - begin;
     by_row.segment(begin, count).setConstant(power[i]);
   }
-  const std::span<const double> own = judge_.in_time(data_.unit_impulse());
-  const std::vector<double> own_response(own.begin(), own.end());
-  CarriedNoise noise(data_, weights_->noise, responses_to_first(place_.at), own_response);
+  CarriedNoise noise = carried_noise();
   const Slopes moving = slopes();
   EightColumns columns(rows(), parameters);
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(parameters, parameters);

@@ -9,6 +9,8 @@
 #include "processing/identification/bar_judge.hpp"
 #include "processing/identification/bar_misfit.hpp"
 #include "processing/identification/bar_model.hpp"
+#include "processing/identification/carried_noise.hpp"
+#include "processing/identification/noise_arrivals.hpp"
 #include "processing/identification/wide_products.hpp"
 
 namespace kolsky {
@@ -31,12 +33,13 @@ struct ShotTerms {
 /// squares is then that with the source at its own best fit, and so is the gradient, in which y_0
 /// gives way to the best estimate of what gauge 0 would show without noise,
 /// y_0 + p_0 g^H C^-1 r. Noise of gauge 0 reaches the others through the far end too, but only as
-/// far as the record is long, so that it is not steady: g g^H is averaged over how many returns
-/// there has been time for, and in the lowest bins, which that ties to each other and where a
-/// bar's retardation shows, the covariance is that of the record's own length.
-/// That covariance also holds what slow noise does within a record, and the error that noise of the
-/// quiet samples makes of y_0's baseline; in the other bins these are a baseline of y_0 and a jump
-/// between the ends of each r_j, unknown as the noise leaves them, which are eliminated.
+/// far as the record is long, so that it is not steady: g g^H is averaged over its moments, each
+/// with the arrivals that there is time for (see NoiseArrivals), and in the lowest bins, which that
+/// ties to each other and where a bar's retardation shows, the covariance is that of the record's
+/// own length. That covariance also holds what slow noise does within a record, and the error that
+/// noise of the quiet samples makes of y_0's baseline; in the other bins these are a baseline of
+/// y_0 and a jump between the ends of each r_j, unknown as the noise leaves them, which are
+/// eliminated.
 class BarLikelihood {
  public:
   /// @param data outlives this
@@ -81,6 +84,9 @@ class BarLikelihood {
   /// What is left at the place looked at last, every shot by itself, in what the weights take for
   /// noise.
   [[nodiscard]] std::vector<OctaveLeft> left_over();
+  /// As how many independent numbers the noise scatters in an octave at the place looked at last,
+  /// without what whitening bin by bin leaves out. @param octave  of what `left_over` gives
+  [[nodiscard]] double independent_numbers(std::size_t octave);
   /// How the gradient's sum over the shots looked at last scatters.
   struct Scatter {
     Eigen::MatrixXd by_noise;  ///< the gauges'
@@ -111,23 +117,20 @@ class BarLikelihood {
   }
   /// Real parts of all gauges before imaginary ones, bin after bin.
   [[nodiscard]] Eigen::Index rows() const;
-  /// What a bin of gauge 0's noise shows at the others, over the returns there has been time for.
-  struct Echoes {
-    Eigen::MatrixXcd mean_square;
-    Eigen::VectorXcd mean;
-  };
-  [[nodiscard]] std::vector<Echoes> echoes(std::span<const double> at);
+  /// What gauge 0's noise shows at the others, by bin.
+  [[nodiscard]] std::vector<NoiseArrivals::Shown> echoes(std::span<const double> at);
   [[nodiscard]] Whitening whitening(std::span<const double> at, BarNoise noise);
   [[nodiscard]] std::vector<std::vector<Complex>> along_waves(
-      const std::vector<Echoes>& echoes) const;
+      const std::vector<NoiseArrivals::Shown>& echoes) const;
   [[nodiscard]] std::vector<Eigen::MatrixXcd> scatter_of_residuals(
-      const std::vector<Echoes>& echoes) const;
+      const std::vector<NoiseArrivals::Shown>& echoes) const;
   [[nodiscard]] std::vector<NoiseSpectrum::Seen> expected_noise(
-      const BarNoise& noise, const std::vector<Echoes>& echoes,
+      const BarNoise& noise, const std::vector<NoiseArrivals::Shown>& echoes,
       const std::vector<Eigen::MatrixXcd>& scatter) const;
   [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at,
                                                       const BarNoise& noise, std::size_t bins);
   [[nodiscard]] std::vector<std::vector<double>> responses_to_first(std::span<const double> at);
+  [[nodiscard]] CarriedNoise carried_noise();
   [[nodiscard]] std::vector<Eigen::MatrixXcd> unwhitened(Eigen::MatrixXd white) const;
   [[nodiscard]] EightColumns shown_by_first(std::span<const double> at, std::size_t bins,
                                             std::size_t stride);
@@ -150,6 +153,9 @@ class BarLikelihood {
                                                   Eigen::Index count) const;
   /// The first bin of each octave, the lowest of two, and one beyond the last.
   [[nodiscard]] std::vector<std::size_t> octaves() const;
+  [[nodiscard]] Eigen::Index first_row(std::size_t bin) const {
+    return 2 * others() * static_cast<Eigen::Index>(bin);
+  }
 
   const BarData& data_;
   BarJudge judge_;

@@ -14,13 +14,18 @@ struct OctaveLeft {
   double numbers = 0.0;    ///< that are judged of each shot
   double of_all = 1.0;     ///< mean over the shots
   double in_common = 1.0;  ///< of what they have in common, as one shot (see BarData::all_as_one)
-  /// As how many numbers of one variance they scatter: fewer where weights are not the noise's
-  /// everywhere, as where a bar without loss rings in what its first gauge does not see.
+  /// As how many independent numbers of one variance they scatter: fewer where weights are not the
+  /// noise's everywhere or bins are tied to each other, as where a bar without loss rings.
   double count_as = 0.0;
 
   /// Of what they do not have in common; of a single shot there is no such thing.
   [[nodiscard]] double apart(std::size_t shots) const;
 };
+
+/// Whether what the shots have in common goes beyond what they do not have in common by more than
+/// chance, by Fisher's ratio of variances: for octaves of a model that fits once in a thousand
+/// times. Never of a single shot, of which noise and misfit cannot be told apart.
+[[nodiscard]] bool beyond_chance(const OctaveLeft& octave, std::size_t shots);
 
 /// That a model does not fit: what all shots' residuals have in common goes beyond what they do not
 /// have in common, which is noise. Noise has no reason to repeat, whatever its spectrum.
@@ -31,9 +36,7 @@ struct CommonMisfit {
   double deviations = 0.0;  ///< how far from chance, in a normal number's standard deviations
 };
 
-/// By Fisher's ratio of variances, octave by octave; a model that fits is found wanting once in a
-/// thousand times. Nothing where it fits, and of a single shot, of which noise and misfit cannot be
-/// told apart.
+/// The octave that is farthest beyond chance; nothing where none is.
 [[nodiscard]] std::optional<CommonMisfit> common_misfit(const std::vector<OctaveLeft>& left,
                                                         std::size_t shots);
 

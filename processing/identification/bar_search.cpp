@@ -250,6 +250,17 @@ BarFit BarSearch::finished() {
   return fit;
 }
 
+/// How bins are tied costs as much as a fit and is looked at only where a model seems not to fit.
+std::vector<OctaveLeft> BarSearch::left_over() {
+  std::vector<OctaveLeft> left = likelihood_.left_over();
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (beyond_chance(left[i], likelihood_.data().shots())) {
+      left[i].count_as = std::min(left[i].count_as, likelihood_.independent_numbers(i));
+    }
+  }
+  return left;
+}
+
 /// From where a search to the end has come to. Deviations are those of the estimate,
 /// (information)^-1 scatter (information)^-1: weights that leave out what ties bins cost it little,
 /// but would have it state too small ones. What is left beyond noise widens them as noise of that
@@ -258,7 +269,7 @@ BarFit BarSearch::finished() {
 BarFit BarSearch::described_with_shots() {
   const double objective = objective_at(place_.at, BarLikelihood::Shots::each);
   const std::vector<ShotTerms> shots = likelihood_.terms();
-  const std::vector<OctaveLeft> left = likelihood_.left_over();
+  const std::vector<OctaveLeft> left = left_over();
   const auto misfit = common_misfit(left, likelihood_.data().shots());
   double squares = 0.0;
   double numbers = 0.0;

@@ -73,6 +73,7 @@ class BarSearch {
   [[nodiscard]] BarFit describe(double objective, const Eigen::MatrixXd& posterior) const;
   [[nodiscard]] double chi2_reduced(double objective) const;
   [[nodiscard]] BarFit described_with_shots();
+  [[nodiscard]] std::vector<OctaveLeft> left_over();
 
   BarLikelihood likelihood_;
   ParameterPrior prior_;
