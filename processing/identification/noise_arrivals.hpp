@@ -16,9 +16,9 @@ class NoiseArrivals {
  public:
   struct Times {
     std::vector<double> first_s{};  ///< from the first gauge to each other
-    std::vector<double> back_s{};   ///< from each of them to the far end and back; empty: none comes
-    double turn_s = 0.0;          ///< from the first gauge to the far end and back
-    double lead_s = 0.0;          ///< of record before what is judged
+    std::vector<double> back_s{};  ///< from each of them to the far end and back; empty: none comes
+    double turn_s = 0.0;           ///< from the first gauge to the far end and back
+    double lead_s = 0.0;           ///< of record before what is judged
     double judged_s = 0.0;
   };
   explicit NoiseArrivals(const Times& times);
