@@ -9,8 +9,8 @@ namespace kolsky {
 
 namespace {
 
-constexpr Range kModulus{1e5, 1e15, "Pa", "give pascals: 5.66 GPa is 5.66e9"};
-constexpr Range kViscosity{1e-2, 1e15, "Pa s", "give pascal seconds: 1.81 MPa s is 1.81e6"};
+constexpr Range kModulus{1e5, kStiffest, "Pa", "give pascals: 5.66 GPa is 5.66e9"};
+constexpr Range kViscosity{1e-2, kStiffest, "Pa s", "give pascal seconds: 1.81 MPa s is 1.81e6"};
 constexpr Range kRetardation{1e-7, 10.0, "s", ""};
 constexpr Range kBand{1.0, 1e9, "Hz", "give hertz"};
 constexpr Range kTemperature{1.0, 2000.0, "K", "give kelvins: 20 degrees Celsius are 293.15"};

@@ -49,6 +49,9 @@ struct Material {
                                               const Measured& E2_Pa, const Measured& eta2_Pa_s,
                                               const std::string& source);
 
+/// The stiffest spring [Pa] and dashpot [Pa s] that a material has; a branch of both is none.
+inline constexpr double kStiffest = 1e15;
+
 /// PMMA of the paper's Table 4, row 1.
 [[nodiscard]] Material paper_pmma();
 /// The golf ball's polybutadiene core and ionomer cover, Table 3.

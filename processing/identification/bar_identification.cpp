@@ -102,13 +102,6 @@ BarTheory theory_of(const BarFit& fit) {
   return {fit.theory, fit.solid, fit.far_end, fit.lossless};
 }
 
-/// Whether there is a loss, and not only what noise makes of one.
-bool loss_shows(const BarFit& fit) {
-  constexpr double kDetermined = 0.3;
-  const FittedNumber& E2 = fit.parameters[1];
-  return !fit.lossless && E2.sd <= kDetermined * E2.value;
-}
-
 /// Whether the loss is so clear that to fit a bar without any would be a waste.
 bool loss_stands_out(const BarFit& fit) {
   const FittedNumber& E2 = fit.parameters[1];
@@ -457,6 +450,12 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
 }
 
 }  // namespace
+
+bool loss_shows(const BarFit& three_element) {
+  constexpr double kDetermined = 0.3;
+  const FittedNumber& E2 = three_element.parameters[1];
+  return !three_element.lossless && E2.sd <= kDetermined * E2.value;
+}
 
 BarIdentification identify_bar(const std::vector<Shot>& shots,
                                const BarIdentificationOptions& options, const Workers& workers) {

@@ -51,6 +51,9 @@ struct BarIdentification {
   std::vector<std::string> warnings;
 };
 
+/// Whether there is a loss, and not only what noise makes of one: E2 by three deviations.
+[[nodiscard]] bool loss_shows(const BarFit& three_element);
+
 /// The whole identification of a bar from its shots: which waves travel in it, what comes back from
 /// its far end, what it is made of. Where theories cannot be told apart, the deviations of the
 /// three-element parameters take in how far these lie from each other, by their odds.

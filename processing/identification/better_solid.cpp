@@ -10,6 +10,24 @@ namespace {
 
 constexpr double kClearlyAhead = 10.0;
 
+/// Whether the records show no branch, and leave room for none that would matter.
+bool is_elastic(const BarFit& fit) {
+  constexpr double kNoBranch = 1e-3;  // of the compliance
+  return fit.solid == SolidKind::three_element &&
+         (fit.lossless ||
+          (!loss_shows(fit) && fit.parameters[0].value < kNoBranch * fit.parameters[1].value));
+}
+
+/// A fit leaves E2 anywhere beyond what records show: neither its value nor its deviation says more
+/// than that there is no branch.
+void make_elastic(Material& material) {
+  const Measured E1_Pa = material.parameters.front();
+  material.parameters = {E1_Pa, {kStiffest}, {kStiffest}};
+  std::vector<double> covariance(material.parameters.size() * material.parameters.size(), 0.0);
+  covariance.front() = E1_Pa.sd * E1_Pa.sd;
+  material.covariance = std::move(covariance);
+}
+
 }  // namespace
 
 const BarFit& fit_to_file(const BarIdentification& result) {
@@ -25,6 +43,9 @@ Material material_to_file(const BarIdentification& result, const Bar& bar, std::
   material.parameters = measured_of(fit.parameters);
   material.source = std::move(source);
   material.covariance = row_by_row(fit.covariance);
+  if (is_elastic(fit)) {
+    make_elastic(material);
+  }
   material.identified = Material::Identified{fit.band_limit_Hz, result.temperature_K,
                                              fit.chi2_reduced, !result.spectrum.mean_loss.gains()};
   return material;
