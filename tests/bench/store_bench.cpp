@@ -7,15 +7,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/captures/shot_codec.hpp"
 #include "drivers/files/store/journal.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -73,26 +72,6 @@ std::size_t record_bytes() {
 /// Half of the floor's writes take no longer than this, once it was measured.
 double floor_us = 0.0;
 
-class Folder {
- public:
-  Folder() {
-    std::string name = "store-bench-XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no folder can be made here");
-    }
-    path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Times one action per iteration; what runs between two is not counted.
 template <typename Action, typename Between>
 void measure(benchmark::State& state, const Action& action, const Between& between) {
@@ -111,7 +90,7 @@ void measure(benchmark::State& state, const Action& action, const Between& betwe
 }
 
 void floor_of(benchmark::State& state, bool filled) {
-  const Folder folder;
+  const testing::ScratchFolder folder(".");
   const int file = ::open((folder / "floor").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   const std::vector<char> bytes(record_bytes(), 7);
   off_t end = 0;
@@ -143,7 +122,7 @@ void FloorAppend(benchmark::State& state) {
 }
 
 void AppendShot2x4000(benchmark::State& state) {
-  const Folder folder;
+  const testing::ScratchFolder folder(".");
   const Shot shot = make_shot();
   Journal journal(folder / "a.kj");
   measure(
@@ -153,7 +132,7 @@ void AppendShot2x4000(benchmark::State& state) {
 }
 
 void WriteCapture2x4000(benchmark::State& state) {
-  const Folder folder;
+  const testing::ScratchFolder folder(".");
   const Shot shot = make_shot();
   int i = 0;
   measure(
@@ -161,7 +140,7 @@ void WriteCapture2x4000(benchmark::State& state) {
 }
 
 void ReadCapture2x4000(benchmark::State& state) {
-  const Folder folder;
+  const testing::ScratchFolder folder(".");
   write_capture(make_shot(), folder / "a.h5");
   measure(
       state, [&] { benchmark::DoNotOptimize(read_capture(folder / "a.h5")); }, [] {});

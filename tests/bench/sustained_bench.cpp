@@ -14,6 +14,7 @@
 #include "drivers/simulated/scenario.hpp"
 #include "tests/end_to_end/daemon_process.hpp"
 #include "tests/end_to_end/scene.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace {
 
@@ -70,7 +71,7 @@ class DigitiserProcess {
   }
 
  private:
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
   Process process_;
 };
 

@@ -1,7 +1,5 @@
 #include "tests/conformance/pattern_capture.hpp"
 
-#include <unistd.h>
-
 #include "drivers/files/settings/bench_file.hpp"
 #include "tests/conformance/pattern.hpp"
 #include "tests/conformance/rig.hpp"
@@ -32,18 +30,6 @@ strain_per_V = 1e-3
 )";
 
 }  // namespace
-
-TemporaryFolder::TemporaryFolder() {
-  static std::atomic<int> made{0};
-  path_ = std::filesystem::temp_directory_path() /
-          ("kolsky-conformance-" + std::to_string(getpid()) + "-" + std::to_string(made++));
-  std::filesystem::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 Shot pattern_shot(Tick pattern_start, std::size_t samples) {
   Shot shot;

@@ -1,26 +1,8 @@
 #pragma once
 
-#include <atomic>
-#include <filesystem>
-#include <string>
-
 #include "processing/base/shot.hpp"
 
 namespace kolsky {
-
-/// A folder of its own under the system's temporary ones, gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A shot of two gauges, g1 and g2, that carry the test pattern.
 /// @param pattern_start  the pattern's tick at sample 0

@@ -4,6 +4,7 @@
 #include "drivers/files/captures/capture.hpp"
 #include "tests/conformance/pattern_capture.hpp"
 #include "tests/conformance/rig.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -68,7 +69,7 @@ class ReplayRig final : public Rig {
   [[nodiscard]] std::filesystem::path away() const { return folder_.path() / "away"; }
 
   int captures_;
-  TemporaryFolder folder_;
+  testing::ScratchFolder folder_;
 };
 
 }  // namespace

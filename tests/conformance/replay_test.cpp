@@ -12,13 +12,14 @@
 #include "tests/conformance/pattern.hpp"
 #include "tests/conformance/pattern_capture.hpp"
 #include "tests/conformance/reading.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class Replay : public testing::Test {
+class Replay : public ::testing::Test {
  protected:
   void store(const Shot& shot, const std::string& name) {
     write_capture(shot, folder_.path() / name);
@@ -45,7 +46,7 @@ class Replay : public testing::Test {
     }
   }
 
-  TemporaryFolder folder_;
+  testing::ScratchFolder folder_;
 };
 
 /// A block's facts that outlive the next read.
@@ -259,7 +260,7 @@ TEST_F(Replay, TheOddCaptureOfAFolderIsNamed) {
       {[](Shot& shot) { shot.channels[0].code_max = 32766; }, "converter of channel g1"},
   };
   for (const Case& odd : cases) {
-    TemporaryFolder keep;
+    testing::ScratchFolder keep;
     Shot shot = pattern_shot(0, 100);
     odd.change(shot);
     store(shot, "c.h5");

@@ -15,12 +15,13 @@
 #include "processing/uncertainty/monte_carlo.hpp"
 #include "proto/codec.hpp"
 #include "tests/end_to_end/scene.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
 
-using scene::Folder;
 using scene::Listener;
+using testing::ScratchFolder;
 
 struct Measured {
   const char* name;
@@ -49,7 +50,7 @@ struct Outcome {
 };
 
 Outcome replayed(const Measured& set) {
-  const Folder folder;
+  const ScratchFolder folder;
   TableImport request;
   request.bench = std::filesystem::path(KOLSKY_SOURCE_DIR) / "docs/benches" / set.bench;
   for (const std::string& table : set.tables) {

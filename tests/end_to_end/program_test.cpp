@@ -17,6 +17,7 @@
 #include "drivers/files/store/store.hpp"
 #include "tests/end_to_end/daemon_process.hpp"
 #include "tests/end_to_end/scene.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -38,27 +39,27 @@ struct Ended {
 };
 
 Ended run(const std::vector<std::string>& arguments) {
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   Process process(kolskyd(arguments), folder / "output");
   const std::optional<int> code = process.wait(kPatience);
   return {code.value_or(-1), process.output()};
 }
 
 /// Exit code 2 and one line of the daemon's, which names all of these.
-testing::AssertionResult refused(const Ended& ended, const std::vector<std::string>& named) {
+::testing::AssertionResult refused(const Ended& ended, const std::vector<std::string>& named) {
   if (ended.code != 2) {
-    return testing::AssertionFailure() << "exit code " << ended.code << "\n" << ended.output;
+    return ::testing::AssertionFailure() << "exit code " << ended.code << "\n" << ended.output;
   }
   if (ended.output.find("kolskyd: ") != 0 ||
       std::count(ended.output.begin(), ended.output.end(), '\n') != 1) {
-    return testing::AssertionFailure() << "not one line: " << ended.output;
+    return ::testing::AssertionFailure() << "not one line: " << ended.output;
   }
   for (const std::string& part : named) {
     if (ended.output.find(part) == std::string::npos) {
-      return testing::AssertionFailure() << "no '" << part << "' in: " << ended.output;
+      return ::testing::AssertionFailure() << "no '" << part << "' in: " << ended.output;
     }
   }
-  return testing::AssertionSuccess();
+  return ::testing::AssertionSuccess();
 }
 
 constexpr const char* kNowhere = "ip:127.0.0.1:1";

@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <atomic>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -53,22 +51,6 @@ ControlClientOptions control_of(const EndpointConfig& endpoints, const std::stri
 }
 
 }  // namespace
-
-Folder::Folder() {
-  static std::atomic<int> count{0};
-  path_ = std::filesystem::temp_directory_path() /
-          ("kolsky-e2e-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-  std::filesystem::create_directories(path_);
-}
-
-Folder::~Folder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-void Folder::write(const std::string& name, const std::string& text) const {
-  std::ofstream(path_ / name) << text;
-}
 
 Lab::Lab(const LabOptions& options) : scenario_(find_scenario(options.scenario)) {
   if (options.front_end) {

@@ -17,25 +17,9 @@
 #include "drivers/simulated/scenario.hpp"
 #include "drivers/simulated/simulated_adc.hpp"
 #include "kolsky/v1/kolsky.pb.h"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky::scene {
-
-/// A folder that goes with the test.
-class Folder {
- public:
-  Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-  void write(const std::string& name, const std::string& text) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 struct LabOptions {
   std::string scenario = "core";
@@ -80,10 +64,10 @@ class Installation {
   std::filesystem::path write() const;
   [[nodiscard]] DaemonConfig read() const { return read_config(write()); }
   [[nodiscard]] std::filesystem::path store() const { return folder_ / "store"; }
-  [[nodiscard]] const Folder& folder() const { return folder_; }
+  [[nodiscard]] const testing::ScratchFolder& folder() const { return folder_; }
 
  private:
-  Folder folder_;
+  testing::ScratchFolder folder_;
   std::string uri_;
   std::map<std::string, std::string> sections_;
 };

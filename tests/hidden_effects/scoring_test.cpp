@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <fstream>
 #include <numbers>
 #include <random>
 
@@ -21,6 +20,7 @@
 #include "tests/hidden_effects/source_freedom.hpp"
 #include "tests/hidden_effects/stress_curve.hpp"
 #include "tests/hidden_effects/whitening.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky::scoring {
 namespace {
@@ -162,8 +162,8 @@ TEST(Identifiability, TwiceTheNoiseNeedsTwiceTheSize) {
 TEST(Campaign, TablesAndCapturesHoldTheSame) {
   testing::Campaign campaign = small_bench();
   testing::hide(campaign, testing::parse_effect("gauge-factor:g2=0.02"));
-  const fs::path folder = fs::temp_directory_path() / "kolsky_scoring_test";
-  fs::remove_all(folder);
+  const testing::ScratchFolder scratch;
+  const fs::path folder = scratch / "campaign";
   const auto captures = testing::write_campaign({.folder = folder}, testing::shots_of(campaign));
   const Shot stored = read_capture(captures[1]);
   TableImport request;
@@ -181,7 +181,6 @@ TEST(Campaign, TablesAndCapturesHoldTheSame) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     EXPECT_EQ(entry.path().string().find("truth"), std::string::npos);
   }
-  fs::remove_all(folder);
 }
 
 // Tables of the noncentral chi-square distribution, 5 % and 80 %.

@@ -10,6 +10,7 @@
 #include "daemon/daemon.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/end_to_end/process.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -63,7 +64,7 @@ class BallLab {
     ASSERT_EQ(reloaded.code, 0) << reloaded.err;
   }
   [[nodiscard]] const Daemon& daemon() const { return daemon_; }
-  [[nodiscard]] const scene::Folder& folder() const { return setup_.folder(); }
+  [[nodiscard]] const testing::ScratchFolder& folder() const { return setup_.folder(); }
 
  private:
   scene::Lab lab_;
@@ -318,7 +319,7 @@ mass_kg = 0.0434
     EXPECT_EQ(answer.code, 0) << answer.err;
     return capture;
   }
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
 };
 
 TEST_F(BallTables, RepeatsAreGroupedBySpeed) {

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <iterator>
 
 #include "drivers/files/settings/bench_file.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/generators/bar_shots.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -61,7 +61,7 @@ class Calibrate : public ::testing::Test {
     return list;
   }
 
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
   std::vector<std::string> captures_;
 };
 
@@ -83,7 +83,7 @@ TEST_F(Calibrate, NamesWhatDiffersAndMendsTheBenchFile) {
 
 // Of the simulated bar g3 is recorded late, by what the tour tells afterwards.
 TEST(CalibrateLateChannel, FilesTheDelay) {
-  scene::Folder folder;
+  testing::ScratchFolder folder;
   ASSERT_EQ(
       scene::kolsky({"tour", "--seed", "3", "--quick", "--shots-only", "--folder", folder / "c"})
           .code,

@@ -15,6 +15,7 @@
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/campaign_files.hpp"
 #include "tests/generators/shpb_world.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -34,7 +35,7 @@ class CarriedSolid : public ::testing::Test {
   static void TearDownTestSuite() { made_.reset(); }
 
   struct Made {
-    scene::Folder folder;
+    testing::ScratchFolder folder;
     std::vector<std::string> bar_captures, captures;
     std::vector<testing::SpecimenHistory> truth;
     testing::TrueSpecimen specimen;

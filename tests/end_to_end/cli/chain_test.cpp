@@ -12,6 +12,7 @@
 #include "tests/generators/ball_impact.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/linear_shpb.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -53,7 +54,7 @@ class Chain : public ::testing::Test {
   static void TearDownTestSuite() { delete files_; }
 
   struct Files {
-    scene::Folder folder;
+    testing::ScratchFolder folder;
     std::vector<std::string> bar, core, cover, ball;
     std::string warm, near;  ///< a core's, 5 K and 1.5 K above the bar's shots
     testing::BallForce truth;

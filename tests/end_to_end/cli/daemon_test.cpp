@@ -12,6 +12,7 @@
 #include "proto/codec.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/end_to_end/process.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -121,7 +122,7 @@ TEST(WithABarOfTwoBranches, GetIsReduceOfTheCaptureToTheByte) {
 
 TEST_F(WithDaemon, ExportsAShotByItsId) {
   const std::string id = shoot();
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   const std::string by_id = folder / "id.csv";
   const json told = json_of(ask({"export", id, "--format", "csv", "-o", by_id, "--json"}));
   EXPECT_EQ(told["shot"], id);
@@ -170,7 +171,7 @@ TEST_F(WithDaemon, AForcedWindowIsStoredAndSaidNotToBeReducible) {
 
 TEST_F(WithDaemon, WatchHearsAShotAndItsResult) {
   arm();
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   scene::Process watching({KOLSKY, "watch", "--json", "--count", "1", "--for", "20"},
                           folder / "heard", {"KOLSKY_ENDPOINT=" + daemon_.endpoints().control});
   // It has joined when the daemon has answered it; firing before that would only be in its

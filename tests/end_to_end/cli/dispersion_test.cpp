@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -47,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Pmma, Dispersion,
                                            Checked{"exact", 40, 0.86723, 2066.61}));
 
 TEST(DispersionFiles, HoldTheWholeTableAndThePlots) {
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   const scene::Answer text =
       scene::kolsky({"dispersion", "--bench", kBenches + "paper-shpb.toml", "--bar", "output",
                      "--csv", folder / "waves.csv", "--svg", folder / "waves.svg"});
@@ -80,7 +81,7 @@ TEST(DispersionFiles, RefuseWhatCannotBeTabulated) {
 
 // Beyond the band in which a bar was identified nobody knows how its waves go.
 TEST(DispersionFiles, EndWhereTheBarModelDoes) {
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   folder.write("pmma.toml",
                "density_kg_m3 = 1180.0\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\nE2_Pa = 37.0e9\n"
                "eta2_Pa_s = 1.81e6\n[identified]\nband_limit_Hz = 8e3\n");

@@ -15,6 +15,7 @@
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/campaign_files.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -76,7 +77,7 @@ class IdentifyBar : public ::testing::Test {
     return capture;
   }
 
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
   std::vector<Shot> shots_;
   std::vector<std::string> captures_;
 };
@@ -301,7 +302,7 @@ class IdentifyBarByOneGauge : public ::testing::Test {
     return path;
   }
 
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
 };
 
 TEST_F(IdentifyBarByOneGauge, FindsTheBarFromThePulseAndItsReturn) {

@@ -7,13 +7,14 @@
 #include <sstream>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
 
 using scene::Answer;
-using scene::Folder;
 using scene::refused;
+using testing::ScratchFolder;
 
 const std::string kBenches = std::string(KOLSKY_SOURCE_DIR) + "/docs/benches/";
 
@@ -98,7 +99,7 @@ TEST(Impact, SharesOfTheEnergySumToTheWhole) {
 }
 
 TEST(Impact, ListsAreAsTheBenchSamplesAndNumbersAreNot) {
-  const Folder folder;
+  const ScratchFolder folder;
   std::string bench = text_of(kBenches + "paper-impact.toml");
   const std::size_t at = bench.find("sampling_frequency_Hz");
   bench.replace(at, bench.find('\n', at) - at, "sampling_frequency_Hz = 20e3");
@@ -158,7 +159,7 @@ TEST(Impact, JsonHoldsTheFieldsAndPointsAskedFor) {
 }
 
 TEST(Impact, ABarsPoissonRatioIsNamedWithItsFileAndLine) {
-  const Folder folder;
+  const ScratchFolder folder;
   std::string bench = text_of(kBenches + "paper-impact.toml");
   const std::size_t at = bench.find("poisson_ratio");
   bench.replace(at, bench.find('\n', at) - at, "poisson_ratio = 0.5");
@@ -172,7 +173,7 @@ TEST(Impact, ABarsPoissonRatioIsNamedWithItsFileAndLine) {
 }
 
 TEST(Impact, SvgShowsTheBallAndItsScale) {
-  const Folder folder;
+  const ScratchFolder folder;
   const std::string file = folder / "ball.svg";
   const Answer answer = scene::kolsky(impact({"--speed", "40.3", "--elements", "300", "--svg", file,
                                               "--field", "1e-4", "--field", "2e-4"}));
@@ -191,7 +192,7 @@ TEST(Impact, SvgShowsTheBallAndItsScale) {
 }
 
 TEST(Impact, DensitiesAreScaledOnlyWhenTheBenchSaysSo) {
-  const Folder folder;
+  const ScratchFolder folder;
   std::string bench = text_of(kBenches + "paper-impact.toml");
   bench.replace(bench.find("0.03565"), 7, "0.03800");
   folder.write("thin.toml", bench);
@@ -209,7 +210,7 @@ TEST(Impact, DensitiesAreScaledOnlyWhenTheBenchSaysSo) {
 }
 
 TEST(Impact, FiguresRefuseWhatTheyDoNotTakeAndLeaveNothingWhereTheyFail) {
-  const Folder folder;
+  const ScratchFolder folder;
   const std::string figures = folder / "figures";
   for (const auto& [option, value] :
        {std::pair{"--speed", "40"}, std::pair{"--friction", "0.1"}, std::pair{"--reading", "exact"},
@@ -227,7 +228,7 @@ TEST(Impact, FiguresRefuseWhatTheyDoNotTakeAndLeaveNothingWhereTheyFail) {
 }
 
 TEST(Impact, RefusesWhatCannotBe) {
-  const Folder folder;
+  const ScratchFolder folder;
   std::string core = text_of(kBenches + "../materials/golf-core.toml");
   folder.write("active.toml", core.replace(core.find("143e6"), 5, "-14e6"));
   const auto with_core = [&](const std::string& file) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/end_to_end/process.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky::scene {
 
@@ -67,7 +68,7 @@ std::string table_of(const testing::ElasticShpb& model, const testing::ElasticSh
 }  // namespace
 
 Answer kolsky(const std::vector<std::string>& words, const std::vector<std::string>& environment) {
-  const Folder folder;
+  const testing::ScratchFolder folder;
   // The shell parts the error stream from the other.
   std::vector<std::string> command{"/bin/sh", "-c", "exec \"$@\" 2>\"$0\"", folder / "err", KOLSKY};
   command.insert(command.end(), words.begin(), words.end());

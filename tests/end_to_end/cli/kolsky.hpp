@@ -9,6 +9,7 @@
 #include "processing/base/shot.hpp"
 #include "tests/end_to_end/scene.hpp"
 #include "tests/generators/elastic_shpb.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky::scene {
 
@@ -47,7 +48,7 @@ class Bench {
   [[nodiscard]] const testing::ElasticShpb::Records& records() const { return records_; }
 
  private:
-  Folder folder_;
+  testing::ScratchFolder folder_;
   testing::ElasticShpb model_;
   testing::ElasticShpb::Records records_;
 };

@@ -5,6 +5,7 @@
 
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/reference_effects.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -42,7 +43,7 @@ class SimulatedBar : public ::testing::Test {
   }
   [[nodiscard]] std::string file(const std::string& name) const { return folder_ / name; }
 
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
 };
 
 TEST_F(SimulatedBar, FallsToTheNoiseByTheEffectAddedByHand) {
@@ -168,7 +169,7 @@ TEST_F(SimulatedBar, SaysWhatDoesNotFitTogether) {
 // A gauge that reads 2.5 % too much, filed within 0.2 %: the fit bends the filed numbers until
 // nothing stands out.
 TEST(Comparing, SaysThatFiledNumbersHideWhatIsWrong) {
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   ASSERT_EQ(kolsky({"tour", "--seed", "1", "--shots-only", "--folder", folder / "campaign"}).code,
             0);
   std::filesystem::create_directory(folder / "shots");
@@ -474,7 +475,7 @@ TEST_F(SimulatedBar, RefusesADeclaredEffectThatIsNotSound) {
 
 // As `kolsky identify specimen` files it.
 TEST(NewModel, OfABallTakesTheCovarianceOfItsMaterials) {
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   folder.write("core.toml",
                "density_kg_m3 = 1140\npoisson_ratio = 0.376\nE1_Pa = 121e6\nE1_Pa_sd = 2e6\n"
                "E2_Pa = 143e6\nE2_Pa_sd = 3e6\neta2_Pa_s = 2860\neta2_Pa_s_sd = 100\n"
@@ -492,7 +493,7 @@ TEST(NewModel, OfABallTakesTheCovarianceOfItsMaterials) {
 
 // As `kolsky identify bar` files it.
 TEST(NewModel, OfASplitBarTakesTheCovarianceOfItsBars) {
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   folder.write("bars.toml",
                "density_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.66e9\nE1_Pa_sd = 2e6\n"
                "E2_Pa = 37e9\nE2_Pa_sd = 3e7\neta2_Pa_s = 1.81e6\neta2_Pa_s_sd = 1e3\n"

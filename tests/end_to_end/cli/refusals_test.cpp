@@ -7,6 +7,7 @@
 
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/end_to_end/process.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -212,7 +213,7 @@ TEST_F(BadFiles, ARecordThatHoldsNoShotIsRefusedAndNothingIsWritten) {
 
 TEST_F(BadFiles, AnOutputThatCannotBeWrittenIsAnError) {
   // /dev/full takes nothing; the shell points stdout at it.
-  const scene::Folder folder;
+  const testing::ScratchFolder folder;
   scene::Process process({"/bin/sh", "-c", "exec \"$0\" --help > /dev/full", KOLSKY},
                          folder / "err");
   EXPECT_EQ(process.wait(std::chrono::seconds(10)), 1);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -155,7 +156,7 @@ class FiniteElementShots : public ::testing::TestWithParam<Set> {
   std::filesystem::path records_ = std::filesystem::path(KOLSKY_SHARED_DATA) /
                                    "fe/wave-separation" / GetParam().folder /
                                    "gauge_strain_records.csv";
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
   std::string capture_ = folder_ / "shot.h5";
 };
 

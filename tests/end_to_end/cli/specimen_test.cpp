@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -15,6 +14,7 @@
 #include "processing/waves/compliance.hpp"
 #include "tests/end_to_end/cli/kolsky.hpp"
 #include "tests/generators/linear_shpb.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -116,7 +116,7 @@ class SpecimenFiles : public ::testing::Test {
     return words;
   }
 
-  scene::Folder folder_;
+  testing::ScratchFolder folder_;
   testing::LinearShpb model_;
   std::vector<std::string> captures_;
 };

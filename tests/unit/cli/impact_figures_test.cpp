@@ -1,13 +1,14 @@
 // The paper's figures, on meshes that take a second.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "clients/cli/reports/impact_run.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/impact/paper_ball.hpp"
 
 namespace kolsky::cli {
@@ -25,18 +26,19 @@ std::size_t count_of(const std::string& words, const std::string& text) {
 class Figures : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("kolsky-figures-" + std::to_string(::getpid()));
+    scratch_ = std::make_unique<testing::ScratchFolder>();
+    folder_ = scratch_->path() / "figures";
     said_ = write_paper_figures(testing::paper_bench(), {testing::paper_core()},
                                 {testing::paper_cover()}, folder_.string(), {240, 512});
   }
-  static void TearDownTestSuite() { std::filesystem::remove_all(folder_); }
+  static void TearDownTestSuite() { scratch_.reset(); }
 
   static std::string text_of(const std::string& name) {
     std::ifstream file(folder_ / name);
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
+  inline static std::unique_ptr<testing::ScratchFolder> scratch_;
   inline static std::filesystem::path folder_;
   inline static std::string said_;
 };

@@ -10,6 +10,7 @@
 
 #include "daemon/shots/summary.hpp"
 #include "drivers/files/captures/capture.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 using testing::expect_refused;
 using testing::expect_same;
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 
 constexpr std::chrono::seconds kPatience(20);
 
@@ -69,7 +70,7 @@ class ArchivistTest : public ::testing::Test {
     std::ofstream(store_.capture_of(id)) << "no capture";
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   StoreLayout store_{folder_ / "store"};
   std::uint64_t boots_ = 0;
   std::mutex mutex_;

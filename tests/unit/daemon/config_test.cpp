@@ -4,10 +4,9 @@
 
 #include <unistd.h>
 
-#include <fstream>
-
 #include "daemon/check_report.hpp"
 #include "processing/base/error.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/daemon/strain_bench.hpp"
 
 namespace kolsky {
@@ -22,20 +21,11 @@ channel = "g1"
 folder = "store"
 )";
 
-class ConfigTest : public testing::Test {
+class ConfigTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("kolsky-config-" + std::to_string(::getpid()) + "-" +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-    write("bench.toml", kStrainBench);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { write("bench.toml", kStrainBench); }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   [[nodiscard]] DaemonConfig read(const std::string& text) const {
     write("kolskyd.toml", text);
     return read_config(folder_ / "kolskyd.toml");
@@ -51,18 +41,19 @@ class ConfigTest : public testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  testing::ScratchFolder folder_;
 };
 
-testing::AssertionResult holds(const std::string& text, std::initializer_list<const char*> parts) {
+::testing::AssertionResult holds(const std::string& text,
+                                 std::initializer_list<const char*> parts) {
   for (const char* part : parts) {
     if (text.find(part) == std::string::npos) {
-      return testing::AssertionFailure() << "no '" << part << "' in: " << text;
+      return ::testing::AssertionFailure() << "no '" << part << "' in: " << text;
     }
   }
   return text.find('\n') == std::string::npos
-             ? testing::AssertionSuccess()
-             : testing::AssertionFailure() << "more than one line: " << text;
+             ? ::testing::AssertionSuccess()
+             : ::testing::AssertionFailure() << "more than one line: " << text;
 }
 
 TEST_F(ConfigTest, TakesTheModelThatShotsAreComparedWith) {
@@ -317,7 +308,7 @@ struct BadValue {
   const char* named;
 };
 
-class BadValueTest : public ConfigTest, public testing::WithParamInterface<BadValue> {};
+class BadValueTest : public ConfigTest, public ::testing::WithParamInterface<BadValue> {};
 
 TEST_P(BadValueTest, IsRefusedWithItsPlace) {
   std::string text = kLeast;
@@ -333,7 +324,7 @@ TEST_P(BadValueTest, IsRefusedWithItsPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadValueTest,
-    testing::Values(
+    ::testing::Values(
         BadValue{"[trigger]", "level_sigma = 0.5", "level_sigma"},
         BadValue{"[trigger]", "pre_samples = -1", "pre_samples"},
         BadValue{"[trigger]", "post_samples = 0", "post_samples"},

@@ -13,6 +13,7 @@
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "kolsky/v1/kolsky.pb.h"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/daemon/scripted_digitiser.hpp"
 #include "tests/unit/daemon/strain_bench.hpp"
 
@@ -26,16 +27,14 @@ PublisherOptions free_ports() {
   return options;
 }
 
-StoreLayout fresh_store() {
-  StoreLayout store{std::filesystem::path(testing::TempDir()) /
-                    ("kolsky-recorder-" + std::to_string(::getpid()))};
-  std::filesystem::remove_all(store.root);
+StoreLayout store_in(const std::filesystem::path& folder) {
+  StoreLayout store{folder};
   store.create();
   return store;
 }
 
 /// The recorder with all its real neighbours; the test writes the ring and the events itself.
-class RecorderTest : public testing::Test {
+class RecorderTest : public ::testing::Test {
  protected:
   explicit RecorderTest(std::uint64_t journal_limit_bytes = 1U << 30U)
       : journal_(store_, publisher_.boot_id(), journal_limit_bytes) {
@@ -55,10 +54,7 @@ class RecorderTest : public testing::Test {
     archivist_.start();
     recorder_->start();
   }
-  ~RecorderTest() override {
-    finish();
-    std::filesystem::remove_all(store_.root);
-  }
+  ~RecorderTest() override { finish(); }
 
   void finish() {
     events_.close();
@@ -94,7 +90,8 @@ class RecorderTest : public testing::Test {
   AcquisitionQueue events_;
   AcquisitionPlan plan_{.trigger = TriggerOptions::for_rate(1e6)};
   Acquirer acquirer_{digitiser_, ring_, events_, plan_};
-  StoreLayout store_ = fresh_store();
+  testing::ScratchFolder folder_;
+  StoreLayout store_ = store_in(folder_.path());
   Publisher publisher_{free_ports()};
   SharedJournal journal_;
   std::vector<std::string> faults_;

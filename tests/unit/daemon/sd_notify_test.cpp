@@ -1,4 +1,5 @@
 #include "daemon/live/sd_notify.hpp"
+#include "tests/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -43,15 +44,14 @@ class NotifySocket {
 };
 
 TEST(SdNotify, ReachesAPathAndAnAbstractSocket) {
-  const std::string unique = std::to_string(::getpid());
-  const std::string path = testing::TempDir() + "kolsky-notify-" + unique;
-  for (const std::string& name : {path, "@kolsky-notify-" + unique}) {
+  const testing::ScratchFolder folder;
+  const std::string path = folder / "notify";
+  for (const std::string& name : {path, "@kolsky-notify-" + std::to_string(::getpid())}) {
     const NotifySocket manager(name);
     ASSERT_TRUE(manager.bound()) << name;
     sd_notify("READY=1");
     EXPECT_EQ(manager.receive(), "READY=1") << name;
   }
-  ::unlink(path.c_str());
 }
 
 TEST(SdNotify, DoesNothingWithoutAManager) {

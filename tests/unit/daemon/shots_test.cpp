@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <algorithm>
 
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "drivers/files/settings/bench_file.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/daemon/strain_bench.hpp"
 
 namespace kolsky {
@@ -24,20 +24,6 @@ namespace {
 // date -u -d @1737109530 +%Y%m%dT%H%M%S
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMoment_ns = 1'737'109'530 * kSecond_ns + 123'456'789;
-
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::path(testing::TempDir()) /
-              ("kolsky-shots-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 TEST(ShotId, TellsDateBootAndCount) {
   ShotIdSource ids(0xABCD'0123'4567'89EFULL);
@@ -124,7 +110,7 @@ TEST(Interruption, IsAHoleBeforeOneRepeatedSample) {
 }
 
 TEST(StoreLock, KeepsASecondDaemonOut) {
-  const Folder folder;
+  const testing::ScratchFolder folder;
   {
     const StoreLock first(folder.path());
     EXPECT_THROW(StoreLock second(folder.path()), InputError);
@@ -197,7 +183,7 @@ TEST(RehearsalShot, TakesTheWayOfARealOne) {
 }
 
 TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
-  const Folder folder;
+  const testing::ScratchFolder folder;
   const StoreLayout store{folder.path()};
   store.create();
   const Apparatus apparatus = pmma_bench();
@@ -221,7 +207,7 @@ TEST(SharedJournal, HoldsShotsAndWhatBecameOfThem) {
 }
 
 /// Journals of a store that take one shot each.
-class TurningOver : public testing::Test {
+class TurningOver : public ::testing::Test {
  protected:
   void append(const std::string& id) {
     shot_.id = id;
@@ -236,7 +222,7 @@ class TurningOver : public testing::Test {
     return ids;
   }
 
-  const Folder folder_;
+  const testing::ScratchFolder folder_;
   const StoreLayout store_{folder_.path()};
   SharedJournal journal_{created(store_), 0x12, 1000};
   Shot shot_ = rehearsal_shot(blank_shot(some_config(), pmma_bench(), strain_stream()), 400, 3600);

@@ -11,6 +11,7 @@
 #include "drivers/files/captures/capture_seal.hpp"
 #include "drivers/files/captures/hdf5_handles.hpp"
 #include "drivers/files/captures/shot_codec.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 #ifdef KOLSKY_SANITIZED
@@ -27,7 +28,7 @@ namespace {
 using testing::bytes_of;
 using testing::expect_refused;
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 using testing::write_bytes;
 
 constexpr std::size_t kSealBytes = 95;
@@ -64,7 +65,7 @@ class DamagedCapture : public ::testing::Test {
     return static_cast<std::size_t>(found - image_.begin());
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   Shot shot_ = make_shot(1);
   std::filesystem::path whole_ = folder_ / "whole.h5";
   std::filesystem::path path_ = folder_ / "damaged.h5";
@@ -152,7 +153,7 @@ TEST_F(DamagedCapture, NoFlipUnderTheSealGivesAnotherShot) {
 }
 
 TEST(NoCapture, IsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "text.h5") << "time_s,g1\n0,1\n" << std::string(1000, '1');
   std::ofstream(folder / "empty.h5").flush();
   std::filesystem::create_directory(folder / "folder.h5");
@@ -220,7 +221,7 @@ hid_t variable_text() {
 class HostileCapture : public ::testing::TestWithParam<Hostile> {};
 
 TEST_P(HostileCapture, IsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const auto path = folder / "hostile.h5";
   write_capture(make_shot(1), path);
   write_bytes(path, without_seal(bytes_of(path)));

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "drivers/files/captures/capture.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
@@ -17,10 +18,10 @@ using testing::bytes_of;
 using testing::expect_refused;
 using testing::expect_same;
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 
 TEST(Capture, GivesTheShotBack) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   for (const int bits : {12, 16, 18, 24, 32}) {
     const auto path = folder / (std::to_string(bits) + ".h5");
     const Shot shot = make_shot(1, {4, 4096, bits});
@@ -33,7 +34,7 @@ TEST(Capture, GivesTheShotBack) {
 }
 
 TEST(Capture, KeepsHowItsShotIsToBeReduced) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Shot shot = testing::asked_shot();
   write_capture(shot, folder / "all.h5");
   expect_same(read_capture(folder / "all.h5"), shot);
@@ -44,7 +45,7 @@ TEST(Capture, KeepsHowItsShotIsToBeReduced) {
 }
 
 TEST(Capture, GivesBackWhatIsOptionalAndEmpty) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Shot shot = make_shot(2, {1, 1});
   shot.bar_model.reset();
   shot.trigger.reset();
@@ -57,7 +58,7 @@ TEST(Capture, GivesBackWhatIsOptionalAndEmpty) {
 
 // Gauges and facts may have names that HDF5 cannot link an object by, or uses itself.
 TEST(Capture, TakesAnyName) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Shot shot = make_shot(3, {3, 10});
   const std::vector<std::string> names{"time", "time_", "in-1"};
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -71,14 +72,14 @@ TEST(Capture, TakesAnyName) {
 }
 
 TEST(Capture, TheSameShotGivesTheSameBytes) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_capture(make_shot(4), folder / "a.h5");
   write_capture(make_shot(4), folder / "b.h5");
   EXPECT_EQ(bytes_of(folder / "a.h5"), bytes_of(folder / "b.h5"));
 }
 
 TEST(Capture, IsReadOnlyAndNeverOverwritten) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_capture(make_shot(5), folder / "a.h5");
   struct stat status {};
   ASSERT_EQ(::stat((folder / "a.h5").c_str(), &status), 0);
@@ -89,7 +90,7 @@ TEST(Capture, IsReadOnlyAndNeverOverwritten) {
 }
 
 TEST(Capture, LeavesNoOtherFile) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_capture(make_shot(7), folder / "a.h5");
   expect_refused([&] { write_capture(make_shot(7), folder / "a.h5"); });
   Shot bad = make_shot(8);
@@ -100,13 +101,13 @@ TEST(Capture, LeavesNoOtherFile) {
 }
 
 TEST(Capture, RefusesAFolderThatIsNotThere) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   expect_refused([&] { write_capture(make_shot(9), folder / "no/a.h5"); }, {"no/a.h5"});
 }
 
 // A file-size limit stands in for a full disk.
 TEST(Capture, AFullDiskIsRefusedAndLeavesNothing) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGXFSZ, SIG_IGN);
@@ -132,7 +133,7 @@ TEST(Capture, AFullDiskIsRefusedAndLeavesNothing) {
 }
 
 TEST(CapturesIn, GivesAFileOrAFolderByName) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_capture(make_shot(11), folder / "b.h5");
   write_capture(make_shot(12), folder / "a.h5");
   std::ofstream(folder / ".c.h5.x.part") << "x";
@@ -144,13 +145,13 @@ TEST(CapturesIn, GivesAFileOrAFolderByName) {
 }
 
 TEST(CapturesIn, RefusesWhereThereIsNone) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   expect_refused([&] { (void)captures_in(folder.path()); }, {"no captures"});
   expect_refused([&] { (void)captures_in(folder / "gone"); }, {"does not exist"});
 }
 
 TEST(Capture, AFullDiskIsRefusedAndHoldsNothingBack) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Shot shot = make_shot(1);
   write_capture(shot, folder / "whole.h5");
   const auto bytes = std::filesystem::file_size(folder / "whole.h5");

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
@@ -12,7 +13,7 @@ namespace {
 
 using testing::bytes_of;
 using testing::expect_refused;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 using testing::write_bytes;
 
 CatalogueEntry entry(int number) {
@@ -40,7 +41,7 @@ void expect_equal(const CatalogueEntry& actual, const CatalogueEntry& expected) 
 }
 
 TEST(Catalogue, KeepsEntriesFromOneOpeningToTheNext) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   {
     Catalogue catalogue(folder / "c.sqlite");
     EXPECT_TRUE(catalogue.is_new());
@@ -62,7 +63,7 @@ TEST(Catalogue, KeepsEntriesFromOneOpeningToTheNext) {
 }
 
 TEST(Catalogue, PutReplacesTheEntryOfAnId) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Catalogue catalogue(folder / "c.sqlite");
   catalogue.put(entry(1));
   CatalogueEntry judged = entry(1);
@@ -73,7 +74,7 @@ TEST(Catalogue, PutReplacesTheEntryOfAnId) {
 }
 
 TEST(Catalogue, ReplaceAllLeavesNothingElse) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Catalogue catalogue(folder / "c.sqlite");
   catalogue.put(entry(1));
   catalogue.replace_all({entry(5), entry(6)});
@@ -82,7 +83,7 @@ TEST(Catalogue, ReplaceAllLeavesNothingElse) {
 }
 
 TEST(Catalogue, ThreadsMayShareIt) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Catalogue catalogue(folder / "c.sqlite");
   std::thread reader([&catalogue] {
     for (int i = 0; i < 200; ++i) {
@@ -112,7 +113,7 @@ class BrokenCatalogue : public ::testing::Test {
     EXPECT_EQ(catalogue.newest().size(), 1U);
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::filesystem::path path_ = folder_ / "c.sqlite";
 };
 
@@ -159,7 +160,7 @@ TEST_F(BrokenCatalogue, AnotherProgramsTablesAreReplaced) {
 }
 
 TEST(NoCatalogue, AFolderThatIsNotThereIsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   expect_refused([&] { const Catalogue catalogue(folder / "no/c.sqlite"); }, {"no/c.sqlite"});
   std::filesystem::create_directory(folder / "d.sqlite");
   expect_refused([&] { const Catalogue catalogue(folder / "d.sqlite"); }, {"d.sqlite"});

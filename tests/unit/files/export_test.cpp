@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "drivers/files/captures/hdf5_handles.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/full_disk.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 using testing::bytes_of;
 using testing::expect_refused;
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 
 Reduction make_reduction() {
   Reduction reduction;
@@ -60,7 +61,7 @@ Table read_csv(const std::filesystem::path& path) {
 }
 
 TEST(ExportCsv, WritesHistoriesAndGaugesBitForBit) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Shot shot = make_shot(1);
   const Reduction reduction = make_reduction();
   export_shot(shot, reduction, ExportFormat::csv, folder / "x.csv");
@@ -84,7 +85,7 @@ TEST(ExportCsv, WritesHistoriesAndGaugesBitForBit) {
 }
 
 TEST(ExportCsv, QuotesWhatWouldEndACell) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Shot shot = make_shot(2);
   shot.channels[0].gauge = "in, \"near\"";
   export_shot(shot, make_reduction(), ExportFormat::csv, folder / "x.csv");
@@ -92,7 +93,7 @@ TEST(ExportCsv, QuotesWhatWouldEndACell) {
 }
 
 TEST(ExportCsv, AShotThatCannotBeReducedHasHistoriesWithoutRows) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   export_shot(make_shot(3), Reduction{}, ExportFormat::csv, folder / "x.csv");
   EXPECT_TRUE(read_csv(folder / "x.csv").columns.empty());
   EXPECT_EQ(read_csv(folder / "x-gauges.csv").columns.size(), 3U);
@@ -111,7 +112,7 @@ std::vector<double> mat_column(mat_t* file, const char* name) {
 }
 
 TEST(ExportMat, WritesAColumnPerVariable) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Shot shot = make_shot(4, {2, 300});
   shot.channels[0].gauge = "1st gauge";
   const Reduction reduction = make_reduction();
@@ -139,7 +140,7 @@ TEST(ExportMat, WritesAColumnPerVariable) {
 
 // With room for nothing, for a part, and for all but the last byte.
 TEST(Export, RefusesOnAFullDiskAndLeavesNothing) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Shot shot = make_shot(4, {2, 3000});
   const Reduction reduction = make_reduction();
   const std::pair<ExportFormat, std::string> formats[] = {{ExportFormat::csv, "whole.csv"},
@@ -160,7 +161,7 @@ TEST(Export, RefusesOnAFullDiskAndLeavesNothing) {
 }
 
 TEST(ExportMat, WritesAShotThatCannotBeReduced) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Reduction none;
   none.quality.reason = "no pulse";
   export_shot(make_shot(5), none, ExportFormat::mat, folder / "x.mat");
@@ -191,7 +192,7 @@ std::string hdf5_text(hid_t file, const char* path, const char* name) {
 }
 
 TEST(ExportHdf5, WritesGroupsThatPlot) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Reduction reduction = make_reduction();
   export_shot(make_shot(6), reduction, ExportFormat::hdf5, folder / "x.h5");
   const hdf5::Session session;
@@ -208,7 +209,7 @@ TEST(ExportHdf5, WritesGroupsThatPlot) {
 }
 
 TEST(ExportHdf5, AShotThatCannotBeReducedShowsItsGauges) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Reduction none;
   none.quality.reason = "no pulse";
   export_shot(make_shot(7), none, ExportFormat::hdf5, folder / "x.h5");
@@ -222,7 +223,7 @@ TEST(ExportHdf5, AShotThatCannotBeReducedShowsItsGauges) {
 class ExportOver : public ::testing::TestWithParam<ExportFormat> {};
 
 TEST_P(ExportOver, AnExistingFileIsRefusedAndNothingIsLeft) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "x.out") << "mine";
   expect_refused([&] { export_shot(make_shot(8), make_reduction(), GetParam(), folder / "x.out"); },
                  {"x.out", "exists"});
@@ -236,7 +237,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, ExportOver,
                                            ExportFormat::hdf5));
 
 TEST(ExportCsv, AnExistingSecondFileIsRefusedToo) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "x-gauges.csv") << "mine";
   expect_refused(
       [&] { export_shot(make_shot(9), make_reduction(), ExportFormat::csv, folder / "x.csv"); },

@@ -11,6 +11,7 @@
 
 #include "drivers/files/store/journal.hpp"
 #include "drivers/files/store/journal_record.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
@@ -20,11 +21,11 @@ using testing::bytes_of;
 using testing::expect_refused;
 using testing::expect_same;
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 using testing::write_bytes;
 
 TEST(Journal, GivesBackWhatWasAppended) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   {
     Journal journal(folder / "a.kj");
     journal.append_shot(make_shot(1));
@@ -45,7 +46,7 @@ TEST(Journal, GivesBackWhatWasAppended) {
 }
 
 TEST(Journal, CanBeReadWhileItIsWritten) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Journal journal(folder / "a.kj");
   EXPECT_TRUE(read_journal(folder / "a.kj").shots.empty());
   journal.append_shot(make_shot(1));
@@ -56,7 +57,7 @@ TEST(Journal, CanBeReadWhileItIsWritten) {
 }
 
 TEST(Journal, GivesTheRoomAheadBack) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::uintmax_t open_size = 0;
   {
     Journal journal(folder / "a.kj");
@@ -68,7 +69,7 @@ TEST(Journal, GivesTheRoomAheadBack) {
 }
 
 TEST(Journal, NeverTakesAnExistingFile) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "a.kj") << "mine";
   expect_refused([&] { const Journal journal(folder / "a.kj"); }, {"a.kj", "exists"});
   EXPECT_EQ(bytes_of(folder / "a.kj").size(), 4U);
@@ -76,7 +77,7 @@ TEST(Journal, NeverTakesAnExistingFile) {
 }
 
 TEST(Journal, RefusesAShotThatCouldNeverBecomeACapture) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Journal journal(folder / "a.kj");
   Shot bad = make_shot(1);
   bad.id = "../../etc/cron.d/x";
@@ -86,7 +87,7 @@ TEST(Journal, RefusesAShotThatCouldNeverBecomeACapture) {
 }
 
 TEST(Journal, TakesRecordsLargerThanTheRoomAhead) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const testing::ShotShape large{4, 1'000'000, 16};
   {
     Journal journal(folder / "a.kj");
@@ -101,7 +102,7 @@ TEST(Journal, TakesRecordsLargerThanTheRoomAhead) {
 }
 
 TEST(Journal, TwoThreadsMayAppend) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   constexpr std::uint32_t kShots = 60;
   {
     Journal journal(folder / "a.kj");
@@ -150,7 +151,7 @@ class DamagedJournal : public ::testing::Test {
     return {bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(count)};
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::filesystem::path whole_ = folder_ / "whole.kj";
   std::filesystem::path path_ = folder_ / "damaged.kj";
   std::vector<std::byte> bytes_;
@@ -263,7 +264,7 @@ TEST_F(DamagedJournal, AWholeRecordThatHoldsNoShotIsReported) {
 }
 
 TEST(NoJournal, IsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "text.kj") << "no journal at all";
   std::ofstream(folder / "long.kj") << std::string(100'000, 'K');
   std::filesystem::create_directory(folder / "folder.kj");
@@ -274,7 +275,7 @@ TEST(NoJournal, IsRefused) {
 }
 
 TEST(NoJournal, AFileThatACrashLeftEmptyIsAnEmptyJournal) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_bytes(folder / "a.kj", {});
   write_bytes(folder / "b.kj", std::vector<std::byte>(100'000));
   for (const char* name : {"a.kj", "b.kj"}) {
@@ -285,7 +286,7 @@ TEST(NoJournal, AFileThatACrashLeftEmptyIsAnEmptyJournal) {
 }
 
 TEST(NoJournal, ALaterFormatIsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::vector<std::byte> record;
   journal_record::begin(record);
   record.resize(record.size() + 8, std::byte{0});
@@ -298,7 +299,7 @@ TEST(NoJournal, ALaterFormatIsRefused) {
 // A file-size limit stands in for a full disk: what was appended stays whole, and the journal goes
 // on when there is space again.
 TEST(Journal, AFullDiskCostsNothingAppended) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGXFSZ, SIG_IGN);

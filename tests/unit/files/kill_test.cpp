@@ -12,13 +12,14 @@
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/store/journal.hpp"
 #include "drivers/files/store/store.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
 namespace {
 
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 
 constexpr int kRounds = 30;
 constexpr int kTornRounds = 15;
@@ -76,7 +77,7 @@ std::vector<std::uint32_t> live_and_die(const StoreLayout& store, int round, con
 }
 
 TEST(Kill, EveryJournaledShotIsRecoveredWhateverTheMoment) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const StoreLayout store{folder / "store"};
   store.create();
   std::mt19937 random(20240229);
@@ -126,7 +127,7 @@ TEST(Kill, EveryJournaledShotIsRecoveredWhateverTheMoment) {
 TEST(Kill, ATornRecordCostsNoOther) {
   // In memory, where nothing waits for a disk, most of the time goes into writing.
   const std::filesystem::path memory = "/dev/shm";
-  const TemporaryFolder folder(
+  const ScratchFolder folder(
       std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path());
   const StoreLayout store{folder / "store"};
   store.create();

@@ -5,13 +5,14 @@
 #include <sstream>
 
 #include "drivers/files/captures/capture.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
 namespace {
 
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 
 constexpr const char* kPython = "/usr/bin/python3";
 
@@ -53,7 +54,7 @@ TEST_P(Nexus, AnotherReaderFindsEverythingWhereItIsSaidToBe) {
   if (run(std::string(kPython) + " -c 'import h5py, tomllib'").status != 0) {
     GTEST_SKIP() << "no h5py under " << kPython;
   }
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Shot shot = make_shot(1, {3, 401, GetParam()});
   write_capture(shot, folder / "a.h5");
   const auto outcome =
@@ -112,7 +113,7 @@ TEST(NexusTools, H5dumpReadsACapture) {
   if (run("command -v h5dump").status != 0) {
     GTEST_SKIP() << "no h5dump";
   }
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_capture(make_shot(2, {2, 5}), folder / "a.h5");
   const auto outcome = run("h5dump -d /entry/gauges/g1 " + (folder / "a.h5").string());
   EXPECT_EQ(outcome.status, 0);

@@ -13,13 +13,14 @@
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/store/journal.hpp"
 #include "drivers/files/store/store.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
 namespace {
 
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 
 const testing::ShotShape kShape{2, 400, 16};
 
@@ -64,7 +65,7 @@ class Pruning : public ::testing::Test {
     EXPECT_TRUE(verify_store(store).problems.empty());
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   StoreLayout store_{folder_ / "store"};
 };
 

@@ -8,6 +8,7 @@
 #include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/store/catalogue.hpp"
 #include "drivers/files/store/journal.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/files/stored_shots.hpp"
 
 namespace kolsky {
@@ -17,7 +18,7 @@ using testing::bytes_of;
 using testing::expect_refused;
 using testing::expect_same;
 using testing::make_shot;
-using testing::TemporaryFolder;
+using testing::ScratchFolder;
 using testing::write_bytes;
 
 class Store : public ::testing::Test {
@@ -32,7 +33,7 @@ class Store : public ::testing::Test {
   }
   void capture(const Shot& shot) const { write_capture(shot, layout_.capture_of(shot.id)); }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   StoreLayout layout_{folder_ / "store"};
 };
 
@@ -279,7 +280,7 @@ TEST_F(Store, StrangersAmongTheFilesAreReported) {
 }
 
 TEST(NoStore, IsRefusedAndNotMade) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   expect_refused([&] { (void)verify_store({folder / "gone"}); }, {"gone", "store"});
   EXPECT_FALSE(std::filesystem::exists(folder / "gone"));
   std::ofstream(folder / "file") << "x";

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -11,15 +10,6 @@
 #include "drivers/files/settings/bench_file.hpp"
 
 namespace kolsky::testing {
-
-TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
-  std::string name = (parent / "kolsky-files-XXXXXX").string();
-  path_ = ::mkdtemp(name.data());
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::filesystem::remove_all(path_);
-}
 
 std::string bench_text(std::size_t gauges) {
   std::string text = R"(kind = "bar"

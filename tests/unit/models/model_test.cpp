@@ -4,8 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 
@@ -14,6 +12,7 @@
 #include "processing/models/physics.hpp"
 #include "processing/models/transfers.hpp"
 #include "tests/reference_effects.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -273,11 +272,9 @@ TEST(ModelFile, KnowsSinceWhichStepItIsWhatItIs) {
 }
 
 TEST(DigestOfFiles, IsTheSameInAnyOrderAndKnowsThatOfOlderHistories) {
-  const auto folder = std::filesystem::temp_directory_path();
-  const auto one = folder / "kolsky-digest-one";
-  const auto two = folder / "kolsky-digest-two";
-  std::ofstream(one) << "abc";
-  std::ofstream(two) << "";
+  const testing::ScratchFolder folder;
+  const auto one = folder.write("one", "abc");
+  const auto two = folder.write("two", "");
   EXPECT_EQ(digest_of_files({one, two}), digest_of_files({two, one}));
   // printf '%s%s' $(printf abc | sha256sum | cut -c1-64) $(printf '' | sha256sum | cut -c1-64) |
   // sha256sum, and the other way round
@@ -289,8 +286,6 @@ TEST(DigestOfFiles, IsTheSameInAnyOrderAndKnowsThatOfOlderHistories) {
   EXPECT_TRUE(is_digest_of(empty_first, {two, one}));
   EXPECT_FALSE(is_digest_of(empty_first, {one, two}));
   EXPECT_FALSE(is_digest_of(abc_first, {one}));
-  std::filesystem::remove(one);
-  std::filesystem::remove(two);
 }
 
 TEST(ModelFile, SaysOfABenchFileThatItIsOne) {

@@ -10,13 +10,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <sstream>
 
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "drivers/simulated/scenario.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/simulated/served_ramp.hpp"
 
 namespace kolsky::testing {
@@ -93,18 +93,12 @@ class Digitiser {
   pid_t child_ = -1;
 };
 
-class TemporaryFolder : public ::testing::Test {
+class ProgramWithFiles : public ::testing::Test {
  protected:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "kolsky-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() override { fs::remove_all(folder); }
   std::string file(const std::string& name, const std::string& content) {
-    std::ofstream(folder / name) << content;
-    return (folder / name).string();
+    return folder.write(name, content).string();
   }
-  fs::path folder;
+  testing::ScratchFolder folder;
 };
 
 TEST(Program, ListsItsScenarios) {
@@ -175,14 +169,14 @@ TEST(Program, RefusesASeedInAFewWords) {
   EXPECT_LT(run("--seed -1", true).out.size(), 150U);
 }
 
-TEST_F(TemporaryFolder, RefusesAWrongFaultScriptByItsLine) {
+TEST_F(ProgramWithFiles, RefusesAWrongFaultScriptByItsLine) {
   const std::string script = file("faults", "shot 1 at 5 timeout\nshot 1 at 5 explode\n");
   const Outcome outcome = run("--faults " + script, true);
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_NE(outcome.out.find(script + ":2: "), std::string::npos) << outcome.out;
 }
 
-TEST_F(TemporaryFolder, WritesTheTruthOnceAndOverwritesNothing) {
+TEST_F(ProgramWithFiles, WritesTheTruthOnceAndOverwritesNothing) {
   const std::string truth = (folder / "truth.csv").string();
   EXPECT_EQ(run("--scenario cover --truth " + truth).exit, 0);
   const auto size = fs::file_size(truth);
@@ -241,7 +235,7 @@ TEST(Program, PlaysThePulseOfItsScenario) {
   EXPECT_EQ(digitiser.end(), 0);
 }
 
-TEST_F(TemporaryFolder, PlaysACaptureCodeByCode) {
+TEST_F(ProgramWithFiles, PlaysACaptureCodeByCode) {
   Shot stored;
   stored.id = "20261121T101112-1";
   stored.bench_toml = run("--print-bench --scenario core").out;

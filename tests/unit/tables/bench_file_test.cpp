@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/unit/tables/scratch_folder.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/unit/tables/refusal.hpp"
 
 namespace kolsky {
 namespace {

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/tables/scratch_folder.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/unit/tables/refusal.hpp"
 
 namespace kolsky {
 namespace {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "drivers/files/settings/bench_file.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/tables/table_bench.hpp"
 
 namespace kolsky {

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "drivers/files/tables/table_import.hpp"
-#include "tests/unit/tables/scratch_folder.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/unit/tables/refusal.hpp"
 
 namespace kolsky::testing {
 

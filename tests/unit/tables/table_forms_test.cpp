@@ -9,6 +9,7 @@
 #include <string>
 
 #include "drivers/files/sha256.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/tables/table_bench.hpp"
 
 namespace kolsky {

@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/unit/tables/table_bench.hpp"
 
 namespace kolsky {

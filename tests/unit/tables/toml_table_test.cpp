@@ -5,7 +5,8 @@
 #include <chrono>
 
 #include "drivers/files/settings/nearest_name.hpp"
-#include "tests/unit/tables/scratch_folder.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/unit/tables/refusal.hpp"
 
 namespace kolsky {
 namespace {

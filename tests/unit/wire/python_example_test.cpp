@@ -11,6 +11,7 @@
 #include "daemon/publish/publisher.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "proto/codec.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace kolsky {
 namespace {
@@ -35,26 +36,11 @@ std::string example_of(const fs::path& page) {
                            text.find("```", start + 3) - start - fence.size());
 }
 
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "kolsky-python-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 TEST(PythonExample, OfTheDocumentationPrintsTheResults) {
   if (!run(std::string(kPython) + " -c 'import zmq, google.protobuf' 2>/dev/null")) {
     GTEST_SKIP() << "needs python3-zmq and python3-protobuf";
   }
-  const Folder folder;
+  const testing::ScratchFolder folder;
   const std::string example = example_of(fs::path(KOLSKY_SOURCE_DIR) / "docs/wire.md");
   ASSERT_FALSE(example.empty());
   std::ofstream(folder.path() / "example.py") << example;
