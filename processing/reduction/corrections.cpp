@@ -24,7 +24,7 @@ std::vector<double> slope_of(const std::vector<double>& history,
 
 /// What a face's stress, or the mean of both, has more than the mean over the specimen.
 struct AxialShare {
-  double of_straining;  ///< of rho h^2 (e' - e^2)
+  double of_straining;  ///< of rho h^2 e'
   double of_motion;     ///< of rho h times the back face's acceleration
 };
 
@@ -40,15 +40,14 @@ AxialShare axial_share(StressFrom from) {
   return {1.0 / 12.0, 0.0};
 }
 
-void take_off_inertia(StressFrom from, const Corrections& corrections, const Specimen& specimen,
-                      std::span<const double> rate_of_front_per_s, Reduction& r) {
-  if (!specimen.density_kg_m3) {
-    throw InputError("specimen.density_kg_m3", "is missing, so its inertia is not known",
-                     "file it, or leave the inertia corrections out");
-  }
-  const double rho = *specimen.density_kg_m3;
-  const double a2 = std::pow(specimen.diameter_m / 2.0, 2);
-  const double h2 = std::pow(specimen.length_m, 2);
+/// What is left of the specimen's length.
+double length_left(double strain) {
+  constexpr double kLeast = 1e-3;
+  return std::max(kLeast, 1.0 - strain);
+}
+
+void take_off_axial_inertia(StressFrom from, const Specimen& specimen, double density_kg_m3,
+                            std::span<const double> rate_of_front_per_s, Reduction& r) {
   const std::vector<double> growth = slope_of(r.strain_rate_per_s, r.time_s);
   std::vector<double> rate_of_back(r.strain_rate_per_s.size());
   for (std::size_t n = 0; n < rate_of_back.size(); ++n) {
@@ -56,14 +55,47 @@ void take_off_inertia(StressFrom from, const Corrections& corrections, const Spe
   }
   const std::vector<double> back_growth = slope_of(rate_of_back, r.time_s);
   const AxialShare share = axial_share(from);
+  const double unit_Pa_s2 = density_kg_m3 * std::pow(specimen.length_m, 2);
   for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
+    r.stress_Pa[n] -=
+        unit_Pa_s2 * (share.of_straining * growth[n] + share.of_motion * back_growth[n]);
+  }
+}
+
+void take_off_radial_inertia(const Specimen& specimen, double density_kg_m3, Reduction& r) {
+  constexpr double kKeepsItsVolume = 0.5;
+  const double nu = specimen.poisson_ratio ? specimen.poisson_ratio->value : kKeepsItsVolume;
+  const double unit_Pa_s2 = density_kg_m3 * std::pow(nu * specimen.diameter_m / 2.0, 2) / 2.0;
+  const std::vector<double> growth = slope_of(r.strain_rate_per_s, r.time_s);
+  for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
+    const double left = length_left(r.strain[n]);
     const double square = std::pow(r.strain_rate_per_s[n], 2);
-    if (corrections.radial_inertia) {
-      r.stress_Pa[n] -= rho * a2 * (growth[n] / 8.0 + square / 16.0);
-    }
-    if (corrections.axial_inertia) {
-      r.stress_Pa[n] -=
-          rho * h2 * (share.of_straining * (growth[n] - square) + share.of_motion * back_growth[n]);
+    r.stress_Pa[n] -=
+        unit_Pa_s2 * std::pow(left, -2.0 - 2.0 * nu) * (growth[n] + (1.0 + nu) * square / left);
+  }
+}
+
+void take_off_inertia(StressFrom from, const Corrections& corrections, const Specimen& specimen,
+                      std::span<const double> rate_of_front_per_s, Reduction& r) {
+  if (!specimen.density_kg_m3) {
+    throw InputError("specimen.density_kg_m3", "is missing, so its inertia is not known",
+                     "file it, or leave the inertia corrections out");
+  }
+  const double density_kg_m3 = *specimen.density_kg_m3;
+  if (corrections.radial_inertia) {
+    take_off_radial_inertia(specimen, density_kg_m3, r);
+  }
+  if (corrections.axial_inertia) {
+    take_off_axial_inertia(from, specimen, density_kg_m3, rate_of_front_per_s, r);
+  }
+}
+
+/// Of faces that are pressed: a specimen that is pulled by a later wave comes off them.
+void take_off_friction(double coefficient, const Specimen& specimen, Reduction& r) {
+  const double slender = specimen.diameter_m / (3.0 * specimen.length_m);
+  for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
+    if (r.stress_Pa[n] > 0.0) {
+      r.stress_Pa[n] /= 1.0 + coefficient * slender * std::pow(length_left(r.strain[n]), -1.5);
     }
   }
 }
@@ -122,11 +154,7 @@ void set_stress(StressFrom from, const Corrections& corrections, const Specimen&
     take_off_inertia(taken, corrections, specimen, rate_of_front_per_s, r);
   }
   if (corrections.friction) {
-    const double slender = specimen.diameter_m / (3.0 * specimen.length_m);
-    for (std::size_t n = 0; n < r.stress_Pa.size(); ++n) {
-      const double left = std::max(1e-3, 1.0 - r.strain[n]);
-      r.stress_Pa[n] /= 1.0 + *corrections.friction * slender * std::pow(left, -1.5);
-    }
+    take_off_friction(*corrections.friction, specimen, r);
   }
 }
 

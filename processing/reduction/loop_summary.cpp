@@ -121,6 +121,10 @@ Loading loading_of(const Reduction& r, double sense) {
 
 }  // namespace
 
+bool is_pulled(const Reduction& reduction) {
+  return sense_of(reduction.stress_Pa) < 0.0;
+}
+
 std::size_t loading_end(const Reduction& reduction) {
   if (reduction.strain.empty()) {
     return 0;
@@ -137,11 +141,15 @@ LoopSummary summarise(const Reduction& reduction) {
     return {.no_loading = "there are no histories"};
   }
   const double sense = sense_of(reduction.stress_Pa);
-  const std::size_t peak = index_of_largest(in_sense(reduction.stress_Pa, sense));
+  // What follows the first loading may go further: it is of later passes of the wave.
+  const std::size_t pass = std::max<std::size_t>(first_pass(reduction, sense), 1);
+  const std::span stress_Pa = std::span(reduction.stress_Pa).first(pass);
+  const std::span strain = std::span(reduction.strain).first(pass);
+  const std::size_t peak = index_of_largest(in_sense(stress_Pa, sense));
   LoopSummary summary;
-  summary.peak_stress_Pa = reduction.stress_Pa[peak];
-  summary.strain_at_peak = reduction.strain[peak];
-  summary.peak_strain = reduction.strain[index_of_largest(in_sense(reduction.strain, sense))];
+  summary.peak_stress_Pa = stress_Pa[peak];
+  summary.strain_at_peak = strain[peak];
+  summary.peak_strain = strain[index_of_largest(in_sense(strain, sense))];
   const Loading loading = loading_of(reduction, sense);
   if (!loading.missing.empty()) {
     summary.no_loading = loading.missing;

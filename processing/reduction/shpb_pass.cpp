@@ -81,6 +81,11 @@ class Pass {
     set_stress(options_.stress, options_.corrections, *shot_.bench.specimen,
                std::span<const double>(front_rate_per_s_).first(reduction_.time_s.size()),
                reduction_);
+    if (options_.corrections.friction && is_pulled(reduction_)) {
+      return not_reducible(
+          "friction is asked for, of a specimen that is pulled: no face is pressed",
+          "leave friction out");
+    }
     judge_quality();
     reduction_.assumed_from_s = assumed_from_s();
     return std::move(reduction_);

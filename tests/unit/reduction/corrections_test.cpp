@@ -54,23 +54,88 @@ TEST(SetStress, TakesOneTwoOrThreeWaves) {
   EXPECT_THROW((void)stress_from("four-wave"), InputError);
 }
 
-TEST(SetStress, TakesInertiaOffByThePrintedFormulas) {
-  // At 50 us: e = 500 1/s, e' = 1e7 1/s2. Radial: 1000 x 36e-6 x (1.25e6 + 15625).
-  // Axial, mean of both faces: 1000 x 16e-6 x (1e7 - 2.5e5) / 12.
-  Reduction r = growing();
-  set_stress(StressFrom::both_faces, {}, disc(), at_rest(r), r);
-  const double plain = r.stress_Pa[50];
-  set_stress(StressFrom::both_faces, {.radial_inertia = true, .friction = {}}, disc(), at_rest(r),
+/// A strain that grows to a third, with its rate, every microsecond.
+double strain_at(double t_s) {
+  return 0.3 * std::sin(1.2e4 * t_s);
+}
+
+Reduction squeezed() {
+  Reduction r;
+  for (int n = 0; n < 100; ++n) {
+    const double t = 1e-6 * n;
+    r.time_s.push_back(t);
+    r.strain.push_back(strain_at(t));
+    r.strain_rate_per_s.push_back(3.6e3 * std::cos(1.2e4 * t));
+    r.force_front_N.push_back(0.0);
+    r.force_back_N.push_back(0.0);
+    r.stress_Pa.push_back(0.0);
+  }
+  return r;
+}
+
+/// By the rate at which the energy of motion of a volume grows, over the strain's rate: what a
+/// specimen without strength would be pressed with.
+/// @param energy_J_m3  by time
+template <typename Energy>
+double pressed_by(const Energy& energy_J_m3, double t_s) {
+  constexpr double kStep_s = 1e-8;
+  return (energy_J_m3(t_s + kStep_s) - energy_J_m3(t_s - kStep_s)) /
+         (strain_at(t_s + kStep_s) - strain_at(t_s - kStep_s));
+}
+
+double slope(const auto& function, double t_s) {
+  constexpr double kStep_s = 1e-8;
+  return (function(t_s + kStep_s) - function(t_s - kStep_s)) / (2.0 * kStep_s);
+}
+
+class RadialInertia : public ::testing::TestWithParam<double> {};
+
+TEST_P(RadialInertia, IsTheWorkThatWideningTakes) {
+  const double nu = GetParam();
+  const auto radius_m = [&](double t) { return 0.006 * std::pow(1.0 - strain_at(t), -nu); };
+  // The mean square of the distance from the axis is half the radius's.
+  const auto energy = [&](double t) { return 0.25 * 1000.0 * std::pow(slope(radius_m, t), 2); };
+  Specimen specimen = disc();
+  specimen.poisson_ratio = Measured{nu};
+  Reduction r = squeezed();
+  set_stress(StressFrom::both_faces, {.radial_inertia = true, .friction = {}}, specimen, at_rest(r),
              r);
-  EXPECT_NEAR(plain - r.stress_Pa[50], 45562.5, 1.0);
-  set_stress(StressFrom::both_faces, {.axial_inertia = true, .friction = {}}, disc(), at_rest(r),
-             r);
-  EXPECT_NEAR(plain - r.stress_Pa[50], 13000.0, 1.0);
-  // Davies and Hunter: the back face's stress lacks a sixth.
-  set_stress(StressFrom::back, {}, disc(), at_rest(r), r);
-  const double back = r.stress_Pa[50];
-  set_stress(StressFrom::back, {.axial_inertia = true, .friction = {}}, disc(), at_rest(r), r);
-  EXPECT_NEAR(r.stress_Pa[50] - back, 26000.0, 1.0);
+  for (const int n : {5, 40, 80}) {
+    const double expected = pressed_by(energy, 1e-6 * n);
+    EXPECT_NEAR(-r.stress_Pa[n], expected, 1e-3 * std::abs(expected)) << n;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Poisson, RadialInertia, ::testing::Values(0.5, 0.3, 0.1));
+
+TEST(SetStress, TakesASpecimenForOneThatKeepsItsVolumeUnlessItsPoissonRatioIsFiled) {
+  Specimen filed = disc();
+  filed.poisson_ratio = Measured{0.5};
+  const Corrections radial{.radial_inertia = true, .friction = {}};
+  Reduction r = squeezed();
+  set_stress(StressFrom::both_faces, radial, disc(), at_rest(r), r);
+  const std::vector<double> unfiled = r.stress_Pa;
+  set_stress(StressFrom::both_faces, radial, filed, at_rest(r), r);
+  EXPECT_EQ(r.stress_Pa, unfiled);
+}
+
+/// A back face at rest does no work: the front face alone moves what moves.
+TEST(SetStress, AxialInertiaIsTheWorkThatShorteningTakes) {
+  const auto front_m_per_s = [](double t) { return 0.004 * slope(strain_at, t); };
+  const auto energy = [&](double t) { return 1000.0 * std::pow(front_m_per_s(t), 2) / 6.0; };
+  const Corrections axial{.axial_inertia = true, .friction = {}};
+  Reduction r = squeezed();
+  for (const int n : {5, 40, 80}) {
+    const double all = pressed_by(energy, 1e-6 * n);
+    const double tolerance = 1e-3 * std::abs(all);
+    // Force grows from the back face to the front as the square of the distance.
+    set_stress(StressFrom::front, axial, disc(), at_rest(r), r);
+    EXPECT_NEAR(-r.stress_Pa[n], all, tolerance);
+    set_stress(StressFrom::back, axial, disc(), at_rest(r), r);
+    EXPECT_NEAR(-r.stress_Pa[n], -all / 2.0, tolerance);
+    set_stress(StressFrom::both_faces, axial, disc(), at_rest(r), r);
+    EXPECT_NEAR(-r.stress_Pa[n], all / 4.0, tolerance);
+  }
 }
 
 TEST(SetStress, ABackFaceThatMovesCostsHalfTheSpecimensMassPerFace) {
@@ -101,7 +166,7 @@ TEST(SetStress, EquilibriumAssumedLeavesTheBackFacesInertia) {
   std::vector<double> front(at_rest(r));
   for (std::size_t n = 0; n < front.size(); ++n) {
     front[n] += 5e6 * r.time_s[n];
-    r.strain_rate_per_s[n] *= 1e-3;  // so that what goes with the rate's square is nothing
+    r.strain_rate_per_s[n] *= 1e-3;
   }
   const double back_growth = 5e6 + 1e7 - 1e4;
   const double front_growth = 5e6 + 1e7;
@@ -122,6 +187,18 @@ TEST(SetStress, TakesFrictionOff) {
   corrections.friction = 0.1;
   set_stress(StressFrom::both_faces, corrections, disc(), at_rest(r), r);
   EXPECT_NEAR(plain / r.stress_Pa[0], 1.0 + 0.1 * 0.012 / (3.0 * 0.004), 1e-12);
+}
+
+TEST(SetStress, FrictionIsOfFacesThatArePressed) {
+  Reduction r = growing();
+  r.force_front_N.assign(r.force_front_N.size(), -120.0);
+  r.force_back_N.assign(r.force_back_N.size(), -100.0);
+  set_stress(StressFrom::both_faces, {}, disc(), at_rest(r), r);
+  const std::vector<double> plain = r.stress_Pa;
+  Corrections corrections;
+  corrections.friction = 0.1;
+  set_stress(StressFrom::both_faces, corrections, disc(), at_rest(r), r);
+  EXPECT_EQ(r.stress_Pa, plain);
 }
 
 TEST(SetStress, InertiaNeedsTheSpecimensDensity) {

@@ -127,6 +127,26 @@ TEST(ElasticReduction, LaterLoadingsAreFollowedThroughTheReturnsFromTheFarEnds) 
   EXPECT_GT(r.time_s.back(), 0.99e-3);
 }
 
+TEST(ElasticReduction, WhatIsQuotedIsOfTheFirstLoading) {
+  const ElasticShpb model;
+  const auto records = model.solve();
+  const Shot shot = noiseless(model, records);
+  const LoopSummary first = summarise(Reducer().reduce(shot));
+  ReductionOptions longer;
+  longer.duration_s = 1e-3;
+  Reduction followed = Reducer(longer).reduce(shot);
+  const LoopSummary all = summarise(followed);
+  EXPECT_NEAR(all.peak_strain, first.peak_strain, 1e-3 * first.peak_strain);
+  EXPECT_NEAR(all.peak_stress_Pa, first.peak_stress_Pa, 1e-3 * first.peak_stress_Pa);
+  // A later one that goes further changes nothing.
+  for (std::size_t n = followed.strain.size() / 2; n < followed.strain.size(); ++n) {
+    followed.strain[n] *= 2.0;
+    followed.stress_Pa[n] *= 2.0;
+  }
+  EXPECT_EQ(summarise(followed).peak_strain, all.peak_strain);
+  EXPECT_EQ(summarise(followed).peak_stress_Pa, all.peak_stress_Pa);
+}
+
 TEST(ElasticReduction, BarsOfDifferentLengthAndAnyGaugePosition) {
   ElasticShpb model;
   model.length_in_m = 1.3;
@@ -163,6 +183,11 @@ TEST(ElasticReduction, TensionIsCompressionWithTheSignTurned) {
   }
   EXPECT_TRUE(quotable_part(compressed).any);
   EXPECT_TRUE(quotable_part(stretched).any);
+  ReductionOptions rubbing;
+  rubbing.corrections.friction = 0.1;
+  const Quality refused = Reducer(rubbing).reduce(noiseless(model, records)).quality;
+  EXPECT_FALSE(refused.reducible);
+  EXPECT_NE(refused.reason.find("friction"), std::string::npos) << refused.reason;
 }
 
 TEST(ElasticReduction, ABenchThatCountsTensionPositiveGivesTheSameCompression) {
