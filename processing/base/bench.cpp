@@ -41,6 +41,12 @@ double gain_sd(const Gauge& gauge) {
   return relative_sd(gauge.strain_gain);
 }
 
+bool Striker::of_material(const Bar& bar) const {
+  constexpr double kSameDensity = 0.02;
+  return !youngs_modulus_Pa &&
+         (!density_kg_m3 || std::abs(*density_kg_m3 / bar.density_kg_m3 - 1.0) <= kSameDensity);
+}
+
 double Specimen::area_m2() const {
   return circle_area_m2(diameter_m);
 }

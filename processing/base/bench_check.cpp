@@ -335,6 +335,11 @@ void check_striker(const Striker& striker) {
   check_number("striker.diameter_m", striker.diameter_m, kDiameter);
   check_number("striker.density_kg_m3", striker.density_kg_m3, ranges::kDensity);
   check_number("striker.speed_m_per_s", striker.speed_m_per_s, kSpeed);
+  check_number("striker.youngs_modulus_Pa", striker.youngs_modulus_Pa, kYoungsModulus);
+  if (striker.youngs_modulus_Pa && !striker.density_kg_m3) {
+    throw InputError("striker.youngs_modulus_Pa", "is filed without the striker's density",
+                     "file striker.density_kg_m3, too");
+  }
 }
 
 // A part is there exactly if the kind has one.

@@ -17,7 +17,6 @@ namespace {
 constexpr double kMargin_s = 15e-6;
 /// A pulse is over where it has fallen to this share of its peak.
 constexpr double kOver = 0.01;
-constexpr double kSameDensity = 0.02;
 
 /// Time from the first gauge's foot until a gauge's pulse arrives there.
 double way_s(const Bench& bench, const Gauge& gauge, const std::vector<double>& speeds) {
@@ -80,6 +79,23 @@ Measured mean_of(const std::vector<Measured>& values) {
   return {sum / weight, std::sqrt(1.0 / weight)};
 }
 
+/// What the scatter of numbers of one thing says of their mean; nothing where it is no more than
+/// their deviations have it.
+/// @param relative_sd_each  what each has beside its own
+double scatter_of_mean(const std::vector<Measured>& values, double mean, double relative_sd_each) {
+  double chi2 = 0.0;
+  double weight = 0.0;
+  double squares = 0.0;
+  for (const Measured& value : values) {
+    const double off = value.value - mean;
+    chi2 += std::pow(off / std::hypot(value.sd, relative_sd_each * mean), 2);
+    weight += 1.0 / (value.sd * value.sd);
+    squares += std::pow(off / value.sd, 2);
+  }
+  const double freedom = static_cast<double>(values.size()) - 1.0;
+  return chi2 > freedom && freedom > 0.0 ? std::sqrt(squares / (weight * freedom)) : 0.0;
+}
+
 std::optional<Measured> striker_speed(const Shot& shot) {
   const auto found = shot.meta.find("striker_speed_m_per_s");
   if (found != shot.meta.end()) {
@@ -119,6 +135,19 @@ double relative_sd_at_rest(const Bar& bar, const BarPrior& bars) {
   return most;
 }
 
+/// Of the striker's impedance in the bar's, for equal sections; nothing where it is not known. Of a
+/// viscoelastic bar it depends on frequency but for a striker of the same material.
+std::optional<double> impedance_share(const Striker& striker, const Bar& bar) {
+  const double of_density = *striker.density_kg_m3 / bar.density_kg_m3;
+  if (striker.of_material(bar)) {
+    return of_density;
+  }
+  if (striker.youngs_modulus_Pa && bar.youngs_modulus_Pa) {
+    return std::sqrt(of_density * *striker.youngs_modulus_Pa / *bar.youngs_modulus_Pa);
+  }
+  return std::nullopt;
+}
+
 /// Absolute gain of the first gauge from its areas and the strikers' momenta.
 std::optional<MomentumCheck> momentum(const CalibrationPart& part, const Bench& bench,
                                       const std::string& gauge, const std::vector<Area>& areas,
@@ -133,12 +162,14 @@ std::optional<MomentumCheck> momentum(const CalibrationPart& part, const Bench& 
     return std::nullopt;
   }
   const double density = *striker->density_kg_m3;
-  const double share = density / bench.input.density_kg_m3;
-  if (std::abs(share - 1.0) > kSameDensity) {
-    none_because = "the striker is not of the bar's material, its impedance is not known";
+  const std::optional<double> share = impedance_share(*striker, bench.input);
+  if (!share) {
+    none_because =
+        "the striker is not of the bar's material, and its impedance is not known: of elastic "
+        "ones striker.youngs_modulus_Pa tells";
     return std::nullopt;
   }
-  const double ratio = std::pow(*striker->diameter_m / bench.input.diameter_m.value, 2.0) * share;
+  const double ratio = std::pow(*striker->diameter_m / bench.input.diameter_m.value, 2.0) * *share;
   const double area_m2 = std::acos(-1.0) * std::pow(striker->diameter_m->value, 2.0) / 4.0;
   const double mass_kg = density * area_m2 * *striker->length_m;
   const double passed = ratio < 1.0 ? 2.0 / (1.0 + ratio) : 1.0;
@@ -148,6 +179,10 @@ std::optional<MomentumCheck> momentum(const CalibrationPart& part, const Bench& 
                  relative_sd(*striker->density_kg_m3));
   common = std::hypot(common, relative_sd_at_rest(bench.input, bars),
                       2.0 * relative_sd(bench.input.diameter_m));
+  if (striker->youngs_modulus_Pa && ratio < 1.0) {
+    common =
+        std::hypot(common, 0.5 * ratio / (1.0 + ratio) * relative_sd(*striker->youngs_modulus_Pa));
+  }
   double of_speed = 0.0;
   for (std::size_t n = 0; n < part.shots.size(); ++n) {
     const auto speed = striker_speed(part.shots[n]);
@@ -163,6 +198,7 @@ std::optional<MomentumCheck> momentum(const CalibrationPart& part, const Bench& 
     return std::nullopt;
   }
   Measured mean = mean_of(gains);
+  mean.sd = std::max(mean.sd, scatter_of_mean(gains, mean.value, of_speed));
   mean.sd = std::hypot(mean.sd, std::hypot(common, of_speed) * mean.value);
   return MomentumCheck{gauge, mean, gains.size()};
 }

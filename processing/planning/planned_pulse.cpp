@@ -81,10 +81,16 @@ PlannedPulse pulse_of_striker(const Bench& bench, const Material& bars, double s
                      "file [striker] length_m and diameter_m, or give the pulse itself");
   }
   const Striker& striker = *bench.striker;
+  if (!striker.youngs_modulus_Pa && !striker.of_material(bench.input)) {
+    throw InputError("striker.density_kg_m3", "is not the bar's, so its waves are not known",
+                     "file striker.youngs_modulus_Pa, or give the pulse itself");
+  }
   const auto compliance = compliance_of(bench.input, bars);
   const double diameter_m = striker.diameter_m.value_or(bench.input.diameter_m);
   const double density = striker.density_kg_m3.value_or(bench.input.density_kg_m3);
-  const double speed = 1.0 / std::sqrt(density * compliance->instantaneous());
+  const double speed = striker.youngs_modulus_Pa
+                           ? std::sqrt(*striker.youngs_modulus_Pa / density)
+                           : 1.0 / std::sqrt(density * compliance->instantaneous());
   const double area_m2 = std::numbers::pi * diameter_m * diameter_m / 4.0;
   const double Z_striker = area_m2 * density * speed;
   const double Z_bar = bench.input.area_m2() * bench.input.density_kg_m3 *

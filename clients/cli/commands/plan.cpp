@@ -59,6 +59,10 @@ PlannedPulse pulse_of(const Settings& s, const Bench& bench, const Material& bar
   if (!speed && bench.striker && bench.striker->speed_m_per_s) {
     speed = bench.striker->speed_m_per_s->value;
   }
+  if (s.striker_speed && (s.pulse_strain || s.pulse_duration_s)) {
+    throw InputError("kolsky plan", "is told two pulses, a striker's and one by itself",
+                     "give --striker-speed, or both --pulse-strain and --pulse-duration");
+  }
   if (!speed || s.pulse_strain || s.pulse_duration_s) {
     throw InputError("kolsky plan", "does not know the pulse",
                      "give --striker-speed, or both --pulse-strain and --pulse-duration");

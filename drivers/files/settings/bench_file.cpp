@@ -206,11 +206,12 @@ PhotoSensor read_photo_sensor(const TomlTable& table) {
 }
 
 Striker read_striker(const TomlTable& table) {
-  table.expect({"length_m", "diameter_m", "density_kg_m3", "speed_m_per_s"});
+  table.expect({"length_m", "diameter_m", "density_kg_m3", "youngs_modulus_Pa", "speed_m_per_s"});
   Striker striker;
   striker.length_m = table.optional_measured("length_m");
   striker.diameter_m = table.optional_measured("diameter_m");
   striker.density_kg_m3 = table.optional_measured("density_kg_m3");
+  striker.youngs_modulus_Pa = table.optional_measured("youngs_modulus_Pa");
   striker.speed_m_per_s = table.optional_measured("speed_m_per_s");
   return striker;
 }

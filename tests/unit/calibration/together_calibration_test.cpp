@@ -226,6 +226,36 @@ TEST(BarsTogether, MomentumSeesWhatAllGaugesShare) {
   EXPECT_NE(calibration.reasons.front().find("momentum"), std::string::npos);
 }
 
+// Two shots at 8 m/s and two at the same that are filed as 9: gains of 1 and 0.89.
+TEST(BarsTogether, MomentaThatContradictEachOtherSayLess) {
+  const Struck made = struck(1.0, 1.0);
+  std::vector<Shot> shots = shots_of(made.bench, made.records, 4);
+  shots[2].meta["striker_speed_m_per_s"] = "9";
+  shots[3].meta["striker_speed_m_per_s"] = "9";
+  const Calibration calibration = calibrate(shots, {});
+  ASSERT_TRUE(calibration.parts.front().areas.momentum.has_value());
+  const Measured gain = calibration.parts.front().areas.momentum->gain;
+  // Of four that lie 0.056 to both sides the mean's deviation is that over the root of three.
+  EXPECT_NEAR(gain.value, 0.944, 0.01);
+  EXPECT_GT(gain.sd, 0.02);
+  EXPECT_LT(gain.sd, 0.04);
+}
+
+// The same impedance makes the same pulse; of a tenth less density it has to be longer to last as
+// long.
+TEST(BarsTogether, AStrikerOfAnotherMaterialTellsByItsModulus) {
+  Struck made = struck(1.0, 1.0);
+  made.bench.striker->density_kg_m3->value *= 0.9;
+  const auto momentum_of = [&] {
+    return calibrate(shots_of(made.bench, made.records, 4), {}).parts.front().areas.momentum;
+  };
+  EXPECT_FALSE(momentum_of());
+  made.bench.striker->youngs_modulus_Pa = Measured{made.bench.input.youngs_modulus_Pa->value / 0.9};
+  made.bench.striker->length_m->value /= 0.9;
+  ASSERT_TRUE(momentum_of());
+  EXPECT_NEAR(momentum_of()->gain.value, 1.0, 3.0 * momentum_of()->gain.sd);
+}
+
 /// An output bar that has aged: what its face returns tells its modulus from the input bar's.
 TEST(BarsTogether, EachRodHasItsOwnModuli) {
   testing::LinearShpb model = one_long_bar();

@@ -258,6 +258,20 @@ TEST(Pulse, OfAStrikerCarriesItsMomentum) {
   EXPECT_NEAR(time_integral / momentum, 1.0, 1e-3);
 }
 
+// Steel on PMMA: 2 L over the speed in steel, v Z Z' / (Z + Z') at first.
+TEST(Pulse, OfAStrikerOfAnotherMaterialTakesItsModulus) {
+  const LinearShpb model;
+  Bench bench = model.bench();
+  bench.striker = Striker{Measured{0.1}, Measured{0.01}, Measured{7800.0}};
+  EXPECT_THROW((void)pulse_of_striker(bench, paper_pmma(), 5.0, 5e-6), InputError);
+  bench.striker->youngs_modulus_Pa = Measured{200e9};
+  const PlannedPulse pulse = pulse_of_striker(bench, paper_pmma(), 5.0, 5e-6);
+  EXPECT_NEAR(pulse.step_s, 2.0 * 0.1 / std::sqrt(200e9 / 7800.0), 1e-12);
+  const double of_striker = 0.25 * std::numbers::pi * 0.01 * 0.01 * std::sqrt(200e9 * 7800.0);
+  const double of_bar = bench.input.area_m2() * std::sqrt(1180.0 * 5.66e9);
+  EXPECT_NEAR(pulse.step_force_N.front(), 5.0 * of_striker * of_bar / (of_striker + of_bar), 1e-3);
+}
+
 TEST(Pulse, RefusesWhatItCannotKnow) {
   const LinearShpb model;
   EXPECT_THROW((void)pulse_of_striker(model.bench(), paper_pmma(), 10.0, 0.0), InputError);
