@@ -9,6 +9,7 @@
 #include "processing/base/error.hpp"
 #include "processing/identification/noise_spectrum.hpp"
 #include "processing/reduction/pulse.hpp"
+#include "processing/reduction/requested.hpp"
 #include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
@@ -121,6 +122,9 @@ void SpecimenLikelihood::find_first_return() {
 /// The widest band in which some shot stands above the noise at every station.
 void SpecimenLikelihood::choose_band(double asked_Hz) {
   const double rate_Hz = 1.0 / period_s_;
+  if (asked_Hz > 0.0) {
+    require_band_of_record(asked_Hz, rate_Hz);
+  }
   band_limit_Hz_ = asked_Hz > 0.0 ? asked_Hz : rate_Hz;
   if (asked_Hz <= 0.0) {
     const std::size_t samples = shortest(records_);

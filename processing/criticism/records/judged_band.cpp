@@ -8,6 +8,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/pulse.hpp"
+#include "processing/reduction/requested.hpp"
 #include "processing/waves/band_limit.hpp"
 #include "processing/waves/transform.hpp"
 
@@ -136,6 +137,9 @@ void choose_window(const Campaign& campaign, std::size_t edge, JudgedBand& band)
 
 JudgedBand judged_band(const Campaign& campaign, double asked_Hz) {
   const double rate_Hz = 1.0 / campaign.period_s;
+  if (asked_Hz > 0.0) {
+    require_band_of_record(asked_Hz, rate_Hz);
+  }
   JudgedBand band;
   band.limit_Hz = asked_Hz > 0.0
                       ? asked_Hz

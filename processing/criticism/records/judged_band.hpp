@@ -30,7 +30,8 @@ struct JudgedBand {
 constexpr double kWrapDamping = 1e-8;
 
 /// @param asked_Hz  0: where the pulses fall below the noise, at most where surface gauges go blind
-/// @throws InputError where nothing is left to judge
+/// @throws InputError where the records do not reach up to what is asked, or nothing is left to
+/// judge
 [[nodiscard]] JudgedBand judged_band(const Campaign& campaign, double asked_Hz);
 
 }  // namespace kolsky

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "processing/base/error.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -42,6 +43,11 @@ std::size_t largest_prime_factor(std::size_t n) {
 
 std::size_t end_of(const JudgedBand& band) {
   return band.begin + band.judged * band.decimation;
+}
+
+TEST(JudgedBand, GoesNoFurtherThanTheRecords) {
+  const Campaign campaign = two_shots();
+  EXPECT_THROW((void)judged_band(campaign, 0.6 / campaign.period_s), InputError);
 }
 
 // A transform of a length with a large prime factor takes six times as long.
