@@ -97,6 +97,10 @@ std::string how_reduced(const Reduction& reduction) {
                                              reduction.corrections.any() ? ", corrected for " : "",
                                              fmt::join(names_of(reduction.corrections), ", ")));
   }
+  if (reduction.corrections.friction) {
+    text += report_row("friction", fmt::format("{}, up to the strain's top: then faces slide back",
+                                               *reduction.corrections.friction));
+  }
   return text;
 }
 

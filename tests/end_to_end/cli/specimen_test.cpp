@@ -288,6 +288,8 @@ TEST_F(SpecimenFiles, StressFromOneTwoOrThreeWavesAndCorrected) {
   EXPECT_NE(peak({"--inertia", "both"}), both);
   // Least as engineering figures at little strain: 1 + mu d / 3h is 1.1, and grows with the strain.
   EXPECT_LT(peak({"--friction", "0.1"}), both / 1.1);
+  const scene::Answer text = kolsky({"reduce", captures_.front(), "--friction", "0.1"});
+  EXPECT_NE(text.out.find("0.1, up to the strain's top"), std::string::npos) << text.out;
 }
 
 TEST_F(SpecimenFiles, RefuseABarModelOutsideWhereItWasIdentified) {
