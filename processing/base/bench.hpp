@@ -112,8 +112,8 @@ struct Striker {
   std::optional<Measured> diameter_m{};
   std::optional<Measured> density_kg_m3{};
   std::optional<Measured> speed_m_per_s{};
-  std::optional<Measured>
-      youngs_modulus_Pa{};  ///< of an elastic one that is not of the bar's stuff
+  /// Of an elastic striker that is not of the bar's material.
+  std::optional<Measured> youngs_modulus_Pa{};
 
   /// By its density, to 2 %; where none is filed it is. One with a modulus of its own is not.
   [[nodiscard]] bool of_material(const Bar& bar) const;

@@ -455,6 +455,10 @@ TEST_F(SpecimenFiles, RefuseWhatMakesNoSense) {
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--stress", "four-wave"}), {"three-wave"}));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--inertia", "all"}), {"--inertia", "radial"}));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--friction", "3"}), {"--friction"}));
+  EXPECT_TRUE(refused(kolsky({"reduce", capture, "--band-limit", "9e5"}),
+                      {"band_limit_Hz", "not in the record"}));
+  EXPECT_TRUE(refused(kolsky({"identify", "specimen", capture, "--band-limit", "9e5"}),
+                      {"band_limit_Hz", "not in the record"}));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--draws", "1"}), {"--draws"}));
   folder_.write("renamed.toml", replaced(kBench, "\"g2\"", "\"h2\""));
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bench", folder_ / "renamed.toml"}),
