@@ -189,8 +189,26 @@ class PartFit {
   struct Explanation {
     const ModelNumber* number = nullptr;
     double objective = 0.0;
+    Eigen::VectorXd white;   ///< residuals
+    Eigen::VectorXd pulses;  ///< of what stands out of the noise
     Alone measured;
   };
+
+  /// The share of two explanations' difference that lies in what they make of the pulses. A free
+  /// source follows the reference gauge's noise to the end of the record, and each explanation
+  /// carries that noise to the other gauges in its own way: their sums of squares differ by chance,
+  /// with a variance of four times this difference, even where the pulses are the same to both.
+  [[nodiscard]] static double share_of_pulses(const Explanation& a, const Explanation& b) {
+    const double all = (a.white - b.white).squaredNorm();
+    return all > 0.0 ? std::min(1.0, (a.pulses - b.pulses).squaredNorm() / all) : 1.0;
+  }
+
+  /// By how much the worse of two explanations is behind, as far as the records can tell.
+  [[nodiscard]] static double lag(const Explanation& worse, const Explanation& better) {
+    const double chance = (1.0 - share_of_pulses(worse, better)) *
+                          (worse.white.squaredNorm() - better.white.squaredNorm());
+    return worse.objective - better.objective - chance;
+  }
 
   /// Fits with one more number released, under the same weights.
   [[nodiscard]] Explanation explain(Fitted& fitted, const ModelNumber& number) {
@@ -203,7 +221,11 @@ class PartFit {
     start[place] = alone(fitted, number).value / composition.numbers()[place].scale;
     const ModelFit fit =
         fit_model(composition, fitted.study.residuals(), fitted.study.executor(), start);
-    Explanation explanation{&number, fit.objective() + momentum_penalty(composition, fit), {}};
+    Explanation explanation{&number,
+                            fit.objective() + momentum_penalty(composition, fit),
+                            fit.residual,
+                            fitted.study.residuals().whiten_pulses(composition, fit.theta, 0),
+                            {}};
     const auto at = static_cast<Eigen::Index>(place);
     explanation.measured.value = fit.theta[place] * composition.numbers()[place].scale;
     explanation.measured.sd =
@@ -277,7 +299,7 @@ class PartFit {
     const double residuals = static_cast<double>(fitted_->studied.fit.residual.size());
     const double near = kTie * std::max(1.0, best.objective / residuals);
     for (const Explanation& other : explanations) {
-      if (other.number != best.number && other.objective < best.objective + near) {
+      if (other.number != best.number && lag(other, best) < near) {
         ties_[best.number->id].push_back(other.number->id);
         ties_[other.number->id].push_back(best.number->id);
         measured_if_tied_[other.number->id] = other.measured;

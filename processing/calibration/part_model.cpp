@@ -17,7 +17,7 @@ constexpr double kModulusStep = 0.01;
 /// What is filed as exact is held to this share of a step that matters.
 constexpr double kExactly = 1e-4;
 /// Stiffness of a specimen that is not there, Pa.
-constexpr double kRigid_Pa = 1e13;
+constexpr double kRigid_Pa = 1e16;
 
 bool trusted(const CalibrationOptions& options, const std::string& gauge) {
   return std::find(options.trusted.begin(), options.trusted.end(), gauge) != options.trusted.end();

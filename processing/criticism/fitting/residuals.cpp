@@ -63,6 +63,9 @@ struct WhiteResiduals::Workspace {
 
 namespace {
 
+/// A record's strain is that of a pulse from so many standard deviations of its noise on.
+constexpr double kStandsOut = 4.0;
+
 /// A shot as the others are on average.
 ShotFacts mean_of(const std::vector<CampaignShot>& shots) {
   ShotFacts mean = shots.front().facts;
@@ -688,17 +691,17 @@ void WhiteResiduals::whiten_shot(Workspace& work, double*& next) const {
   }
 }
 
-Eigen::VectorXd WhiteResiduals::whitened_noise(const Composition& composition,
+Eigen::VectorXd WhiteResiduals::whiten_records(const Composition& composition,
                                                const std::vector<double>& theta,
-                                               std::span<const std::vector<double>> noise,
+                                               std::span<const std::vector<double>> records,
                                                std::size_t worker) {
   Workspace& work = *work_[worker];
   const Effects effects(composition, theta, 0);
   know_noise(work, composition, effects.on_waves);
   know_waves(work, composition, effects.on_waves, 0);
-  std::vector<Spectrum> spectra(noise.size());
-  for (std::size_t j = 0; j < noise.size(); ++j) {
-    transform_record(work, noise[j], spectra[j]);
+  std::vector<Spectrum> spectra(records.size());
+  for (std::size_t j = 0; j < records.size(); ++j) {
+    transform_record(work, records[j], spectra[j]);
   }
   work.residuals.resize(others_.size());
   for (std::size_t i = 0; i < others_.size(); ++i) {
@@ -713,6 +716,27 @@ Eigen::VectorXd WhiteResiduals::whitened_noise(const Composition& composition,
   Eigen::VectorXd white(static_cast<Eigen::Index>(per_shot()));
   double* next = white.data();
   whiten_shot(work, next);
+  return white;
+}
+
+Eigen::VectorXd WhiteResiduals::whiten_pulses(const Composition& composition,
+                                              const std::vector<double>& theta,
+                                              std::size_t worker) {
+  Workspace& work = *work_[worker];
+  Eigen::VectorXd white(static_cast<Eigen::Index>(size()));
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    const CampaignShot& shot = campaign_.shots[n];
+    std::vector<std::vector<double>> pulses = shot.strain;
+    for (std::vector<double>& record : pulses) {
+      smooth(work, record);
+      const double least = kStandsOut * quiet_before(record, shot.quiet_samples).noise_rms;
+      std::ranges::replace_if(
+          record, [&](double strain) { return std::abs(strain) < least; }, 0.0);
+    }
+    const auto at = static_cast<Eigen::Index>(n * per_shot());
+    white.segment(at, static_cast<Eigen::Index>(per_shot())) =
+        whiten_records(composition, theta, pulses, worker);
+  }
   return white;
 }
 

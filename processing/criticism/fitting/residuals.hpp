@@ -103,12 +103,17 @@ class WhiteResiduals : public ShotResiduals {
                                                      const Composition& composition,
                                                      const std::vector<double>& theta,
                                                      std::size_t worker);
-  /// Whitened residuals of one shot whose records are noise alone, as far as a linear specimen
-  /// carries it. @param theta  as frozen @param noise  by gauge, as long as records, at their rate
-  [[nodiscard]] Eigen::VectorXd whitened_noise(const Composition& composition,
+  /// Whitened residuals of one shot with other records, as far as a linear specimen carries them
+  /// and nothing is added to them. @param records  by gauge, as long as the shots', at their rate
+  [[nodiscard]] Eigen::VectorXd whiten_records(const Composition& composition,
                                                const std::vector<double>& theta,
-                                               std::span<const std::vector<double>> noise,
+                                               std::span<const std::vector<double>> records,
                                                std::size_t worker);
+  /// The same of all shots, of whose records all but what stands out of their noise is zero: what
+  /// two compositions make of the pulses, without what they make of the noise of the reference
+  /// gauge.
+  [[nodiscard]] Eigen::VectorXd whiten_pulses(const Composition& composition,
+                                              const std::vector<double>& theta, std::size_t worker);
   /// The residuals themselves. @param theta  as frozen
   [[nodiscard]] PlainResiduals plain(const Composition& composition,
                                      const std::vector<double>& theta);

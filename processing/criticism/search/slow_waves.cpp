@@ -28,7 +28,7 @@ SlowWaves slow_waves(const Studied& base, Study& study) {
     for (const int part : {0, 1}) {
       records[j] = wave_of(out, shot, q, part);
       out.at[j][q].col(part) =
-          residuals.whitened_noise(base.composition, base.fit.theta, records, worker);
+          residuals.whiten_records(base.composition, base.fit.theta, records, worker);
     }
   });
   return out;
