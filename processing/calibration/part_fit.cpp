@@ -311,7 +311,7 @@ class PartFit {
     if (number.relative) {
       return {number.filed.value * (1.0 + value), number.filed.value * sd};
     }
-    return {number.filed.value + value - number.origin, sd};
+    return {number.filed.value + number.per_value * (value - number.origin), number.per_value * sd};
   }
 
   void describe() {
@@ -349,7 +349,6 @@ class PartFit {
     if (number.believed && spread > 0.0) {
       out.deviations = (out.measured.value - out.filed.value) / spread;
     }
-    const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
     if (!number.believed) {
       out.standing = Standing::unfiled;
     } else if ((tied != ties_.end() || released || std::abs(out.deviations) > kNamed ||
@@ -365,7 +364,7 @@ class PartFit {
       out.combined = out.measured;
     } else if (std::abs(out.deviations) > kNamed) {
       out.standing = Standing::doubtful;
-    } else if (own.sd > kNamed * std::max(filed_sd, number.step)) {
+    } else if (own.sd > kNamed * std::max(number.filed_sd(), number.step)) {
       out.standing = Standing::unseen;
     }
     return out;

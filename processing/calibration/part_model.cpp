@@ -35,6 +35,19 @@ ModelNumber of_gauge(CalibratedNumber::Of of, const std::string& effect, const G
   return number;
 }
 
+/// Of two passes at one gauge, whose second is filed as a gauge on a bar without an end.
+ModelNumber way_to_end(const Bench& bench) {
+  const Gauge& first = bench.gauges[0];
+  const Gauge& second = bench.gauges[1];
+  const Measured way{0.5 * (second.position_m - first.position_m), 0.5 * second.position_m.sd};
+  ModelNumber number =
+      of_gauge(CalibratedNumber::Of::way_to_end, "gauge-position", second, way, 2.0 * kPlaceStep_m);
+  number.gauge = first.name;
+  number.id = "way-to-end:" + first.name;
+  number.per_value = 0.5;
+  return number;
+}
+
 /// Where both bars are viscoelastic they are of one material as filed, but each ages by itself.
 constexpr const char* kBars = "three-element-bar";
 constexpr const char* kOutputBar = "output-three-element-bar";
@@ -125,6 +138,10 @@ void add_specimen(const Bench& bench, const Material& material, Model& model) {
 
 }  // namespace
 
+double ModelNumber::filed_sd() const {
+  return (relative ? relative_sd(filed) : filed.sd) / per_value;
+}
+
 std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& bench,
                                     const CalibrationOptions& options, const PartVariant& variant) {
   using Of = CalibratedNumber::Of;
@@ -136,6 +153,9 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
     list.push_back(of_gauge(Of::gain, "gauge-factor", gauge, {1.0, gain_sd(gauge)}, kGainStep));
     list.push_back(of_gauge(Of::position, "gauge-position", gauge, gauge.position_m, kPlaceStep_m));
     list.push_back(of_gauge(Of::delay, "channel-delay", gauge, gauge.delay_s, kDelayStep_s));
+  }
+  if (part.two_passes && !trusted(options, bench.gauges.front().name)) {
+    list.push_back(way_to_end(bench));
   }
   if (bench.kind == BenchKind::bar && variant.far_end_seen) {
     ModelNumber number;
@@ -202,11 +222,13 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
       }
     }
   }
-  for (const std::string& gauge : options.trusted) {
+  for (const Gauge& gauge : bench.gauges) {
     for (const char* const effect : {"gauge-factor:", "gauge-position:", "channel-delay:"}) {
-      EffectUse use = use_named(effect + gauge);
-      hold(use);
-      model.effects.push_back(use);
+      if (trusted(options, gauge.name) && model.find(effect + gauge.name) == nullptr) {
+        EffectUse use = use_named(effect + gauge.name);
+        hold(use);
+        model.effects.push_back(use);
+      }
     }
   }
   for (const ModelNumber& number : numbers) {
@@ -218,9 +240,9 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
     ModelValue& value = use->values[number.parameter];
     value.free = true;
     value.value = value.prior_mean = number.origin;
-    const double filed_sd = number.relative ? relative_sd(number.filed) : number.filed.sd;
     const bool held = number.believed && released.count(number.id) == 0;
-    value.prior_sd = held ? std::max({filed_sd, number.least_sd, loosen * number.step}) : 0.0;
+    value.prior_sd =
+        held ? std::max({number.filed_sd(), number.least_sd, loosen * number.step}) : 0.0;
   }
   return model;
 }

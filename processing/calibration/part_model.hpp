@@ -18,13 +18,16 @@ struct ModelNumber {
   bool of_output_bar = false;  ///< a modulus of the output bar alone
   std::string effect;          ///< id of the effect's use
   std::size_t parameter = 0;
-  Measured filed;       ///< as CalibratedNumber
-  double origin = 0.0;  ///< `filed` + the effect's value - `origin` is the number
-  double per_value = 1.0;
-  bool relative = false;  ///< the effect's value is a relative change of the number
-  bool believed = true;   ///< something is filed of it
-  double step = 0.0;      ///< of the effect's value, that matters
-  double least_sd = 0.0;  ///< stands for exact
+  Measured filed;          ///< as CalibratedNumber
+  double origin = 0.0;     ///< of the effect's value where the number is as filed
+  double per_value = 1.0;  ///< the number's change per change of the effect's value
+  bool relative = false;   ///< the effect's value is a relative change of the number
+  bool believed = true;    ///< something is filed of it
+  double step = 0.0;       ///< of the effect's value, that matters
+  double least_sd = 0.0;   ///< stands for exact
+
+  /// What is filed of the number, as a deviation of the effect's value.
+  [[nodiscard]] double filed_sd() const;
 };
 
 /// Waves and far end of a part's model.

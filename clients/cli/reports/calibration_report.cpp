@@ -24,6 +24,7 @@ std::string unit_of(CalibratedNumber::Of of) {
       return "-";
     case Of::position:
     case Of::bar_length:
+    case Of::way_to_end:
       return "m";
     case Of::delay:
       return "s";
@@ -135,6 +136,9 @@ std::string row(const CalibratedNumber& number, BarsLay lay, const Bench& bench)
     } else if (number.of == CalibratedNumber::Of::gain) {
       text += fmt::format(": samples are strain already, divide them by {:.6g} on import",
                           number.measured.value);
+    } else if (number.of == CalibratedNumber::Of::way_to_end) {
+      text += fmt::format(": the bar's length less position_m of {}, of which one is off",
+                          number.gauge);
     } else {
       text += ": no number of a bench file";
     }

@@ -204,6 +204,14 @@ Struck struck(double gain_in, double gain_out) {
   return made;
 }
 
+/// With rises of 20 us.
+double pulse_of_120_us(double time_s) {
+  const auto edge = [](double after_s) {
+    return 0.5 * (1.0 - std::cos(std::numbers::pi * std::clamp(after_s / 20e-6, 0.0, 1.0)));
+  };
+  return 5e-4 * (edge(time_s) - edge(time_s - 100e-6));
+}
+
 /// Two elastic bars of 1 m end to end with two gauges on each, by d'Alembert: the pulse, and what
 /// the far end returns of it.
 std::vector<Shot> shots_of_four_gauges(double second_late_s, unsigned seed) {
@@ -212,14 +220,6 @@ std::vector<Shot> shots_of_four_gauges(double second_late_s, unsigned seed) {
   const Gauge gauge = bench.gauges.front();
   constexpr std::array kPlaces_m{0.4, 0.7, 0.3, 0.6};
   const double speed = std::sqrt(206e9 / 7850.0);
-  constexpr double kRise_s = 20e-6;
-  constexpr double kPulse_s = 120e-6;
-  const auto edge = [&](double time_s) {
-    return 0.5 * (1.0 - std::cos(std::numbers::pi * std::clamp(time_s / kRise_s, 0.0, 1.0)));
-  };
-  const auto pulse = [&](double time_s) {
-    return 5e-4 * (edge(time_s) - edge(time_s - kPulse_s + kRise_s));
-  };
   std::vector<std::vector<double>> records;
   bench.gauges.clear();
   for (std::size_t j = 0; j < kPlaces_m.size(); ++j) {
@@ -233,8 +233,8 @@ std::vector<Shot> shots_of_four_gauges(double second_late_s, unsigned seed) {
     std::vector<double>& record = records.emplace_back();
     for (int n = 0; n < 1000; ++n) {
       const double time_s = 1e-6 * n - 200e-6 - (j == 1 ? second_late_s : 0.0);
-      record.push_back(pulse(time_s - from_struck_m / speed) -
-                       pulse(time_s - (4.0 - from_struck_m) / speed));
+      record.push_back(pulse_of_120_us(time_s - from_struck_m / speed) -
+                       pulse_of_120_us(time_s - (4.0 - from_struck_m) / speed));
     }
   }
   std::vector<Shot> shots;
@@ -334,13 +334,19 @@ TEST(BarsTogether, EachRodHasItsOwnModuli) {
   EXPECT_LT(out.combined.sd, 0.01 * 5.66e9);
 }
 
+/// The input bar by itself: nothing behind it.
+testing::LinearShpb rod_alone() {
+  testing::LinearShpb model;
+  model.specimen = {1140.0, 1.0, 0.0, 0.0};
+  model.pulse_s = 100e-6;
+  model.ramp_s = 30e-6;
+  return model;
+}
+
 /// Of a viscoelastic bar the first pass's tail lies under the return: with it left there the speed
 /// is 0.05 % low, six of its deviations.
 TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
-  testing::LinearShpb model;
-  model.specimen = {1140.0, 1.0, 0.0, 0.0};  // nothing behind the input bar
-  model.pulse_s = 100e-6;
-  model.ramp_s = 30e-6;
+  const testing::LinearShpb model = rod_alone();
   const std::vector<Shot> shots = shots_of(model.bench(), model.solve(), 5);
   Material filed = paper_pmma();
   filed.E1_Pa() = {5.5e9, 0.3e9};
@@ -363,6 +369,56 @@ TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
   std::printf("one gauge: c %.2f +- %.2f m/s, E1 %.4g +- %.2g, E2 %.4g +- %.2g\n",
               part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd, E1.combined.value,
               E1.combined.sd, E2.combined.value, E2.combined.sd);
+}
+
+/// A gauge filed 3 mm nearer to the end than it is.
+void file_elsewhere(Bench& bench) {
+  bench.gauges.front().position_m.sd = 0.3e-3;
+  bench.gauges.front().position_m.value += 3e-3;
+}
+
+TEST(InputBarAlone, AGaugeElsewhereIsNotLaidToTheMaterial) {
+  const testing::LinearShpb model = rod_alone();
+  CalibrationOptions options;
+  options.bars = BarPrior(paper_pmma());
+  Material& material = options.bars->material;
+  for (Measured* number : {&material.E1_Pa(), &material.E2_Pa(), &material.eta2_Pa_s()}) {
+    number->sd = 2e-3 * number->value;
+  }
+  Bench bench = model.bench();
+  const auto records = model.solve();
+  EXPECT_EQ(calibrate(shots_of(bench, records, 5), options).certificate, Certificate::pass);
+  file_elsewhere(bench);
+  const Calibration calibration = calibrate(shots_of(bench, records, 5), options);
+  EXPECT_EQ(standing(calibration, Standing::differs), std::vector<std::string>{"way-to-end:g1"});
+  const CalibratedNumber& way = number(calibration.parts.front(), "way-to-end:g1");
+  EXPECT_NEAR(way.measured.value - way.filed.value, 3e-3, 3.0 * way.measured.sd);
+  EXPECT_LT(way.measured.sd, 0.5e-3);
+}
+
+// Without dispersion two passes give the way between them over the speed and nothing else.
+TEST(InputBarAlone, OfAnElasticBarTheWayIsTiedWithTheModulus) {
+  Bench bench = testing::ElasticShpb{}.bench();
+  bench.input.youngs_modulus_Pa->sd = 2e-3 * *bench.input.youngs_modulus_Pa;
+  bench.output->youngs_modulus_Pa = bench.input.youngs_modulus_Pa;
+  const double speed = std::sqrt(206e9 / 7850.0);
+  const double place_m = bench.gauges.front().position_m;
+  std::vector<std::vector<double>> records(2, std::vector<double>(800, 0.0));
+  for (int n = 0; n < 800; ++n) {
+    const double time_s = 1e-6 * n - 200e-6;
+    records[0][n] = pulse_of_120_us(time_s - place_m / speed) -
+                    pulse_of_120_us(time_s - (2.0 - place_m) / speed);
+  }
+  EXPECT_EQ(calibrate(shots_of(bench, records, 5), {}).certificate, Certificate::pass);
+  file_elsewhere(bench);
+  const Calibration open = calibrate(shots_of(bench, records, 5), {});
+  EXPECT_EQ(standing(open, Standing::tied),
+            (std::vector<std::string>{"way-to-end:g1", "bar-modulus"}));
+  EXPECT_EQ(open.certificate, Certificate::undecided);
+  CalibrationOptions options;
+  options.trusted = {"g1"};
+  const Calibration told = calibrate(shots_of(bench, records, 5), options);
+  EXPECT_EQ(standing(told, Standing::differs), std::vector<std::string>{"bar-modulus"});
 }
 
 }  // namespace
