@@ -146,6 +146,9 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
   constexpr int kMostSteps = 40;
   constexpr int kMostRefused = 4;
   constexpr double kAsGood = 0.75;  ///< as what was foretold of a step
+  constexpr double kCrawl = 0.15;   ///< of what derivatives just made promise
+  constexpr int kMostCrawling = 2;
+  int crawling = 0;
   for (int n = 0; n < kMostSteps && !converged; ++n) {
     // Of a misfit many times the noise nothing hangs on what noise is.
     const double near = kNear * std::max(1.0, steps.chi2_per_residual());
@@ -159,7 +162,9 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
       // What is learned serves as long as what it promises comes true.
       const bool serves = step.gain > std::max(near, 0.1 * promised);
       const bool as_foretold = step.gain > kAsGood * step.foretold;
-      converged = fresh && step.gain < near;
+      crawling = fresh && step.gain < kCrawl * promised ? crawling + 1 : fresh ? 0 : crawling;
+      // Derivatives that twice promise what no step keeps are not made again for a rough fit.
+      converged = (fresh && step.gain < near) || (roughly && crawling == kMostCrawling);
       if (serves) {
         steps.learn(step);
       }

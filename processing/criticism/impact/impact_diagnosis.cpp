@@ -70,7 +70,7 @@ class Diagnostician {
     weigh_beside_others(first, current);
     weigh_beside_rest(first);
     weigh_readings(first, current);
-    if (settled_roughly_) {
+    if (settled_roughly_ && !surely_given_up(first, current)) {
       options_.progress("fitting what is said to its end");
       current = study_.polished(current);
     }
@@ -361,6 +361,17 @@ class Diagnostician {
       }
     }
     add_notes(impact_notes(study_, current, diagnosis_.candidates, scale_, flat_));
+  }
+
+  /// Whether nothing will be said of what is missing, whatever a few more steps make of the fit:
+  /// they have moved such logarithms of chances by a thirtieth.
+  [[nodiscard]] bool surely_given_up(const Studied& first, const Studied& current) {
+    constexpr double kSurely = 1.5;
+    const bool contradicts = !diagnosis_.effects.empty() &&
+                             conflict_with_filed(current).log_p < kSurely * options_.log_alpha;
+    const bool left =
+        remains(first, current) && diagnosis_.unexplained_log_p < kSurely * kUnexplained;
+    return overruled_ || contradicts || left;
   }
 
   /// Whether misfit repeats that nothing explains.
