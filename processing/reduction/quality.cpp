@@ -146,22 +146,44 @@ Check untested(Check check, Verdict verdict) {
   return check;
 }
 
+double mean_force_N(const Reduction& r, std::size_t n) {
+  return std::abs(r.force_front_N[n] + r.force_back_N[n]) / 2.0;
+}
+
+/// Where the specimen has come back furthest before it is loaded again, as by a wave that returns;
+/// the last sample where it is not.
+std::size_t at_rest(const Reduction& r, std::size_t end) {
+  constexpr double kFree = 0.1;
+  constexpr double kLoaded = 0.25;
+  double peak = 0.0;
+  for (std::size_t n = 0; n < end; ++n) {
+    peak = std::max(peak, mean_force_N(r, n));
+  }
+  bool free = false;
+  std::size_t furthest = end - 1;
+  for (std::size_t n = end; n < r.time_s.size(); ++n) {
+    free = free || mean_force_N(r, n) < kFree * peak;
+    if (free && mean_force_N(r, n) > kLoaded * peak) {
+      return furthest;
+    }
+    furthest = std::abs(r.strain[n]) < std::abs(r.strain[furthest]) ? n : furthest;
+  }
+  return r.time_s.size() - 1;
+}
+
 /// Whether what loads the specimen is over before the record is.
 Check record_end(const QualityInputs& in, const Reduction& r, double missing_s,
                  std::size_t loaded) {
-  const auto force = [&](std::size_t n) {
-    return std::abs(r.force_front_N[n] + r.force_back_N[n]) / 2.0;
-  };
   const std::size_t samples = r.time_s.size();
   double peak = 0.0;
-  for (std::size_t n = 0; n < samples; ++n) peak = std::max(peak, force(n));
+  for (std::size_t n = 0; n < samples; ++n) peak = std::max(peak, mean_force_N(r, n));
   Check check{.name = "record_end", .limit = kUnloaded, .unit = "1", .text = {}};
   const double ends_us = 1e6 * r.time_s.back();
   if (missing_s <= 0.0) {
     check.text = formatted("the record holds all of the %.0f us that are reduced", ends_us);
     return check;
   }
-  check.value = peak > 0.0 ? force(samples - 1) / peak : 1.0;
+  check.value = peak > 0.0 ? mean_force_N(r, samples - 1) / peak : 1.0;
   const bool still_loading = loaded + samples / kLastPart >= samples;
   check.verdict = check.value <= kUnloaded ? (in.may_shorten ? Verdict::pass : Verdict::warn)
                   : still_loading          ? Verdict::fail
@@ -177,18 +199,18 @@ Check record_end(const QualityInputs& in, const Reduction& r, double missing_s,
 }
 
 Check loop_closure(const Reduction& r, std::size_t end) {
+  const std::size_t rest = at_rest(r, end);
   const double largest = std::abs(r.strain[end - 1]);
   Check check{.name = "loop_closure", .limit = kClosureLimit, .unit = "1", .text = {}};
-  check.value = largest > 0.0 ? std::abs(r.strain.back()) / largest : 0.0;
+  check.value = largest > 0.0 ? std::abs(r.strain[rest]) / largest : 0.0;
   check.verdict = check.value <= kClosureLimit ? Verdict::pass : Verdict::warn;
-  check.text =
-      check.verdict == Verdict::pass
-          ? formatted("the loop closes: %.1f %% of the largest strain is left at %.0f us",
-                      100 * check.value, 1e6 * r.time_s.back())
-          : formatted(
-                "the loop is open: %.1f %% of the largest strain is left at %.0f us (permanent "
-                "strain, slow recovery, or the bench is not as filed)",
-                100 * check.value, 1e6 * r.time_s.back());
+  const std::string left = formatted("%.1f %% of the largest strain is left at %.0f us",
+                                     100 * check.value, 1e6 * r.time_s[rest]) +
+                           (rest + 1 < r.time_s.size() ? ", before it is loaded again" : "");
+  check.text = check.verdict == Verdict::pass
+                   ? "the loop closes: " + left
+                   : "the loop is open: " + left +
+                         " (permanent strain, slow recovery, or the bench is not as filed)";
   return check;
 }
 

@@ -147,6 +147,22 @@ TEST(ElasticReduction, WhatIsQuotedIsOfTheFirstLoading) {
   EXPECT_EQ(summarise(followed).peak_stress_Pa, all.peak_stress_Pa);
 }
 
+TEST(ElasticReduction, ALoopClosesBeforeItIsLoadedAgain) {
+  ElasticShpb model;
+  model.specimen_modulus_Pa = 20e9;  // free of strain 150 us after the pulse
+  const auto records = model.solve();
+  ReductionOptions options;
+  options.duration_s = 450e-6;  // the second loading begins at 390 us
+  const Reduction r = Reducer(options).reduce(noiseless(model, records));
+  EXPECT_GT(std::abs(r.strain.back()), 0.3 * summarise(r).peak_strain);
+  const auto closure =
+      std::ranges::find(r.quality.checks, std::string("loop_closure"), &Check::name);
+  ASSERT_NE(closure, r.quality.checks.end());
+  EXPECT_EQ(closure->verdict, Verdict::pass) << closure->text;
+  EXPECT_LT(closure->value, 0.02);
+  EXPECT_NE(closure->text.find("before it is loaded again"), std::string::npos) << closure->text;
+}
+
 TEST(ElasticReduction, BarsOfDifferentLengthAndAnyGaugePosition) {
   ElasticShpb model;
   model.length_in_m = 1.3;
