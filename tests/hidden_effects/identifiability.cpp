@@ -20,6 +20,10 @@ constexpr double kAgainstRival = 5.0;
 constexpr double kBeyondReason = 10.0;
 // Two branches may change names: which is the second must be beyond doubt.
 constexpr double kMostOfBranch = 0.7;
+// Differences, and sources made of splines, miss by some hundredths: where no more is left of a
+// change beside a rival's, the tie may be exact (the places of three gauges on a bar whose moduli
+// are free, a place and a delay on an elastic one).
+constexpr double kLeftOfTies = 0.05;
 // Below this exponent the generator's own error is no longer small.
 constexpr double kMostFractional = 0.25;
 
@@ -199,11 +203,14 @@ void Identifiability::judge() {
         found.closest = candidates_[j].effect.name();
       }
     }
+    found.rival_share = own > 0.0 ? std::sqrt(std::max(least, 0.0) / own) : 0.0;
+    if (found.rival_share < kLeftOfTies) {
+      least = 0.0;
+    }
     const double detect = kDetect / std::sqrt(own);
     const double against_rival = kAgainstRival / std::sqrt(std::max(least, 0.0));
     found.detect = bent(found.candidate, detect);
     found.smallest = bent(found.candidate, std::max(detect, against_rival));
-    found.rival_share = own > 0.0 ? std::sqrt(std::max(least, 0.0) / own) : 0.0;
     effects_.push_back(found);
   }
 }

@@ -159,6 +159,20 @@ TEST(Identifiability, TwiceTheNoiseNeedsTwiceTheSize) {
   EXPECT_TRUE(delay->seen_but_tied());
 }
 
+// Of three gauges on a bar whose moduli are free one ratio of distances is known, and which of the
+// three is off it does not tell.
+TEST(Identifiability, PlacesOfThreeGaugesAreTied) {
+  testing::Campaign campaign = small_bench();
+  campaign.wishes.noise_strain = 1e-6;
+  const Identifiability quiet(campaign);
+  for (const Identifiable& effect : quiet.effects()) {
+    if (effect.candidate.effect.id == "gauge-position") {
+      EXPECT_LT(effect.rival_share, 0.05) << effect.candidate.effect.name();
+      EXPECT_TRUE(effect.seen_but_tied()) << effect.candidate.effect.name();
+    }
+  }
+}
+
 TEST(Campaign, TablesAndCapturesHoldTheSame) {
   testing::Campaign campaign = small_bench();
   testing::hide(campaign, testing::parse_effect("gauge-factor:g2=0.02"));

@@ -73,38 +73,61 @@ bool are_products(const ProductTest& test, Claim claim) {
   return test.log_p < share * chance && test.beyond_one_gauge > share * kBeyond;
 }
 
-/// Slopes before each shot's pulse, mean over the gauges that an addition is in: of the addition
-/// as fitted and of the records.
+/// Slopes before each shot's pulse, sum over the gauges that an addition is in: of the addition
+/// as fitted and of the records, less what else the model adds to them.
 struct Slopes {
   std::vector<double> found;
   std::vector<double> before;
-  SlopesByShot found_by_gauge;
+  SlopesByShot of_others;         ///< what else the model adds
+  SlopesByShot of_all_additions;  ///< the addition, too
 };
 
+/// Slopes before a shot's pulse of those additions that `wanted` picks, by gauge.
+template <typename Wanted>
+std::vector<double> slopes_added(const Studied& studied, const Campaign& campaign,
+                                 std::size_t of_shot, Wanted wanted) {
+  const CampaignShot& shot = campaign.shots[of_shot];
+  Scene scene(campaign.bench, shot.facts, {});
+  scene.record.additions.resize(campaign.gauges());
+  for (const AppliedEffect& effect : studied.composition.applied(studied.fit.theta, of_shot)) {
+    if (effect.effect->about().stage == Stage::record && wanted(effect)) {
+      effect.effect->apply(scene, effect.values, effect.gauge);
+    }
+  }
+  std::vector<double> slopes(campaign.gauges());
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    const std::vector<double>& addition = scene.record.additions[j];
+    slopes[j] = addition.empty() ? 0.0 : slope_before(shot, addition);
+  }
+  return slopes;
+}
+
 Slopes slopes_of(const Studied& studied, const std::string& id, const Campaign& campaign) {
+  const EffectUse& use = *studied.model.find(id);
+  const auto of_gauge = [&](std::size_t j) {
+    return use.gauge.empty() || campaign.bench.gauges[j].name == use.gauge;
+  };
+  const auto is_own = [&](const AppliedEffect& effect) {
+    return effect.effect == use.effect &&
+           (!use.effect->about().per_gauge || of_gauge(effect.gauge));
+  };
   Slopes slopes;
   for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
     const CampaignShot& shot = campaign.shots[n];
-    Scene scene(campaign.bench, shot.facts, {});
-    scene.record.additions.resize(campaign.gauges());
-    const Effect* effect = studied.model.find(id)->effect;
-    for (const AppliedEffect& own : studied.composition.applied(studied.fit.theta, n)) {
-      if (own.effect == effect &&
-          (!effect->about().per_gauge ||
-           campaign.bench.gauges[own.gauge].name == studied.model.find(id)->gauge)) {
-        effect->apply(scene, own.values, own.gauge);
-      }
-    }
+    const std::vector<double> own = slopes_added(studied, campaign, n, is_own);
+    const std::vector<double> others = slopes_added(
+        studied, campaign, n, [&](const AppliedEffect& effect) { return !is_own(effect); });
     double found = 0.0;
     double before = 0.0;
-    std::vector<double>& by_gauge = slopes.found_by_gauge.emplace_back(campaign.gauges());
+    std::vector<double>& all = slopes.of_all_additions.emplace_back(others);
     for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-      if (!scene.record.additions[j].empty()) {
-        by_gauge[j] = slope_before(shot, scene.record.additions[j]);
-        found += by_gauge[j];
-        before += slope_before(shot, shot.strain[j]);
+      all[j] += own[j];
+      if (of_gauge(j)) {
+        found += own[j];
+        before += slope_before(shot, shot.strain[j]) - others[j];
       }
     }
+    slopes.of_others.push_back(others);
     slopes.found.push_back(found);
     slopes.before.push_back(before);
   }
@@ -143,7 +166,7 @@ bool seen_at_all_gauges(const Slopes& slopes, const Campaign& campaign, Claim cl
   constexpr double kChance = -5.8;
   return std::inner_product(slopes.found.begin(), slopes.found.end(), slopes.before.begin(), 0.0) >
              0.0 &&
-         log_chance_of_common_slopes(campaign) < share * kChance;
+         log_chance_of_common_slopes(campaign, slopes.of_others) < share * kChance;
 }
 
 /// A record is a fraction of a hum's period, in which a slope of each shot's own is nearly all of
@@ -163,8 +186,8 @@ bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim
 bool wanders_on(const Slopes& slopes, const Campaign& campaign, bool alike) {
   constexpr double kChance = -5.8;
   constexpr double kOrdinary = -3.0;
-  return log_chance_of_common_slopes(campaign, slopes.found_by_gauge) < kChance &&
-         (alike || log_chance_of_common_slopes(campaign) < kOrdinary);
+  return log_chance_of_common_slopes(campaign, slopes.of_all_additions) < kChance &&
+         (alike || log_chance_of_common_slopes(campaign, slopes.of_others) < kOrdinary);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/noise/smooth_power.hpp"
 #include "processing/criticism/search/search_trials.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_waves.hpp"
 
 namespace kolsky {
@@ -127,6 +128,8 @@ SlowNoise::SlowNoise(const Studied& base, Study& study)
             quiet_rows_of(shot, additions_of(base.composition, base.fit.theta, campaign_, at));
   }
 
+  of_model_ = of_model();
+
   const std::vector<SmoothPower> spectra = spectra_of_waves(residuals);
   const SlowWaves waves = seen_of(slow_waves(base, study), campaign_.shots.front(), lowest_);
   // Of white noise the quiet parts hold much that is quicker than these waves.
@@ -153,8 +156,42 @@ SlowNoise::SlowNoise(const Studied& base, Study& study)
   }
 }
 
-SlowNoise::Columns SlowNoise::none() const {
-  return Columns(campaign_.shots.size(), Eigen::MatrixXd(rows_, 0));
+/// What one more of an addition's number is to what is seen of a shot: in the residuals and, by
+/// what it adds there, in the quiet parts.
+Eigen::VectorXd SlowNoise::column_of(const Composition& composition,
+                                     const std::vector<double>& theta, std::size_t number,
+                                     const Eigen::VectorXd& in_residuals) const {
+  const std::ptrdiff_t shot = composition.numbers()[number].shot;
+  const auto at = static_cast<std::size_t>(shot);
+  std::vector<double> moved = theta;
+  moved[number] += 1.0;
+  Eigen::VectorXd column(rows_);
+  column << in_residuals.segment(shot * per_shot_, lowest_),
+      quiet_rows_of(campaign_.shots[at], additions_of(composition, theta, campaign_, at)) -
+          quiet_rows_of(campaign_.shots[at], additions_of(composition, moved, campaign_, at));
+  return column;
+}
+
+void SlowNoise::append(Columns& columns, std::ptrdiff_t shot, const Eigen::VectorXd& column) {
+  Eigen::MatrixXd& own = columns[static_cast<std::size_t>(shot)];
+  own.conservativeResize(Eigen::NoChange, own.cols() + 1);
+  own.rightCols(1) = column;
+}
+
+SlowNoise::Columns SlowNoise::of_model() const {
+  Columns columns(campaign_.shots.size(), Eigen::MatrixXd(rows_, 0));
+  const Composition& composition = base_.composition;
+  for (std::size_t i = 0; i < base_.fit.theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    const EffectAbout& about = composition.uses()[number.use].effect->about();
+    if (number.shot >= 0 && is_addition(*composition.uses()[number.use].effect) &&
+        !about.parameters[number.parameter].auxiliary()) {
+      append(columns, number.shot,
+             column_of(composition, base_.fit.theta, i,
+                       base_.fit.jacobian.col(static_cast<Eigen::Index>(i))));
+    }
+  }
+  return columns;
 }
 
 void SlowNoise::add_columns(const Addition& addition, Columns& columns) const {
@@ -163,19 +200,11 @@ void SlowNoise::add_columns(const Addition& addition, Columns& columns) const {
   Eigen::Index strength = 0;
   for (std::size_t i = 0; i < theta.size(); ++i) {
     const FreeNumber& number = composition.numbers()[i];
-    if (composition.uses()[number.use].id() != addition.candidate.id()) {
-      continue;
+    if (composition.uses()[number.use].id() == addition.candidate.id()) {
+      append(columns, number.shot,
+             column_of(composition, theta, i, addition.direction.columns.col(strength)));
+      ++strength;
     }
-    const auto at = static_cast<std::size_t>(number.shot);
-    std::vector<double> moved = theta;
-    moved[i] += 1.0;
-    Eigen::MatrixXd& own = columns[at];
-    own.conservativeResize(Eigen::NoChange, own.cols() + 1);
-    own.rightCols(1) << addition.direction.columns.col(strength).segment(number.shot * per_shot_,
-                                                                         lowest_),
-        quiet_rows_of(campaign_.shots[at], additions_of(composition, theta, campaign_, at)) -
-            quiet_rows_of(campaign_.shots[at], additions_of(composition, moved, campaign_, at));
-    ++strength;
   }
 }
 
@@ -250,13 +279,13 @@ double SlowNoise::gain(const Form& form, const Eigen::MatrixXd& seen, const Colu
 double SlowNoise::log_chance(const Form& form, Columns columns) const {
   columns = turned(form, std::move(columns));
   const Eigen::MatrixXd seen = form.turn * seen_;
-  const Columns nothing = none();
-  const Fitted without = fitted(form, seen, nothing, {});
+  const Columns beside = turned(form, of_model_);
+  const Fitted without = fitted(form, seen, beside, {});
   const Fitted with = fitted(form, seen, columns, without.levels);
   const double found = std::max(0.0, with.twice_log_likelihood - without.twice_log_likelihood);
   // Even if the levels of noise were known.
   constexpr double kOrdinary = -5.0;
-  const double known = log_chi2_tail(found, strengths_of(columns));
+  const double known = log_chi2_tail(found, strengths_of(columns) - strengths_of(beside));
   if (known > kOrdinary) {
     return known;
   }
@@ -276,7 +305,7 @@ double SlowNoise::log_chance(const Form& form, Columns columns) const {
     for (double& value : drawn.reshaped()) {
       value = normal(random);
     }
-    const double gained = gain(form, deviation.asDiagonal() * drawn, columns, nothing);
+    const double gained = gain(form, deviation.asDiagonal() * drawn, columns, beside);
     mean += gained / kRepeats;
     square += gained * gained / kRepeats;
   }
@@ -285,7 +314,7 @@ double SlowNoise::log_chance(const Form& form, Columns columns) const {
 }
 
 double SlowNoise::log_chance(std::span<const Addition> additions) const {
-  Columns columns = none();
+  Columns columns = of_model_;
   for (const Addition& addition : additions) {
     add_columns(addition, columns);
   }
@@ -302,7 +331,7 @@ double SlowNoise::log_chance(std::span<const Addition> additions) const {
 
 double SlowNoise::log_chance_beside(const Addition& addition,
                                     std::span<const Addition> others) const {
-  Columns beside = none();
+  Columns beside = of_model_;
   for (const Addition& other : others) {
     add_columns(other, beside);
   }

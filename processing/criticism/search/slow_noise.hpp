@@ -20,9 +20,12 @@ namespace kolsky {
 /// noise is that of noise which came through baseline, waves and window as records do: a window
 /// makes the bins of what is slower than itself hang together, a slope's entirely. Levels are
 /// found, and the statistic's distribution drawn, twice: as if every gauge had slow noise of its
-/// own, and as if all had the same. The model's numbers stay where they are. Where much slow noise
-/// is left beside the addition, it counts for nothing: then its slopes are that noise's as well.
-/// But what is left may be another gauge's drift: an addition is judged beside others, too.
+/// own, and as if all had the same. The model's numbers stay where they are, but what it adds to
+/// each shot's records already is free beside the addition: the quiet parts know a hum's slopes
+/// better than the rest of the record, by which it was fitted, and a drift would mend them. Where
+/// much slow noise is left beside the addition, it counts for nothing: then its slopes are that
+/// noise's as well. But what is left may be another gauge's drift: an addition is judged beside
+/// others, too.
 class SlowNoise {
  public:
   /// @param base  fitted, its noise known by its residuals; outlives this
@@ -62,9 +65,14 @@ class SlowNoise {
     Levels levels;
   };
 
-  [[nodiscard]] Columns none() const;
+  /// What the model itself adds, of each shot's own.
+  [[nodiscard]] Columns of_model() const;
   [[nodiscard]] static Columns turned(const Form& form, Columns columns);
   void add_columns(const Addition& addition, Columns& columns) const;
+  [[nodiscard]] Eigen::VectorXd column_of(const Composition& composition,
+                                          const std::vector<double>& theta, std::size_t number,
+                                          const Eigen::VectorXd& in_residuals) const;
+  static void append(Columns& columns, std::ptrdiff_t shot, const Eigen::VectorXd& column);
   [[nodiscard]] double log_chance(const Form& form, Columns columns) const;
   /// @param beside  a part of the columns: by how much these gain over it
   [[nodiscard]] static double gain(const Form& form, const Eigen::MatrixXd& seen,
@@ -85,6 +93,7 @@ class SlowNoise {
   Eigen::Index lowest_;    ///< of these, of the lowest bins
   Eigen::Index rows_;      ///< these and what the quiet parts show
   Eigen::MatrixXd seen_;   ///< of every shot a column
+  Columns of_model_;
   std::vector<Form> forms_;
 };
 

@@ -242,6 +242,24 @@ TEST(MainsHum, InSharesOfThreeGaugesIsNamed) {
   EXPECT_GE(found, 3U);
 }
 
+// The quiet before a pulse knows a hum's slope better than the rest of the record, in which a free
+// source takes up what all gauges have alike, and a drift beside the hum would mend what is left of
+// it there.
+TEST(MainsHum, LeavesNoDriftToTheQuietBeforeIt) {
+  for (std::uint64_t seed = 721; seed < 729; ++seed) {
+    testing::CampaignWishes wishes{.seed = seed,
+                                   .shots = 5,
+                                   .gauges = 3,
+                                   .noise_strain = 3.5e-6,
+                                   .samples = 1800,
+                                   .rate_Hz = 1e6};
+    testing::Campaign campaign = testing::draw_campaign(wishes);
+    testing::hide(campaign, testing::parse_effect("mains-hum=8.5e-5"));
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(campaign));
+    EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"mains-hum"}) << seed;
+  }
+}
+
 /// A hum fitted at every gauge and shot.
 Studied with_hum(Study& study) {
   Model model = paper_model(BenchKind::bar, true);
