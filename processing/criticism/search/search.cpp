@@ -281,16 +281,26 @@ void Search::dismiss(const Refit& refit) {
   }
   const double evidence = equivalent_square(chance);
   if (!unconfirmed_ || evidence > unconfirmed_->evidence) {
-    unconfirmed_ = {refit.candidate, evidence};
+    unconfirmed_ = {refit.candidate, evidence, gain, refit.freedom};
   }
 }
 
 /// What explains less than something slow that nothing confirms must do so beside it, too: else it
-/// may be only the part of it that comes again in every shot.
+/// may be only the part of it that comes again in every shot. But where an addition that does is
+/// most of it, it is the slow thing that stands in for the addition: what slopes by chance in every
+/// shot as it likes, the scatter of the shots' own slopes tells from that.
 double Search::share_beside_unconfirmed(const Refit& refit, double evidence) const {
   const Candidate& own = candidates_[refit.candidate];
+  const auto is_most_of_it = [&] {
+    const double noise = noise_of(refit.studied.misfit, study_.campaign().shots.size());
+    const double gain = (base_.fit.objective() - refit.studied.fit.objective()) / noise;
+    const double rest = std::max(0.0, unconfirmed_->gain - gain);
+    const double freedom = std::max(1.0, unconfirmed_->freedom - refit.freedom);
+    return is_addition(*own.use.effect) &&
+           evidence > equivalent_square(log_gain_tail(rest, freedom, false));
+  };
   if (!unconfirmed_ || evidence > unconfirmed_->evidence || own.use.per_shot ||
-      own.id() == candidates_[unconfirmed_->candidate].id()) {
+      own.id() == candidates_[unconfirmed_->candidate].id() || is_most_of_it()) {
     return 1.0;
   }
   return share_beside(directions_[refit.candidate], candidates_[unconfirmed_->candidate],

@@ -140,6 +140,8 @@ class Search {
   struct Unconfirmed {
     std::size_t candidate = 0;
     double evidence = 0.0;
+    double gain = 0.0;
+    double freedom = 0.0;
   };
   std::optional<Unconfirmed> unconfirmed_;
   std::map<std::string, Dismissed> dismissed_;

@@ -108,5 +108,25 @@ TEST(ShareBeside, KeepsWhatAHumExplainsFromBeingNamedAsSomethingElse) {
   EXPECT_GE(hum->identifiable, hum->detectable);
 }
 
+// Under noise that wanders a hum with a phase of its own in every shot gains by that, and by what
+// is a drift of one gauge in all of them: by more than the drift does, which was dismissed for it.
+TEST(ShareBeside, LeavesADriftThatIsMostOfWhatAHumExplains) {
+  int found = 0;
+  for (std::uint64_t seed = 31; seed < 37; ++seed) {
+    testing::CampaignWishes wishes{.seed = seed,
+                                   .shots = 6,
+                                   .gauges = 6,
+                                   .noise_strain = 8e-6,
+                                   .colour = testing::NoiseColour::pink};
+    testing::Campaign truth = testing::draw_campaign(wishes);
+    testing::hide(truth, testing::parse_effect("baseline-drift:g3=-0.025"));
+    const Campaign campaign = read_campaign(testing::shots_of(truth));
+    Study study(campaign, 0.0, Workers{});
+    const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
+    found += std::ranges::count(diagnosis.effects, "baseline-drift:g3") > 0 ? 1 : 0;
+  }
+  EXPECT_GE(found, 5);
+}
+
 }  // namespace
 }  // namespace kolsky
