@@ -170,6 +170,11 @@ TEST(Identifiability, PlacesOfThreeGaugesAreTied) {
       EXPECT_LT(effect.rival_share, 0.05) << effect.candidate.effect.name();
       EXPECT_TRUE(effect.seen_but_tied()) << effect.candidate.effect.name();
     }
+    // A length is told from all else, and a drift.
+    if (effect.candidate.effect.id == "gauge-length" ||
+        effect.candidate.effect.id == "baseline-drift") {
+      EXPECT_TRUE(effect.possible()) << effect.candidate.effect.name();
+    }
   }
 }
 

@@ -162,7 +162,9 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
       // What is learned serves as long as what it promises comes true.
       const bool serves = step.gain > std::max(near, 0.1 * promised);
       const bool as_foretold = step.gain > kAsGood * step.foretold;
-      crawling = fresh && step.gain < kCrawl * promised ? crawling + 1 : fresh ? 0 : crawling;
+      if (fresh) {
+        crawling = step.gain < kCrawl * promised ? crawling + 1 : 0;
+      }
       // Derivatives that twice promise what no step keeps are not made again for a rough fit.
       converged = (fresh && step.gain < near) || (roughly && crawling == kMostCrawling);
       if (serves) {

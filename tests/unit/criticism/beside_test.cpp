@@ -85,19 +85,23 @@ TEST(ShareBeside, IsNothingOfWhatAnotherExplainsAlone) {
             1e-6);
 }
 
+Diagnosis diagnosed(const testing::CampaignWishes& wishes, const std::string& hidden) {
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect(hidden));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  return diagnose(study, paper_model(BenchKind::bar, false), {});
+}
+
 // Mains of 40 microstrain under slow noise. An end that returns waves explains a twentieth as much;
 // it was named.
 TEST(ShareBeside, KeepsWhatAHumExplainsFromBeingNamedAsSomethingElse) {
-  testing::CampaignWishes wishes{.seed = 21,
-                                 .shots = 8,
-                                 .gauges = 4,
-                                 .noise_strain = 4e-6,
-                                 .colour = testing::NoiseColour::coloured};
-  testing::Campaign truth = testing::draw_campaign(wishes);
-  testing::hide(truth, testing::parse_effect("mains-hum=4e-5"));
-  const Campaign campaign = read_campaign(testing::shots_of(truth));
-  Study study(campaign, 0.0, Workers{});
-  const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
+  const Diagnosis diagnosis = diagnosed({.seed = 21,
+                                         .shots = 8,
+                                         .gauges = 4,
+                                         .noise_strain = 4e-6,
+                                         .colour = testing::NoiseColour::coloured},
+                                        "mains-hum=4e-5");
   EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"mains-hum"});
   const auto hum = std::ranges::find(diagnosis.candidates, "mains-hum", &CandidateResult::effect);
   ASSERT_NE(hum, diagnosis.candidates.end());
@@ -113,17 +117,13 @@ TEST(ShareBeside, KeepsWhatAHumExplainsFromBeingNamedAsSomethingElse) {
 TEST(ShareBeside, LeavesADriftThatIsMostOfWhatAHumExplains) {
   int found = 0;
   for (std::uint64_t seed = 31; seed < 37; ++seed) {
-    testing::CampaignWishes wishes{.seed = seed,
-                                   .shots = 6,
-                                   .gauges = 6,
-                                   .noise_strain = 8e-6,
-                                   .colour = testing::NoiseColour::pink};
-    testing::Campaign truth = testing::draw_campaign(wishes);
-    testing::hide(truth, testing::parse_effect("baseline-drift:g3=-0.025"));
-    const Campaign campaign = read_campaign(testing::shots_of(truth));
-    Study study(campaign, 0.0, Workers{});
-    const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
-    found += std::ranges::count(diagnosis.effects, "baseline-drift:g3") > 0 ? 1 : 0;
+    const Diagnosis diagnosis = diagnosed({.seed = seed,
+                                           .shots = 6,
+                                           .gauges = 6,
+                                           .noise_strain = 8e-6,
+                                           .colour = testing::NoiseColour::pink},
+                                          "baseline-drift:g3=-0.025");
+    found += diagnosis.effects == std::vector<std::string>{"baseline-drift:g3"} ? 1 : 0;
   }
   EXPECT_GE(found, 5);
 }

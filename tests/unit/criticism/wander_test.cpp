@@ -275,6 +275,33 @@ Studied with_hum(Study& study) {
   return study.fit(model, LearnNoise::no);
 }
 
+// A drift of each shot's own has to show before the pulses: in what they slope beside the hum that
+// the model has, too.
+TEST(OwnStrengths, OfADriftAreConfirmedBesideAHum) {
+  testing::Campaign truth = elastic_bar(713, 6, 4, 3e-6);
+  testing::hide(truth, testing::parse_effect("mains-hum=2e-4"));
+  testing::CampaignForward forward;
+  testing::Readings readings = forward.readings(truth);
+  std::mt19937_64 random(713);
+  std::normal_distribution<double> slope_per_s(0.0, 0.05);
+  for (auto& shot : readings) {
+    const double per_sample = slope_per_s(random) * 1e-6;
+    for (std::size_t n = 0; n < shot[1].size(); ++n) {
+      shot[1][n] += per_sample * static_cast<double>(n);
+    }
+  }
+  const Campaign campaign = read_campaign(testing::shots_of(truth, readings));
+  Study study(campaign, 0.0, Workers{});
+  Model model = with_hum(study).model;
+  EffectUse drift = null_use(*find_effect("baseline-drift"), "g2");
+  drift.per_shot = true;
+  drift.values[0].free = true;
+  model.effects.push_back(drift);
+  model.find("mains-hum")->alike = true;
+  const Studied studied = study.fit(model, LearnNoise::no);
+  EXPECT_TRUE(own_strengths_confirmed(studied, "baseline-drift:g2", campaign, Claim::fresh));
+}
+
 // In a metal bar the source takes up what all gauges have alike. A hum whose shares cancel, found
 // with such a part, leaves gauges that slope together before the pulses, as they did not with it,
 // and was taken for wander.
