@@ -325,7 +325,10 @@ Responses solid_bar_response(const SolidBarProblem& asked, const UnitSource& sou
   const double last_m = *std::ranges::max_element(problem.stations_m);
   const double end_s = horizon(problem, source, c);
   double element_m = numerics.element_radii * problem.radius_m;
-  double reach_m = 0.5 * (c * end_s + last_m) + 6.0 * element_m;
+  // Where an infinite bar is cut must not be heard of: part of a wave runs ahead of the bar's
+  // speed, at the solid's, and would come back.
+  const double beyond_m = 15.0 * problem.radius_m;
+  double reach_m = 0.5 * (fastest * end_s + last_m) + beyond_m;
   if (problem.free_end_m) {
     reach_m = *problem.free_end_m;
     element_m = reach_m / std::round(reach_m / element_m);
@@ -345,8 +348,8 @@ Responses solid_bar_response(const SolidBarProblem& asked, const UnitSource& sou
       break;
     }
     // Waves have come so far; and what is farther than this cannot get back in time.
-    const double reached_m = fastest * (begin_s + numerics.output_step_s) + 3.0 * element_m;
-    const double needed_m = last_m + c * (end_s - begin_s) + 5.0 * element_m;
+    const double reached_m = fastest * (begin_s + numerics.output_step_s) + beyond_m;
+    const double needed_m = last_m + fastest * (end_s - begin_s) + beyond_m;
     const auto active =
         problem.free_end_m
             ? static_cast<std::size_t>(reached_m / element_m) + 1

@@ -20,7 +20,7 @@ struct SolidBarProblem {
 };
 
 struct SolidBarNumerics {
-  double element_radii = 2.5;  ///< length of an element over the radius
+  double element_radii = 1.6;  ///< length of an element over the radius
   double output_step_s = 0.5e-6;
   double step_share = 0.9;  ///< of the longest stable step
 };
