@@ -92,6 +92,7 @@ struct Histories {
   std::size_t loaded =
       0;  ///< samples until the specimen, past its peak, carries less than a tenth of it
   std::size_t first_loaded = 0;  ///< the same of the first loading
+  std::size_t peak = 0;          ///< samples until it carries most
 };
 
 Bar bar_of(const Set& set) {
@@ -192,6 +193,7 @@ Histories histories(const Set& set, const std::filesystem::path& folder) {
   const auto released =
       std::find_if(peak, all.stress.end(), [&](double stress) { return stress < 0.1 * *peak; });
   all.loaded = static_cast<std::size_t>(released - all.stress.begin());
+  all.peak = static_cast<std::size_t>(peak - all.stress.begin());
   all.first_loaded = first_release(all.stress);
   const double c = std::sqrt(kSteelModulus / kSteelDensity);
   const auto tool_velocity = [&](const std::string& end) {
@@ -350,6 +352,7 @@ void add(const Set& set, const std::filesystem::path& folder, Section& section) 
       all.input_velocity);
   const auto force = scaled(all.output.stress_Pa, area_ratio(set));
   row("stress, against the specimen's own mean", force, all.tool_stress, all.stress);
+  row_until(all.peak, "the same, while the load rises", force, all.tool_stress, all.stress);
   if (set.density_kg_m3 > 0.0) {
     row("the same, with the specimen's own inertia",
         with_inertia(force, all.input, all.output, set), all.tool_stress, all.stress);
@@ -379,6 +382,7 @@ void add(const Set& set, const std::filesystem::path& folder, Section& section) 
   }
   const auto strain = strain_between(all.input.velocity_m_per_s, all.output.velocity_m_per_s, set);
   row("strain, against the ends' velocities", strain, all.tool_strain, all.ends_strain);
+  row_until(all.peak, "the same, while the load rises", strain, all.tool_strain, all.ends_strain);
   if (all.first_loaded < all.loaded) {
     row_until(all.first_loaded, "the same, first loading alone", strain, all.tool_strain,
               all.ends_strain);
@@ -399,8 +403,9 @@ std::optional<Section> separated_waves() {
       "each other: rms of what is off over the rms and over the largest of what the solver had, "
       "and "
       "the median of what is off over what it had where that is more than a tenth of its largest, "
-      "until the specimen, past its peak, carries less than a tenth of it (impulses and areas: in "
-      "per cent). Output "
+      "until the specimen, past its peak, carries less than a tenth of it, or its peak (\"while "
+      "the "
+      "load rises\"; impulses and areas: in per cent). Output "
       "bar: gauge and free end. Input bar: gauge and the output bar's force at its end "
       "(equilibrium). Beside it the columns of the tool that comes with the sets. "
       "Foam, stress: the force agrees with the output bar's momentum, the set's own mean on the "
