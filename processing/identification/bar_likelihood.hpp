@@ -127,14 +127,9 @@ class BarLikelihood {
   [[nodiscard]] std::vector<NoiseSpectrum::Seen> expected_noise(
       const BarNoise& noise, const std::vector<NoiseArrivals::Shown>& echoes,
       const std::vector<Eigen::MatrixXcd>& scatter) const;
-  [[nodiscard]] LowerTriangle coupling_of_lowest_bins(std::span<const double> at,
-                                                      const BarNoise& noise, std::size_t bins);
   [[nodiscard]] std::vector<std::vector<double>> responses_to_first(std::span<const double> at);
   [[nodiscard]] CarriedNoise carried_noise();
   [[nodiscard]] std::vector<Eigen::MatrixXcd> unwhitened(Eigen::MatrixXd white) const;
-  [[nodiscard]] EightColumns shown_by_first(std::span<const double> at, std::size_t bins,
-                                            std::size_t stride);
-  [[nodiscard]] EightColumns shown_by_own(std::size_t bins, std::size_t stride) const;
   void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
            std::size_t first_bin, EightColumns& columns) const;
   void whiten(EightColumns& columns) const;

@@ -50,6 +50,8 @@ class NoiseSpectrum {
     /// @param samples  of the stretch that shows it; 0: without end
     [[nodiscard]] double power(double cycles_per_sample, double samples = 0.0) const;
     [[nodiscard]] double variance_of_mean(double samples) const;
+    /// Neighbouring samples are much alike.
+    [[nodiscard]] bool is_slow() const { return keep > 0.8; }
   };
   /// The parts that are not white. None of a model that is shaped otherwise.
   [[nodiscard]] const std::vector<SlowPart>& slow_parts() const { return slow_; }
