@@ -57,10 +57,13 @@ Check equilibrium(const Reduction& r, std::size_t end) {
 
 double decibels(double peak, double noise_rms) {
   constexpr double kNoiseless_dB = 200.0;
+  if (peak <= 0.0) {
+    return -kNoiseless_dB;
+  }
   if (noise_rms <= 0.0) {
     return kNoiseless_dB;
   }
-  return std::min(kNoiseless_dB, 20.0 * std::log10(std::max(peak, 1e-300) / noise_rms));
+  return std::min(kNoiseless_dB, 20.0 * std::log10(peak / noise_rms));
 }
 
 Check signal_to_noise(const QualityInputs& in) {
@@ -74,6 +77,9 @@ Check signal_to_noise(const QualityInputs& in) {
   check.text =
       formatted("pulse peaks over noise rms: %.1f dB on the input bar, %.1f dB on the output bar",
                 input_dB, output_dB);
+  if (in.output_peak <= 0.0) {
+    check.text += ": the output bar's gauge reads the same all along, is it connected?";
+  }
   return check;
 }
 

@@ -25,6 +25,8 @@ namespace {
 constexpr double kShortestPulse_s = 5e-6;
 /// Of the band that the noise allows: a limit below that rounds the pulse's foot off.
 constexpr double kMostCut = 0.7;
+/// Of a history.
+constexpr double kFewestSamples = 8.0;
 /// Noise's deviations beyond which something is not its account.
 constexpr double kStandsOut = 3.0;
 
@@ -68,8 +70,7 @@ class Pass {
       return push_not_seen();
     }
     if (!choose_window()) {
-      return not_reducible("the record ends before the pulse has loaded the specimen",
-                           record_longer());
+      return nothing_in_window();
     }
     if (faces_) {
       take_separated();
@@ -106,7 +107,19 @@ class Pass {
         formatted("the reflection hides the push at %s %.0f us after its foot, while it still "
                   "rises: the bar is too short for this pulse",
                   first_gauge().c_str(), 2e6 * travel_to_specimen_s()),
-        "it takes " + longer_window(in_.gauge_to_specimen_m, wave_speed_m_per_s()));
+        "it takes " + longer_window(in_.gauge_to_specimen_m, wave_speed_m_per_s()) +
+            "; of a record that begins within the pulse the reflection is taken for it: record for "
+            "longer before the trigger");
+  }
+  [[nodiscard]] Reduction nothing_in_window() const {
+    const double asked = options_.duration_s.value_or(HUGE_VAL) * rate_Hz_;
+    if (asked < kFewestSamples) {
+      return not_reducible(formatted("the duration asked for, %.3g us, is less than %.0f samples",
+                                     1e6 * asked * period_s_, kFewestSamples),
+                           formatted("ask for %.3g us at least", 1e6 * kFewestSamples * period_s_));
+    }
+    return not_reducible("the record ends before the pulse has loaded the specimen",
+                         record_longer());
   }
   [[nodiscard]] const std::string& first_gauge() const {
     return shot_.channels[in_.channels.front()].gauge;
@@ -416,7 +429,6 @@ class Pass {
     const double wanted = arrival + duration_s * rate_Hz_;
     const double last = std::min(wanted, known_samples() - (faces_ ? 3.0 * smear : smear));
     missing_s_ = (wanted - last) * period_s_;
-    constexpr double kFewestSamples = 8.0;
     if (last < arrival + kFewestSamples) {
       return false;
     }

@@ -43,15 +43,20 @@ std::string quote_text(const Quotable& part) {
                          : "there both faces carry the same force and the specimen is loaded");
 }
 
-/// Why the strain must not be quoted at all; empty where it may.
-std::string strain_in_doubt(const Reduction& r) {
+/// Why the curve must not be quoted at all; empty where it may.
+std::string curve_in_doubt(const Reduction& r) {
   const Check* overlap = r.quality.find("window_overlap");
   if (overlap != nullptr && overlap->verdict != Verdict::pass &&
       r.separation == Separation::never) {
     return overlap->text;
   }
-  const Check* energy = r.quality.find("energy_balance");
-  return energy != nullptr && energy->verdict != Verdict::pass ? energy->text : std::string();
+  for (const char* const name : {"energy_balance", "band"}) {
+    const Check* check = r.quality.find(name);
+    if (check != nullptr && check->verdict != Verdict::pass) {
+      return check->text;
+    }
+  }
+  return {};
 }
 
 /// A stretch of the loading, in samples.
@@ -108,6 +113,8 @@ class BandPower {
   [[nodiscard]] std::vector<double> of(const std::vector<double>& record) {
     const double noise = quiet_before(record, quiet_).noise_rms;
     const double noise_power = noise * noise * static_cast<double>(record.size());
+    const bool silent = *std::max_element(record.begin(), record.end()) ==
+                        *std::min_element(record.begin(), record.end());
     transform_.forward(record, spectrum_);
     std::vector<double> bands;
     for (std::size_t k = 1; k + width_ <= spectrum_.size() && bands.size() < kBands; k += width_) {
@@ -116,7 +123,8 @@ class BandPower {
         power += std::norm(spectrum_[i]) / static_cast<double>(width_);
       }
       constexpr double kMost_dB = 200.0;
-      bands.push_back(noise_power > 0.0
+      bands.push_back(silent ? -kMost_dB
+                      : noise_power > 0.0
                           ? std::min(kMost_dB, 10.0 * std::log10(power / noise_power + 1e-20))
                           : kMost_dB);
     }
@@ -174,7 +182,7 @@ Quotable quotable_part(const Reduction& r) {
     part.text = "no part of the curve: there is none, " + r.quality.reason;
     return part;
   }
-  const std::string doubt = strain_in_doubt(r);
+  const std::string doubt = curve_in_doubt(r);
   if (!doubt.empty()) {
     part.text = "no part of the curve: " + doubt;
     return part;

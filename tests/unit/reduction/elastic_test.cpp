@@ -396,6 +396,27 @@ TEST(ElasticReduction, NoiseAloneHoldsNoPulse) {
   }
 }
 
+TEST(ElasticReduction, AnOutputThatReadsNothingIsNoSignal) {
+  const ElasticShpb model;
+  auto records = model.solve();
+  Shot shot = noiseless(model, records);
+  std::ranges::fill(shot.channels.back().codes, shot.channels.back().codes.front());
+  const Reduction r = Reducer().reduce(shot);
+  EXPECT_EQ(check_of(r, "signal_to_noise").verdict, Verdict::fail);
+  EXPECT_NE(check_of(r, "signal_to_noise").text.find("is it connected?"), std::string::npos);
+  EXPECT_EQ(spectral_quality(shot, r).useful_band_Hz, 0.0);
+}
+
+TEST(ElasticReduction, ADurationOfNoSamplesIsToBlameByItself) {
+  const ElasticShpb model;
+  ReductionOptions options;
+  options.duration_s = 1e-6;
+  const Reduction r = Reducer(options).reduce(noiseless(model, model.solve()));
+  EXPECT_FALSE(r.quality.reducible);
+  EXPECT_NE(r.quality.reason.find("the duration asked for, 1 us"), std::string::npos)
+      << r.quality.reason;
+}
+
 TEST(ElasticReduction, ARecordThatEndsTooEarlySaysSo) {
   ElasticShpb model;
   model.duration_s = 450e-6;

@@ -132,8 +132,8 @@ Check judged(const char* name, Verdict verdict) {
   return check;
 }
 
-TEST(Validity, QuotesNoStrainThatAnotherCheckPutsInDoubt) {
-  for (const char* name : {"window_overlap", "energy_balance"}) {
+TEST(Validity, QuotesNoCurveThatAnotherCheckPutsInDoubt) {
+  for (const char* name : {"window_overlap", "energy_balance", "band"}) {
     Reduction r = by_hand();
     r.quality.checks = {judged(name, Verdict::pass)};
     EXPECT_TRUE(quotable_part(r).any) << name;
