@@ -50,10 +50,19 @@ ChannelRecord record_of(const Gauge& gauge, const BridgeConversion& bridge,
   return channel;
 }
 
+/// A specimen has a mass, whichever file says so: without one both faces would always agree.
+Bench with_specimens_mass(Bench bench, const Material& specimen) {
+  if (bench.specimen && !bench.specimen->density_kg_m3) {
+    bench.specimen->density_kg_m3 = specimen.density_kg_m3;
+  }
+  return bench;
+}
+
 }  // namespace
 
-ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& specimen,
+ShotPlan plan_shot(const Bench& filed, const Material& bars, const Material& specimen,
                    const PlannedPulse& pulse, const PlanOptions& options) {
+  const Bench bench = with_specimens_mass(filed, specimen);
   if (bench.kind != BenchKind::shpb || !bench.output || !bench.specimen) {
     throw InputError("kind", "is not \"shpb\", so there is no specimen to plan for",
                      "use a bench file of kind \"shpb\" with bars.output and specimen");
@@ -97,9 +106,8 @@ ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& spe
   plan.reduction = Reducer(reduction).reduce(plan.shot);
   plan.quotable = quotable_part(plan.reduction);
 
-  const double density = bench.specimen->density_kg_m3.value_or(specimen.density_kg_m3);
-  plan.specimen_transit_s =
-      bench.specimen->length_m / std::sqrt(relaxed_modulus_Pa(specimen) / density);
+  plan.specimen_transit_s = bench.specimen->length_m / std::sqrt(relaxed_modulus_Pa(specimen) /
+                                                                 *bench.specimen->density_kg_m3);
   return plan;
 }
 

@@ -44,10 +44,10 @@ struct ShotPlan {
 };
 
 /// Foretells a shot on a linear specimen, from the waves of the paper's model, the specimen's mass
-/// included where its density is filed: what happens to the specimen, what the gauges read, and
-/// what a reduction of those records would see of the specimen.
+/// included (of the bench's density, else of the material's): what happens to the specimen, what
+/// the gauges read, and what a reduction of those records would see of the specimen.
 /// @throws InputError where the bench has no specimen or no gauges
-[[nodiscard]] ShotPlan plan_shot(const Bench& bench, const Material& bars, const Material& specimen,
+[[nodiscard]] ShotPlan plan_shot(const Bench& filed, const Material& bars, const Material& specimen,
                                  const PlannedPulse& pulse, const PlanOptions& options);
 
 }  // namespace kolsky

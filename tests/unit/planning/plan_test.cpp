@@ -137,6 +137,18 @@ TEST(PlanShot, SaysWhereAndWhenTheSpecimenAnswers) {
   EXPECT_NEAR(plan.specimen_transit_s, 0.004 / std::sqrt(65.5e6 / 1140.0), 0.1e-6);
 }
 
+// Without a mass both faces would agree from the first moment on.
+TEST(PlanShot, TakesTheSpecimensDensityFromItsMaterialWhereTheBenchFilesNone) {
+  const LinearShpb model;
+  Bench bench = model.bench();
+  bench.specimen->density_kg_m3 = core().density_kg_m3;
+  const ShotPlan filed = planned(model, bench);
+  bench.specimen->density_kg_m3.reset();
+  const ShotPlan plan = planned(model, bench);
+  EXPECT_GT(plan.equilibrium.from_s, plan.specimen_transit_s);
+  EXPECT_EQ(plan.equilibrium.from_s, filed.equilibrium.from_s);
+}
+
 // What hides the push from a reduction hides nothing from the plan.
 TEST(PlanShot, ForetellsTheSpecimenWhereTheBarsAreTooShortToSeeIt) {
   LinearShpb model;
