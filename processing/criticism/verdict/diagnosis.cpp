@@ -555,6 +555,9 @@ class Diagnostician {
     if (const FiledConflict filed = conflict_with_filed(current); filed.log_p < kSure) {
       reasons.push_back(filed_text(filed));
     }
+    if (leaves_much_of_one_shot()) {
+      reasons.push_back(left_of_one_shot_text(diagnosis_.held_out.after));
+    }
     if (!reasons.empty() || !diagnosis_.effects.empty()) {
       judge_filed_bars(before, current, noise, reasons);
     }
@@ -562,6 +565,16 @@ class Diagnostician {
       judge_temperature(current, noise, reasons);
     }
     return reasons;
+  }
+
+  /// No other shot tells what a claim leaves from noise. Of one shot, then, that must be no more
+  /// than noise may be beyond what the quiet part shows of it.
+  [[nodiscard]] bool leaves_much_of_one_shot() const {
+    constexpr double kOfQuiet = 1.5;
+    const HeldOut& misfit = diagnosis_.held_out;
+    return study_.campaign().shots.size() < 2 && !diagnosis_.effects.empty() &&
+           misfit.after > kOfQuiet * misfit.floor &&
+           misfit.after - misfit.floor > allowed_rest() * (misfit.before - misfit.after);
   }
 
   /// Where nobody filed at which temperature the bars have their moduli, these are off by what it

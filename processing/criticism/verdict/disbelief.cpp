@@ -206,6 +206,14 @@ std::string several_times_text() {
          "the library lacks; measure the bar along its length before these are added";
 }
 
+std::string left_of_one_shot_text(double misfit) {
+  return fmt::format(
+      "what was found leaves {:.3g} times the noise before the pulse, and of one shot nothing "
+      "tells "
+      "noise from what is missing: repeat the shot",
+      misfit);
+}
+
 std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign) {
   std::string names;
   for (const std::size_t gauge : loudest(loud)) {

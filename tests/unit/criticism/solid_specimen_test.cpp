@@ -11,9 +11,12 @@
 namespace kolsky {
 namespace {
 
-Diagnosis said_of(std::uint64_t seed, double friction) {
-  testing::Campaign truth =
-      testing::draw_campaign({.seed = seed, .shots = 6, .split = true, .solid_specimen = true});
+Diagnosis said_of(std::uint64_t seed, double friction, int shots = 6, double noise_strain = 0.0) {
+  testing::CampaignWishes draw{.seed = seed, .shots = shots, .split = true, .solid_specimen = true};
+  if (noise_strain > 0.0) {
+    draw.noise_strain = noise_strain;
+  }
+  testing::Campaign truth = testing::draw_campaign(draw);
   truth.split->specimen.friction = friction;
   const Campaign campaign = read_campaign(testing::shots_of(truth));
   Study study(campaign, 0.0, Workers{});
@@ -46,6 +49,15 @@ TEST(SolidSpecimen, ThatRubsIsUnknownRatherThanAnotherEffect) {
           << seed << ": " << id;
     }
   }
+}
+
+// No other shot shows that what is left would come back: half as much again as noise is too much.
+TEST(SolidSpecimen, ThatRubsIsUnknownByOneShotToo) {
+  const Diagnosis diagnosis = said_of(3, 0.3, 1, 1e-6);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown);
+  EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [](const std::string& note) {
+    return note.find("of one shot nothing tells noise from what is missing") != std::string::npos;
+  }));
 }
 
 }  // namespace
