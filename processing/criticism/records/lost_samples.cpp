@@ -13,6 +13,9 @@ namespace {
 /// Samples to either side by which a jump is judged.
 constexpr std::size_t kSide = 8;
 constexpr double kOfNoise = 10.0;
+/// Of the whole record's noise energy: what holds less changes nothing that is judged, whatever
+/// made it.
+constexpr double kOfNoiseEnergy = 0.1;
 /// Of the largest step from sample to sample around: a front is one among others as steep.
 constexpr double kOfSteps = 5.0;
 /// How far from where it was it may come back, of the jump.
@@ -39,8 +42,10 @@ bool jumps_and_is_back(std::span<const double> readings, const LostSamples& run,
   const double back = after.front() - readings[run.first];
   const double jump = std::min(std::abs(there), std::abs(back));
   const bool from_pulse = std::abs(before.back() - quiet.baseline) > kBack * jump;
+  const double noise_energy = std::pow(quiet.noise_rms, 2) * static_cast<double>(readings.size());
   return (run.count <= kNoPulse || from_pulse) && there * back < 0.0 &&
          jump > kOfNoise * quiet.noise_rms &&
+         jump * jump * static_cast<double>(run.count) > kOfNoiseEnergy * noise_energy &&
          jump > kOfSteps * std::max({step, largest_step(before), largest_step(after)}) &&
          std::abs(after.front() - before.back()) < kBack * jump;
 }
