@@ -41,15 +41,15 @@ TEST(LostSamples, AreFoundWhereARecordJumpsAwayAndBack) {
   }
 }
 
-// Measured records have a spike now and then: six steps of a converter that noise hardly moves are,
-// in 20000 samples, a fiftieth of the noise.
+// Measured records have a spike now and then: fourteen steps of a converter that noise hardly moves
+// are, in 40000 samples, a twentieth of the noise.
 TEST(LostSamples, AreNotWhatIsLostInTheNoise) {
   std::vector<double> codes = pulse(200, 25, 0.3, 1);
   const std::vector<double> quiet(codes.begin(), codes.begin() + 256);
-  while (codes.size() < 20000) {
+  while (codes.size() < 40000) {
     codes.insert(codes.end(), quiet.begin(), quiet.end());
   }
-  codes[1000] = 6.0;
+  codes[1000] = 14.0;
   EXPECT_FALSE(lost_samples(codes, kQuiet));
   codes[1000] = 60.0;
   EXPECT_TRUE(lost_samples(codes, kQuiet));
