@@ -59,6 +59,7 @@ int run(const Settings& settings, Context& context) {
                                       {"misfit", describe(studied.misfit)},
                                       {"effects", describe_effects(file.model)},
                                       {"strained", describe_strained(file.model)},
+                                      {"at_bounds", describe_bounds(file.model)},
                                       {"converged", studied.fit.converged},
                                       {"parent", file.parent()}})
                 << "\n";
@@ -67,7 +68,7 @@ int run(const Settings& settings, Context& context) {
   context.out << settings.output << "\n"
               << model_table(file.model) << misfit_text(studied.misfit)
               << in_words(studied.misfit, campaign.shots.size()) << "\n"
-              << strained_text(file.model);
+              << strained_text(file.model) << bounds_text(file.model);
   return kDone;
 }
 

@@ -12,6 +12,7 @@
 #include "clients/figure/layout.hpp"
 #include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
+#include "processing/criticism/verdict/at_bounds.hpp"
 
 namespace kolsky::cli {
 
@@ -200,6 +201,24 @@ std::string strained_text(const Model& model) {
                       : "strained, in filed deviations: " + text +
                             "\nthey are not as filed, or stand in for what the model lacks; "
                             "`kolsky diagnose` tells which\n";
+}
+
+JsonValue describe_bounds(const Model& model) {
+  JsonList list;
+  for (const AtBound& number : numbers_at_bounds(model)) {
+    list.push_back(JsonObject{{"effect", number.effect},
+                              {"parameter", number.parameter},
+                              {"bound", number.most ? "most" : "least"}});
+  }
+  return list;
+}
+
+std::string bounds_text(const Model& model) {
+  std::string text;
+  for (const AtBound& number : numbers_at_bounds(model)) {
+    text += "note: " + in_words(number) + "\n";
+  }
+  return text;
 }
 
 BenchKind bench_kind(const std::string& name) {

@@ -50,6 +50,10 @@ namespace kolsky::cli {
 /// The same in a line for people; empty where there are none.
 [[nodiscard]] std::string strained_text(const Model& model);
 
+/// Numbers that a fit moved to the end of what they may be.
+[[nodiscard]] JsonValue describe_bounds(const Model& model);
+[[nodiscard]] std::string bounds_text(const Model& model);
+
 [[nodiscard]] BenchKind bench_kind(const std::string& name);
 
 }  // namespace kolsky::cli

@@ -1,5 +1,7 @@
 #include "processing/criticism/fitting/branch_order.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -78,6 +80,22 @@ OwnBranch own_branch(const Model& model, const std::string& further) {
   }
   const ModelValue& E2 = own->values[1];
   return {own->values[2].value / E2.value, E2.sd < E2.value};
+}
+
+std::optional<std::string> either_branch_text(const Model& model, const std::string& further) {
+  constexpr double kMuch = 1.0 / 3.0;
+  const EffectUse* use = model.find(further);
+  const auto pair = std::find_if(kPairs.begin(), kPairs.end(),
+                                 [&](const Pair& one) { return one.further == further; });
+  const EffectUse* own = pair != kPairs.end() ? model.find(pair->base) : nullptr;
+  if (use == nullptr || own == nullptr || use->values[0].value * own->values[1].value < kMuch) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{}: two branches have no order; the one that yields less is called further, and it may as "
+      "well be the material's own: D = 1/E2 = {:.4g} 1/Pa and tau = eta2/E2 = {:.4g} s are the "
+      "other",
+      further, 1.0 / own->values[1].value, own->values[2].value / own->values[1].value);
 }
 
 }  // namespace kolsky

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,10 @@ struct OwnBranch {
 
 /// @param further  id of an effect that may be a further relaxation
 [[nodiscard]] OwnBranch own_branch(const Model& model, const std::string& further);
+
+/// Where a further relaxation yields more than a third of what the material's own branch does:
+/// which of them is called which is a convention, in a sentence. Else nothing.
+[[nodiscard]] std::optional<std::string> either_branch_text(const Model& model,
+                                                            const std::string& further);
 
 }  // namespace kolsky

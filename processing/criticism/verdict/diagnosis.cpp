@@ -1,4 +1,6 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
+#include "processing/criticism/fitting/branch_order.hpp"
+#include "processing/criticism/verdict/at_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -512,6 +514,7 @@ class Diagnostician {
         set_strength(current, result.effect, study_.residuals().per_shot(), result);
         result.sd = std::hypot(result.sd, variants_differ_[result.effect]);
       });
+      note_strengths(current);
       if (blames_bar_of_two_gauges(diagnosis_, study_.campaign())) {
         diagnosis_.notes.push_back(two_gauges_text());
       }
@@ -533,6 +536,20 @@ class Diagnostician {
     if (study_.campaign().shots.size() < 2) {
       diagnosis_.notes.emplace_back(
           "one shot: held out were parts of its record, not shots; repeat the shot to certify");
+    }
+  }
+
+  /// What the strengths found do not say by themselves.
+  void note_strengths(const Studied& current) {
+    for (const AtBound& number : numbers_at_bounds(current.model)) {
+      if (std::ranges::count(diagnosis_.effects, number.effect) > 0) {
+        diagnosis_.notes.push_back(in_words(number));
+      }
+    }
+    for (const std::string& id : diagnosis_.effects) {
+      if (const auto text = either_branch_text(current.model, id)) {
+        diagnosis_.notes.push_back(*text);
+      }
     }
   }
 

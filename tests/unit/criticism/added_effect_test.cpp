@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/study.hpp"
+#include "processing/criticism/verdict/at_bounds.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -115,6 +117,38 @@ TEST(Added, AGapToAModelWhoseSpecimenRanAwayWithoutIt) {
     EXPECT_LT(std::abs(gap_m.value - 40e-6), 3.5 * gap_m.sd) << seed;
     EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1) << seed;
   }
+}
+
+TEST(Added, ANumberAtItsBoundIsSaid) {
+  Model model = paper_model(BenchKind::bar, false);
+  EffectUse relaxation = use_named("second-relaxation");
+  relaxation.values[1].value = relaxation.effect->about().parameters[1].upper;
+  model.effects.push_back(relaxation);
+  const std::vector<AtBound> there = numbers_at_bounds(model);
+  ASSERT_EQ(there.size(), 1U) << "a strength of null is at no bound";
+  EXPECT_EQ(there[0].effect, "second-relaxation");
+  EXPECT_EQ(there[0].parameter, "tau");
+  EXPECT_TRUE(there[0].most);
+  EXPECT_NE(in_words(there[0]).find("is the most that it may be"), std::string::npos);
+  model.effects.back().values[1].value = 3e-4;
+  EXPECT_TRUE(numbers_at_bounds(model).empty());
+}
+
+// The generator's own branch yields a fifth of the hidden one: that becomes the material's.
+TEST(Added, ABranchThatYieldsMoreIsTheMaterialsOwnAndSaidToBe) {
+  const Added added = fitted_with(true, {{"specimen-second-relaxation", "2e-8,tau=5e-3"}});
+  const testing::TrueSpecimen& specimen = added.truth.split->specimen;
+  EXPECT_NEAR(added.value("specimen-second-relaxation", 0).value, 1.0 / specimen.E2_Pa,
+              0.05 / specimen.E2_Pa);
+  const std::string further = "specimen-second-relaxation";
+  EXPECT_FALSE(either_branch_text(added.studied.model, further));
+  Model alike = added.studied.model;
+  for (EffectUse& use : alike.effects) {
+    if (use.id() == further) {
+      use.values[0].value = 0.5 / added.value("three-element-specimen", 1).value;
+    }
+  }
+  EXPECT_TRUE(either_branch_text(alike, further));
 }
 
 TEST(Added, CrosstalkTakesTheNeighbourThatItFits) {
