@@ -24,7 +24,8 @@ std::vector<AtBound> numbers_at_bounds(const Model& fitted) {
       for (const double bound : bounds) {
         const bool null = !parameter.auxiliary() && bound == parameter.null_value;
         if (!null && std::abs(own.value - bound) <= kThere * std::abs(bound)) {
-          list.push_back({use.id(), parameter.name, own.value, parameter.unit, bound == bounds[1]});
+          list.push_back({use.id(), parameter.name, own.value, parameter.unit, bound == bounds[1],
+                          parameter.auxiliary()});
         }
       }
     }

@@ -14,7 +14,8 @@ struct AtBound {
   std::string parameter;
   double value = 0.0;
   std::string unit;
-  bool most = false;  ///< else least
+  bool most = false;       ///< else least
+  bool auxiliary = false;  ///< no strength: a relaxation's time
 };
 
 /// Of a fitted model; a strength of null is no bound to speak of.

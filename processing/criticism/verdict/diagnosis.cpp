@@ -542,7 +542,7 @@ class Diagnostician {
   /// What the strengths found do not say by themselves.
   void note_strengths(const Studied& current) {
     for (const AtBound& number : numbers_at_bounds(current.model)) {
-      if (std::ranges::count(diagnosis_.effects, number.effect) > 0) {
+      if (!number.auxiliary && std::ranges::count(diagnosis_.effects, number.effect) > 0) {
         diagnosis_.notes.push_back(in_words(number));
       }
     }
@@ -571,6 +571,12 @@ class Diagnostician {
         why_unknown(diagnosis_, current, study_.campaign(), remains, options_.log_alpha);
     if (const FiledConflict filed = conflict_with_filed(current); filed.log_p < kSure) {
       reasons.push_back(filed_text(filed));
+    }
+    // An effect's limit is another effect that it only imitates.
+    for (const AtBound& number : numbers_at_bounds(current.model)) {
+      if (number.auxiliary && std::ranges::count(diagnosis_.effects, number.effect) > 0) {
+        reasons.push_back(in_words(number));
+      }
     }
     if (leaves_much_of_one_shot()) {
       reasons.push_back(left_of_one_shot_text(diagnosis_.held_out.after));
