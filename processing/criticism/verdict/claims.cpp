@@ -68,9 +68,11 @@ void settle_claims(Diagnosis& diagnosis,
   for (CandidateResult& result : diagnosis.candidates) {
     if (std::ranges::count(diagnosis.effects, result.effect) > 0) {
       set_strength(result);
+      // First order about null does not see all that some effects do; the refits did, at this size.
+      const double size = std::abs(result.strength);
+      result.detectable = std::min(result.detectable, size);
       if (result.verdict == "named") {
-        // First order does not see what sets some effects apart; the refits did, at this size.
-        result.identifiable = std::min(result.identifiable, std::abs(result.strength));
+        result.identifiable = std::min(result.identifiable, size);
       }
     }
   }

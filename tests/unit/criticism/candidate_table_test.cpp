@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "processing/criticism/search/search.hpp"
+#include "processing/criticism/verdict/claims.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -150,6 +151,26 @@ TEST(CandidateTable, AnEffectsOwnChanceIsUniformWhereNothingIsHidden) {
 
 TEST(CandidateTable, AnEffectsOwnChanceIsSmallWhereItIs) {
   EXPECT_LT(own_p(searched(bar(501), "gauge-factor:g2=0.02"), "gauge-factor:g2"), 1e-6);
+}
+
+// What first order foretold is no more than a foretelling.
+TEST(Claims, AreDetectableAtTheSizeThatTheyWereFoundAt) {
+  for (const bool tied : {false, true}) {
+    Diagnosis diagnosis;
+    diagnosis.effects = {"bending"};
+    if (tied) {
+      diagnosis.tied_with["bending"] = {"crosstalk:g1"};
+    }
+    CandidateResult found;
+    found.effect = "bending";
+    found.strength = -1.0;
+    found.detectable = 2.0;
+    found.identifiable = 3.0;
+    diagnosis.candidates = {found};
+    settle_claims(diagnosis, [](CandidateResult&) {});
+    EXPECT_EQ(diagnosis.candidates[0].detectable, 1.0);
+    EXPECT_EQ(diagnosis.candidates[0].identifiable, tied ? 3.0 : 1.0);
+  }
 }
 
 }  // namespace
