@@ -93,9 +93,13 @@ std::string counters_line(const v1::Status& status, bool colour) {
 }
 
 std::string store_line(const v1::Status& status) {
-  return fmt::format("shots {} stored of {} triggered since the start, {:.1f} GB free",
-                     status.shots_stored(), status.triggers(),
-                     static_cast<double>(status.disk_free_bytes()) / kBytesPerGigabyte);
+  constexpr double kNoRoom_GB = 0.05;
+  const double free_GB = static_cast<double>(status.disk_free_bytes()) / kBytesPerGigabyte;
+  const bool full = free_GB < kNoRoom_GB && status.shots_stored() < status.triggers();
+  return fmt::format(
+      "shots {} stored of {} triggered since the start, {:.1f} GB free{}", status.shots_stored(),
+      status.triggers(), free_GB,
+      full ? ": the disk is full, shots wait in the journal until there is room" : "");
 }
 
 std::string channel_line(const v1::ChannelStatus& channel) {

@@ -1,4 +1,5 @@
 #include "clients/cli/live/live_view.hpp"
+#include "clients/cli/reports/daemon_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -133,6 +134,19 @@ TEST(LiveView, DrawsThePreview) {
   const std::string screen = view.screen({});
   EXPECT_NE(screen.find("2 ms: -100 to 100 microstrain\n"), std::string::npos) << screen;
   EXPECT_NE(screen.find("⣿"), std::string::npos) << screen;
+}
+
+TEST(StoreLine, SaysThatShotsWaitForRoom) {
+  v1::Status status;
+  status.set_triggers(39);
+  status.set_shots_stored(1);
+  status.set_disk_free_bytes(2'000'000);
+  EXPECT_NE(store_line(status).find("the disk is full"), std::string::npos);
+  status.set_shots_stored(39);
+  EXPECT_EQ(store_line(status).find("the disk is full"), std::string::npos) << "none waits";
+  status.set_shots_stored(1);
+  status.set_disk_free_bytes(2'000'000'000);
+  EXPECT_EQ(store_line(status).find("the disk is full"), std::string::npos);
 }
 
 }  // namespace
