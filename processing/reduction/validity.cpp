@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kWindow_s = 10e-6;
 constexpr double kFewestForce = 0.05;  // of the peak
+/// Of the pulse's energy: less is its edges, more the height of what is between them.
+constexpr double kMostLeftOut = 0.1;
 constexpr double kUseful_dB = 10.0;
 constexpr double kBand_Hz = 1e3;  // that power is averaged over, at least
 constexpr std::size_t kBands = 40;
@@ -50,13 +52,12 @@ std::string curve_in_doubt(const Reduction& r) {
       r.separation == Separation::never) {
     return overlap->text;
   }
-  for (const char* const name : {"energy_balance", "band"}) {
-    const Check* check = r.quality.find(name);
-    if (check != nullptr && check->verdict != Verdict::pass) {
-      return check->text;
-    }
+  const Check* energy = r.quality.find("energy_balance");
+  if (energy != nullptr && energy->verdict != Verdict::pass) {
+    return energy->text;
   }
-  return {};
+  const Check* band = r.quality.find("band");
+  return band != nullptr && band->value > kMostLeftOut ? band->text : std::string();
 }
 
 /// A stretch of the loading, in samples.

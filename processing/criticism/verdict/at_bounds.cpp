@@ -16,7 +16,10 @@ std::vector<AtBound> numbers_at_bounds(const Model& fitted) {
     for (std::size_t p = 0; p < use.values.size(); ++p) {
       const ModelValue& own = use.values[p];
       const EffectParameter& parameter = use.effect->about().parameters[p];
-      if (!own.free || use.per_shot || parameter.chosen || parameter.is_switch) {
+      // A free or a fixed end is the least or most that an end may be: of what is no strength,
+      // times alone have no end by nature.
+      const bool endless = !parameter.auxiliary() || parameter.unit == "s";
+      if (!own.free || use.per_shot || parameter.is_switch || !endless) {
         continue;
       }
       const std::array<double, 2> bounds =

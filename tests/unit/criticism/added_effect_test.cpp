@@ -131,7 +131,10 @@ TEST(Added, ANumberAtItsBoundIsSaid) {
   EXPECT_TRUE(there[0].most);
   EXPECT_NE(in_words(there[0]).find("is the most that it may be"), std::string::npos);
   model.effects.back().values[1].value = 3e-4;
-  EXPECT_TRUE(numbers_at_bounds(model).empty());
+  EffectUse free_end = use_named("end-reflection");
+  free_end.values[1].value = free_end.effect->about().parameters[1].upper;
+  model.effects.push_back(free_end);
+  EXPECT_TRUE(numbers_at_bounds(model).empty()) << "an end that is fixed is at no bound";
 }
 
 // The generator's own branch yields a fifth of the hidden one: that becomes the material's.
