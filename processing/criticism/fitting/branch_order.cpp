@@ -92,9 +92,8 @@ std::optional<std::string> either_branch_text(const Model& model, const std::str
     return std::nullopt;
   }
   return fmt::format(
-      "{}: two branches have no order; the one that yields less is called further, and it may as "
-      "well be the material's own: D = 1/E2 = {:.4g} 1/Pa and tau = eta2/E2 = {:.4g} s are the "
-      "other",
+      "{}: which of two branches is called further is a convention, and it may as well be the "
+      "material's own: the other has D = 1/E2 = {:.4g} 1/Pa and tau = eta2/E2 = {:.4g} s",
       further, 1.0 / own->values[1].value, own->values[2].value / own->values[1].value);
 }
 

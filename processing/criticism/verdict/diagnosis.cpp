@@ -1,6 +1,4 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
-#include "processing/criticism/fitting/branch_order.hpp"
-#include "processing/criticism/verdict/at_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "processing/criticism/fitting/astray.hpp"
+#include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
@@ -18,6 +17,7 @@
 #include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_noise.hpp"
+#include "processing/criticism/verdict/at_bounds.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
@@ -539,12 +539,19 @@ class Diagnostician {
     }
   }
 
+  /// Numbers of what is claimed that stand at the end of what they may be.
+  [[nodiscard]] std::vector<AtBound> claimed_at_bounds(const Studied& current) const {
+    std::vector<AtBound> list = numbers_at_bounds(current.model);
+    std::erase_if(list, [&](const AtBound& number) {
+      return std::ranges::count(diagnosis_.effects, number.effect) == 0;
+    });
+    return list;
+  }
+
   /// What the strengths found do not say by themselves.
   void note_strengths(const Studied& current) {
-    for (const AtBound& number : numbers_at_bounds(current.model)) {
-      if (!number.auxiliary && std::ranges::count(diagnosis_.effects, number.effect) > 0) {
-        diagnosis_.notes.push_back(in_words(number));
-      }
+    for (const AtBound& number : claimed_at_bounds(current)) {
+      diagnosis_.notes.push_back(in_words(number));
     }
     for (const std::string& id : diagnosis_.effects) {
       if (const auto text = either_branch_text(current.model, id)) {
@@ -573,8 +580,8 @@ class Diagnostician {
       reasons.push_back(filed_text(filed));
     }
     // An effect's limit is another effect that it only imitates.
-    for (const AtBound& number : numbers_at_bounds(current.model)) {
-      if (number.auxiliary && std::ranges::count(diagnosis_.effects, number.effect) > 0) {
+    for (const AtBound& number : claimed_at_bounds(current)) {
+      if (number.auxiliary) {
         reasons.push_back(in_words(number));
       }
     }

@@ -209,8 +209,7 @@ std::string several_times_text() {
 std::string left_of_one_shot_text(double misfit) {
   return fmt::format(
       "what was found leaves {:.3g} times the noise before the pulse, and of one shot nothing "
-      "tells "
-      "noise from what is missing: repeat the shot",
+      "tells noise from what is missing: repeat the shot",
       misfit);
 }
 
