@@ -342,5 +342,16 @@ TEST(BaselineDrift, OfShotsToEitherSideIsAsStrongAsTheyAre) {
   EXPECT_LT(row->sd, 0.1 * size);
 }
 
+// One shot is enough for what explains it.
+TEST(OneShot, NamesWhatLeavesNoMoreThanNoise) {
+  testing::Campaign truth =
+      testing::draw_campaign({.seed = 862, .shots = 1, .gauges = 4, .noise_strain = 2.5e-6});
+  testing::hide(truth, testing::parse_effect("gauge-position:g3=0.01"));
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_LT(diagnosis.held_out.after, 1.5 * diagnosis.held_out.floor);
+}
+
 }  // namespace
 }  // namespace kolsky
