@@ -209,6 +209,17 @@ struct EditSettings {
   std::optional<std::uint64_t> to;  ///< of a reversion: a step
 };
 
+/// What is kept with a step: a line or a few, as a file's lines are bounded.
+std::string note_of(const EditSettings& settings) {
+  constexpr std::size_t kLongest = 1000;
+  const std::string note = settings.note.value_or("");
+  if (note.size() > kLongest) {
+    throw InputError("--note", "is longer than " + std::to_string(kLongest) + " bytes",
+                     "shorten it, or name the file that says more");
+  }
+  return note;
+}
+
 void require_its_gauge(const EffectUse& use, const ModelFile& file) {
   if (use.gauge.empty() || file.gauges.empty() ||
       std::ranges::find(file.gauges, use.gauge) != file.gauges.end()) {
@@ -222,6 +233,34 @@ void require_its_gauge(const EffectUse& use, const ModelFile& file) {
                        ", or fit the model to captures of the bench that has it");
 }
 
+/// A number of the bench, not what is only bounded by a prior, as a hum's amplitudes are.
+bool is_filed(const EffectUse& use) {
+  const EffectAbout& about = use.effect->about();
+  return !about.base && !about.each_gauge &&
+         std::any_of(use.values.begin(), use.values.end(),
+                     [](const ModelValue& value) { return value.prior_sd > 0.0 && value.free; });
+}
+
+/// Adds an effect, or frees a number that the bench files of what is filed: claimed beside the
+/// records' own word for it, that is what it takes. @return the effect as it stands in the model
+EffectUse put_in(ModelFile& file, EffectUse use, const EditSettings& settings) {
+  EffectUse* held = file.model.find(use.id());
+  if (held == nullptr) {
+    use.per_shot = settings.per_shot;
+    file.model.effects.push_back(use);
+    return use;
+  }
+  if (!is_filed(*held) || settings.per_shot) {
+    throw InputError(settings.model + ": effect " + use.id(), "is in the model already",
+                     "fit it, or remove it first");
+  }
+  for (ModelValue& value : held->values) {
+    value.prior_sd = 0.0;
+  }
+  held->prior_correlation.clear();
+  return *held;
+}
+
 int add(const EditSettings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   EffectUse use = use_named(settings.effect, file.model);
@@ -232,36 +271,26 @@ int add(const EditSettings& settings, Context& context) {
                      "does not belong to a bench of kind " + name_of(file.model.kind),
                      "`kolsky effects` lists what does");
   }
-  if (file.model.find(use.id()) != nullptr) {
-    throw InputError(settings.model + ": effect " + use.id(), "is in the model already",
-                     "fit it, or remove it first");
-  }
   if (settings.per_shot && !use.effect->about().per_shot) {
     throw InputError("effect " + use.id(), "is one for all shots", "leave --per-shot out");
   }
-  use.per_shot = settings.per_shot;
+  const bool freed = file.model.find(use.id()) != nullptr;
   begin_step(file, "add " + use.id());
   file.history.back().added = {use.id()};
-  file.history.back().note = settings.note.value_or("");
-  file.model.effects.push_back(use);
+  file.history.back().note = note_of(settings);
+  use = put_in(file, std::move(use), settings);
   const std::string output = settings.output.value_or(settings.model);
   replace_file(output, format_model(file));
   if (context.json) {
     print(file, output, context);
     return kDone;
   }
-  context.out << output << ": added, to be fitted; " << counted(file.model.effects.size(), "effect")
-              << "\n"
+  context.out << output
+              << (freed ? ": freed of what the bench files, to be fitted; "
+                        : ": added, to be fitted; ")
+              << counted(file.model.effects.size(), "effect") << "\n"
               << effect_text(use);
   return kDone;
-}
-
-/// A number of the bench, not what is only bounded by a prior, as a hum's amplitudes are.
-bool is_filed(const EffectUse& use) {
-  const EffectAbout& about = use.effect->about();
-  return !about.base && !about.each_gauge &&
-         std::any_of(use.values.begin(), use.values.end(),
-                     [](const ModelValue& value) { return value.prior_sd > 0.0 && value.free; });
 }
 
 int remove(const EditSettings& settings, Context& context) {
@@ -284,7 +313,7 @@ int remove(const EditSettings& settings, Context& context) {
                      "add effects beside it; `kolsky model new` begins another model");
   }
   begin_step(file, "remove " + settings.effect);
-  file.history.back().note = settings.note.value_or("");
+  file.history.back().note = note_of(settings);
   std::erase_if(file.model.effects,
                 [&](const EffectUse& own) { return own.id() == settings.effect; });
   const std::string output = settings.output.value_or(settings.model);
@@ -370,7 +399,7 @@ int revert(const EditSettings& settings, Context& context) {
   const std::size_t target = target_of(settings, file);
   const ModelFile before = file.at(target);
   begin_step(file, fmt::format("revert to step {}", target));
-  file.history.back().note = settings.note.value_or("");
+  file.history.back().note = note_of(settings);
   file.model = before.model;
   file.gauges = before.gauges;
   const std::string output = settings.output.value_or(settings.model);

@@ -80,6 +80,36 @@ std::string format_test(const StepTest& test) {
          "\n" + line("tied_with", test.tied_with);
 }
 
+/// @param before  the step's, as TOML has it
+std::string step_text(const ModelStep& step, const std::string& before) {
+  std::string text = "\n[[history]]\naction = " + toml_quoted(step.action) +
+                     "\nwhen = " + toml_quoted(step.when) + "\n";
+  text += line("note", step.note) + line("data_sha256", step.data_sha256) +
+          line("software", step.software) + line("verdict", step.verdict) +
+          line("added", step.added);
+  if (!step.seeds.empty()) {
+    std::string seeds;
+    for (const double seed : step.seeds) {
+      seeds += (seeds.empty() ? "" : ", ") + toml_number(seed);
+    }
+    text += "seeds = [" + seeds + "]\n";
+  }
+  text += "parent = " + toml_quoted(step.parent) + "\nbefore = " + before + "\n";
+  if (step.fit) {
+    text += format_fit(*step.fit);
+  }
+  if (step.held_out) {
+    text += "[history.held_out]\n" + line("before", step.held_out->before) +
+            line("after", step.held_out->after) + line("floor", step.held_out->floor);
+  }
+  for (const StepTest& test : step.tests) {
+    if (finite(test)) {
+      text += format_test(test);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 ModelStep read_step(const TomlTable& table) {
@@ -115,38 +145,14 @@ ModelStep read_step(const TomlTable& table) {
 }
 
 std::string format_step(const ModelStep& step) {
-  std::string text = "\n[[history]]\naction = " + toml_quoted(step.action) +
-                     "\nwhen = " + toml_quoted(step.when) + "\n";
-  text += line("note", step.note) + line("data_sha256", step.data_sha256) +
-          line("software", step.software) + line("verdict", step.verdict) +
-          line("added", step.added);
-  if (!step.seeds.empty()) {
-    std::string seeds;
-    for (const double seed : step.seeds) {
-      seeds += (seeds.empty() ? "" : ", ") + toml_number(seed);
-    }
-    text += "seeds = [" + seeds + "]\n";
-  }
-  text += "parent = " + toml_quoted(step.parent) + "\nbefore = " + toml_quoted(step.before) + "\n";
-  if (step.fit) {
-    text += format_fit(*step.fit);
-  }
-  if (step.held_out) {
-    text += "[history.held_out]\n" + line("before", step.held_out->before) +
-            line("after", step.held_out->after) + line("floor", step.held_out->floor);
-  }
-  for (const StepTest& test : step.tests) {
-    if (finite(test)) {
-      text += format_test(test);
-    }
-  }
-  return text;
+  return step_text(step, toml_lines(step.before));
 }
 
 std::string ledger_digest(const std::vector<ModelStep>& history) {
+  // As files had it before texts went by lines, so that theirs still hold.
   std::string text;
   for (const ModelStep& step : history) {
-    text += format_step(step);
+    text += step_text(step, toml_quoted(step.before));
   }
   return sha256_hex(std::as_bytes(std::span(text)));
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <string_view>
 
 namespace kolsky {
 
@@ -17,8 +18,11 @@ std::string toml_number(double value) {
   return result;
 }
 
-std::string toml_quoted(const std::string& text) {
-  std::string result = "\"";
+namespace {
+
+/// As it stands between quotes, all on one line.
+std::string escaped(std::string_view text) {
+  std::string result;
   for (const char c : text) {
     if (c == '"' || c == '\\') {
       result += '\\';
@@ -31,7 +35,23 @@ std::string toml_quoted(const std::string& text) {
       result += c;
     }
   }
-  return result + "\"";
+  return result;
+}
+
+}  // namespace
+
+std::string toml_quoted(const std::string& text) {
+  return "\"" + escaped(text) + "\"";
+}
+
+std::string toml_lines(const std::string& text) {
+  std::string result = "\"\"\"\n";
+  std::string_view left = text;
+  for (std::size_t end = left.find('\n'); end != std::string_view::npos; end = left.find('\n')) {
+    result += escaped(left.substr(0, end)) + "\n";
+    left.remove_prefix(end + 1);
+  }
+  return result + escaped(left) + "\"\"\"";
 }
 
 }  // namespace kolsky

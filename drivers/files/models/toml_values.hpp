@@ -10,4 +10,7 @@ namespace kolsky {
 /// A text as TOML has it, in quotes.
 [[nodiscard]] std::string toml_quoted(const std::string& text);
 
+/// A text of many lines as TOML has it, each on a line of its own.
+[[nodiscard]] std::string toml_lines(const std::string& text);
+
 }  // namespace kolsky

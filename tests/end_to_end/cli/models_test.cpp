@@ -85,6 +85,28 @@ TEST_F(SimulatedBar, FallsToTheNoiseByTheEffectAddedByHand) {
   EXPECT_EQ(same.out, "the two models are the same\n");
 }
 
+// `diagnose` may claim a number that the bench files: it is in the model already, held by that.
+TEST_F(SimulatedBar, FreesAFiledNumberOfWhatIsFiledWhenItIsAdded) {
+  const std::string model = file("filed.toml");
+  const std::string id = "gauge-position:g2";
+  ASSERT_EQ(kolsky({"model", "add", file("m.toml"), id, "-o", model}).code, 0);
+  EXPECT_TRUE(refused(kolsky({"model", "add", model, id}), {id, "is in the model already"}));
+  std::string text = content(model);
+  const std::string number = "[effects.parameters.delta]\n";
+  ASSERT_NE(text.find(number), std::string::npos);
+  text.insert(text.find(number) + number.size(), "prior_mean = 0.0\nprior_sd = 5e-4\n");
+  std::ofstream(model) << text;
+  EXPECT_TRUE(refused(kolsky({"model", "add", model, id, "--note", std::string(1001, 'x')}),
+                      {"--note", "1000"}));
+  const scene::Answer freed = kolsky({"model", "add", model, id});
+  ASSERT_EQ(freed.code, 0) << freed.err;
+  EXPECT_NE(freed.out.find("freed of what the bench files"), std::string::npos) << freed.out;
+  const std::string after = content(model);
+  const std::string now = after.substr(0, after.find("[[history]]"));
+  EXPECT_EQ(now.find("prior_sd"), std::string::npos) << now;
+  EXPECT_NE(now.find(id), std::string::npos);
+}
+
 TEST_F(SimulatedBar, GoesBackStepByStepAndToAnyStep) {
   const std::string model = file("walk.toml");
   std::filesystem::copy_file(file("m.toml"), model);

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "drivers/files/models/model_file.hpp"
+#include "drivers/files/models/toml_values.hpp"
+#include "drivers/files/settings/toml_document.hpp"
 #include "processing/base/error.hpp"
 #include "processing/models/physics.hpp"
 #include "processing/models/transfers.hpp"
@@ -202,6 +204,47 @@ TEST(ModelFile, ReadsBackTheSameBitsAndKeepsItsHistory) {
   const ModelFile before = parse_model(again.history.front().before, "before");
   EXPECT_EQ(before.model.find("gauge-position:g2"), nullptr);
   EXPECT_NE(before.model.find("three-element-bar"), nullptr);
+}
+
+/// The paper's model beside as many filed numbers as a bench of so many gauges has.
+ModelFile file_of_gauges(int gauges) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  for (int g = 1; g <= gauges; ++g) {
+    for (const char* effect : {"gauge-position:g", "gauge-factor:g", "channel-delay:g"}) {
+      file.model.effects.push_back(use_named(effect + std::to_string(g)));
+    }
+  }
+  return file;
+}
+
+TEST(ModelFile, ReadsBackStepsOfModelsOfAnyLength) {
+  ModelFile file = file_of_gauges(16);
+  begin_step(file, "add temperature", "2026-01-02T03:04:05Z");
+  ASSERT_GT(file.history.back().before.size(), 4096U);
+  const std::string text = format_model(file);
+  const ModelFile again = parse_model(text, "m.toml");
+  EXPECT_EQ(again.history.front().before, file.history.front().before);
+  EXPECT_EQ(format_model(again), text);
+}
+
+TEST(ModelFile, ReadsStepsThatWereWrittenOnOneLine) {
+  ModelFile file = file_of_gauges(1);
+  begin_step(file, "add temperature", "2026-01-02T03:04:05Z");
+  std::string text = format_model(file);
+  const std::string now = toml_lines(file.history.back().before);
+  ASSERT_NE(text.find(now), std::string::npos);
+  text.replace(text.find(now), now.size(), toml_quoted(file.history.back().before));
+  EXPECT_EQ(parse_model(text, "m.toml").history.front().before, file.history.front().before);
+}
+
+TEST(ModelFile, QuotesTextOfManyLinesSoThatItReadsBackTheSame) {
+  for (const std::string text : {"", "\n", "\n\n", "one", "one\n", "\none\ntwo", "a \"b\" \\c\\\n",
+                                 "\"\"\"\n\"", "tab\there\r\n", "ends in \\"}) {
+    const TomlNode read = parse_toml("text = " + toml_lines(text) + "\n", "t.toml");
+    ASSERT_EQ(read.entries.size(), 1U);
+    EXPECT_EQ(read.entries.front().node.text, text) << toml_lines(text);
+  }
 }
 
 TEST(ModelFile, KeepsTheWholeLedgerOfAStep) {
