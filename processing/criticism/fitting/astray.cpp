@@ -40,6 +40,12 @@ std::optional<Model> with_unfitted_moduli(const Model& model) {
       use = null_use(*use.effect, use.gauge);
       any = true;
     }
+    for (ModelValue& value : use.values) {
+      if (value.free && value.prior_sd > 0.0 && value.value != value.prior_mean) {
+        value.value = value.prior_mean;
+        any = true;
+      }
+    }
   }
   return any ? std::optional(std::move(afresh)) : std::nullopt;
 }

@@ -17,8 +17,9 @@ inline constexpr double kFarOff = 3.0;
 /// A model whose materials begin where nobody has fitted them: all of a material's moduli that an
 /// earlier fit found go back to the library's. A fit that lacked an effect may have led them to
 /// where what is added since finds no way back (a specimen's E1 a thousandfold, for want of lateral
-/// inertia). What is held, filed or written by hand stays.
-/// @return nothing where no material was fitted before
+/// inertia). So it may have strained what is filed, which goes back to that (a gauge's factor by
+/// seventy of its deviations, for want of a gap). What is held or written by hand stays.
+/// @return nothing where nothing was fitted before
 [[nodiscard]] std::optional<Model> with_unfitted_moduli(const Model& model);
 
 }  // namespace kolsky

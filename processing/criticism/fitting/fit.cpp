@@ -13,7 +13,8 @@ namespace {
 constexpr int kMostIterations = 25;
 /// Steps that gain less than this share of what is promised, and less than this of chi2, lead on
 /// along something that no number describes any better; so many of them on end are enough to see
-/// that.
+/// that. All such gains are over what is left per residual where that is more than noise, as they
+/// are weighed in the end.
 constexpr double kIdle = 0.02;
 constexpr double kIdleGain = 3.0;
 constexpr int kMostIdle = 6;
@@ -101,9 +102,11 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
       }
     }
     const double promised = steps.promised();
+    const double misfit = std::max(1.0, steps.chi2_per_residual());
+    const double settled = kSettled * misfit;
     if (chord != nullptr && !fresh) {
       // The borrowed derivatives serve as long as what they promise comes true.
-      if (better && gain < kSettled) {
+      if (better && gain < settled) {
         converged = true;
         break;
       }
@@ -112,13 +115,13 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
     }
     // A short step gains little wherever it is, so that where a full one would gain more the next,
     // longer one decides.
-    const bool at_rest = gain < kSettled && (damping == 0.0 || promised < kSettled || short_before);
-    short_before = gain < kSettled;
+    const bool at_rest = gain < settled && (damping == 0.0 || promised < settled || short_before);
+    short_before = gain < settled;
     if (!better || at_rest) {
       converged = better || damping > 1e3;
       break;
     }
-    idle = gain < std::min(kIdle * promised, kIdleGain) ? idle + 1 : 0;
+    idle = gain < std::min(kIdle * promised, kIdleGain * misfit) ? idle + 1 : 0;
     if (idle == kMostIdle) {
       break;
     }

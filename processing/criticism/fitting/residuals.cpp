@@ -652,6 +652,17 @@ Eigen::VectorXd WhiteResiduals::evaluate_in_noise_of(const Composition& known,
   return out;
 }
 
+Eigen::VectorXd WhiteResiduals::evaluate_shot_in_noise_of(const Composition& known,
+                                                          const std::vector<double>& known_theta,
+                                                          const Composition& composition,
+                                                          const std::vector<double>& theta,
+                                                          std::size_t shot, std::size_t worker) {
+  know_noise(*work_[worker], known, Effects(known, known_theta, 0).on_waves);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(per_shot()));
+  whiten_shots(composition, theta, shot, shot + 1, worker, out.data());
+  return out;
+}
+
 void WhiteResiduals::evaluate_shots(const Composition& composition,
                                     const std::vector<double>& theta, std::size_t first,
                                     std::size_t end, std::size_t worker, double* next) {

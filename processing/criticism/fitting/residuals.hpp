@@ -103,6 +103,11 @@ class WhiteResiduals : public ShotResiduals {
                                                      const Composition& composition,
                                                      const std::vector<double>& theta,
                                                      std::size_t worker);
+  [[nodiscard]] Eigen::VectorXd evaluate_shot_in_noise_of(const Composition& known,
+                                                          const std::vector<double>& known_theta,
+                                                          const Composition& composition,
+                                                          const std::vector<double>& theta,
+                                                          std::size_t shot, std::size_t worker);
   /// Whitened residuals of one shot with other records, as far as a linear specimen carries them
   /// and nothing is added to them. @param records  by gauge, as long as the shots', at their rate
   [[nodiscard]] Eigen::VectorXd whiten_records(const Composition& composition,

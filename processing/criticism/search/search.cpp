@@ -9,6 +9,7 @@
 
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
+#include "processing/criticism/fitting/in_noise_of.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/beside.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
@@ -61,6 +62,11 @@ bool is_switch(const Candidate& candidate) {
                      [](const EffectParameter& parameter) { return parameter.is_switch; });
 }
 
+/// Where it is small it does nothing.
+bool is_sudden(const Candidate& candidate) {
+  return candidate.use.effect->about().parameters.front().sudden;
+}
+
 /// What shots have of their own in the records, alike at all gauges or at one: as many numbers at
 /// every gauge would be judged by their products.
 bool may_be_slow_noise(const Candidate& candidate) {
@@ -72,6 +78,12 @@ bool may_be_slow_noise(const Candidate& candidate) {
 bool has_shares(const Candidate& candidate) {
   const EffectUse& use = candidate.use;
   return use.per_shot && use.effect->about().quadrature && !use.alike;
+}
+
+void better_of(ModelFit& fit, ModelFit other) {
+  if (other.objective() < fit.objective()) {
+    fit = std::move(other);
+  }
 }
 
 bool of_material(const Candidate& candidate) {
@@ -101,6 +113,10 @@ Search::Search(Study& study, const Studied& base, const Model& start, const Safe
   if (safeguards_.search_count) {
     trials_ = independent_trials(base_, candidates_, directions_);
   }
+}
+
+bool Search::far_off() const {
+  return base_.misfit.chi2_reduced > kFarOff;
 }
 
 double Search::with_search(double log_p) const {
@@ -159,8 +175,7 @@ void Search::weigh_beside_slow_noise(std::vector<Refit>& list) const {
     return with_search(refit.log_p) <= kOrdinary &&
            !is_addition(*candidates_[refit.candidate].use.effect);
   };
-  if (!safeguards_.slow_noise || base_.misfit.chi2_reduced > kFarOff ||
-      std::ranges::none_of(list, weighed)) {
+  if (!safeguards_.slow_noise || far_off() || std::ranges::none_of(list, weighed)) {
     return;
   }
   const std::size_t per_shot = study_.residuals().per_shot();
@@ -226,7 +241,7 @@ SlowChance Search::slow_chance(std::size_t index) {
   const Direction& direction = directions_[index];
   // Far from the records, what repeats is most of what slow noise would be.
   if (!(may_be_slow_noise(candidate) || has_shares(candidate)) || direction.freedom < 1.0 ||
-      base_.misfit.chi2_reduced > kFarOff) {
+      far_off()) {
     return {};
   }
   if (const auto known = slow_chances_.find(index); known != slow_chances_.end()) {
@@ -423,9 +438,8 @@ std::vector<std::size_t> Search::worth_refitting() {
   for (const auto& [evidence, i] : ranked) {
     const double margin = std::max(25.0, 0.6 * ranked.front().first);
     // Far from the records, first order says little of what fits best.
-    const bool far = base_.misfit.chi2_reduced > kFarOff;
     const bool near = evidence > ranked.front().first - margin ||
-                      ((far || chosen.size() < kAlwaysRefits) && evidence > kWorthRefitting);
+                      ((far_off() || chosen.size() < kAlwaysRefits) && evidence > kWorthRefitting);
     if (chosen.size() < kMostRefits && near) {
       chosen.push_back(i);
     }
@@ -475,9 +489,10 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       }
     }
   }
-  // What is there or not, first order takes a share of: far from the records that says nothing.
+  // What is there or not, first order takes a share of, and of what begins suddenly it tells no
+  // variant from another: far from the records that says nothing.
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (base_.misfit.chi2_reduced > kFarOff && is_switch(candidates_[i]) && !is_chosen(i)) {
+    if (far_off() && (is_switch(candidates_[i]) || is_sudden(candidates_[i])) && !is_chosen(i)) {
       chosen.push_back(i);
     }
   }
@@ -535,12 +550,13 @@ std::vector<double> Search::begin_near(const Candidate& candidate, const Directi
   return best;
 }
 
-std::vector<double> Search::begin_large(const Candidate& candidate, const Composition& composition,
-                                        std::size_t worker) const {
-  std::vector<double> best;
-  double least = HUGE_VAL;
-  for (const double typicals : {3.0, 6.0, 12.0, 24.0}) {
-    std::vector<double> start = carry(base_.composition, base_.fit.theta, composition);
+/// Where fits of a large strength begin. @param from  what the model's other numbers begin with
+std::vector<std::vector<double>> Search::large_sizes(const Candidate& candidate,
+                                                     const Composition& composition,
+                                                     const std::vector<double>& from) {
+  std::vector<std::vector<double>> starts;
+  for (const double typicals : {1.5, 3.0, 6.0, 12.0, 24.0}) {
+    std::vector<double> start = from;
     for (std::size_t i = 0; i < start.size(); ++i) {
       const FreeNumber& number = composition.numbers()[i];
       const EffectUse& use = composition.uses()[number.use];
@@ -551,6 +567,17 @@ std::vector<double> Search::begin_large(const Candidate& candidate, const Compos
             number.theta_of(parameter.null_value + side * typicals * parameter.typical));
       }
     }
+    starts.push_back(std::move(start));
+  }
+  return starts;
+}
+
+/// The one of them that fits best as it is.
+std::vector<double> Search::begin_large(const Candidate& candidate, const Composition& composition,
+                                        const std::vector<double>& from, std::size_t worker) const {
+  std::vector<double> best;
+  double least = HUGE_VAL;
+  for (std::vector<double>& start : large_sizes(candidate, composition, from)) {
     const double chi2 = study_.residuals().evaluate(composition, start, worker).squaredNorm();
     if (chi2 < least) {
       least = chi2;
@@ -599,39 +626,66 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   const Model model = with(base_.model, candidate, true);
   Composition composition(model, study_.campaign());
   const auto chord = chord_of(candidate, direction, composition);
+  const auto fit_from = [&](std::vector<double> theta, const Eigen::MatrixXd* known = nullptr) {
+    return begun_from(composition, std::move(theta), known, worker);
+  };
   ModelFit fit =
-      fit_model(composition, study_.residuals(), serial_on(worker),
-                begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
-  if (begun_) {
+      fit_from(begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
+  if (begun_ && !(far_off() && is_sudden(candidate))) {
     // Begin again from where the model's numbers started.
     const Composition again(with(*begun_, candidate, true), study_.campaign());
-    ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
-                               carry(again, again.start(), composition));
-    if (other.objective() < fit.objective()) {
-      fit = std::move(other);
-    }
+    better_of(fit, fit_from(carry(again, again.start(), composition)));
   }
-  const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
-  if (candidate.one_sided &&
-      (evidence_of(direction, candidate) < kWorthRefitting || (even && begun_))) {
-    // At null its first order is what others take up, or a large one bends away from it: only a
-    // finite size shows what it does.
-    ModelFit other = fit_model(composition, study_.residuals(), serial_on(worker),
-                               begin_large(candidate, composition, worker));
-    if (other.objective() < fit.objective()) {
-      fit = std::move(other);
-    }
-  }
+  from_large_sizes(index, composition, worker, fit);
   constexpr double kFallsShort = 0.5;
   if (base_.fit.objective() - fit.objective() < kFallsShort * direction.gain) {
     from_other_starts(index, composition, worker, fit);
   }
   if (put_branches_in_order(composition, fit.theta)) {
-    fit = fit_model(composition, study_.residuals(), serial_on(worker), fit.theta);
+    fit = fit_from(fit.theta);
   }
   Refit out = described(index, model, std::move(composition), std::move(fit), worker);
-  out.rough = chord.has_value();
+  out.rough = chord || far_off();
   return out;
+}
+
+/// At null its first order is what others take up, or a large one bends away from it: only a finite
+/// size shows what it does. @param fit  takes what is better
+void Search::from_large_sizes(std::size_t index, const Composition& composition, std::size_t worker,
+                              ModelFit& fit) {
+  const Candidate& candidate = candidates_[index];
+  const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
+  const bool bends = (even && begun_) || (is_sudden(candidate) && far_off());
+  if (!candidate.one_sided ||
+      !(bends || evidence_of(directions_[index], candidate) < kWorthRefitting)) {
+    return;
+  }
+  const auto begin = [&](std::vector<double> theta) {
+    better_of(fit, begun_from(composition, std::move(theta), nullptr, worker));
+  };
+  if (!far_off() || !is_sudden(candidate)) {
+    begin(begin_large(candidate, composition,
+                      carry(base_.composition, base_.fit.theta, composition), worker));
+    return;
+  }
+  // Until the model's other numbers are fitted, none of its sizes says which is the right one.
+  const Composition again(with(*begun_, candidate, true), study_.campaign());
+  for (std::vector<double>& start :
+       large_sizes(candidate, composition, carry(again, again.start(), composition))) {
+    begin(std::move(start));
+  }
+}
+
+/// Where the model is far off, many beginnings lead nowhere: by secants, and in the noise that the
+/// model had, they show that soonest.
+ModelFit Search::begun_from(const Composition& composition, std::vector<double> theta,
+                            const Eigen::MatrixXd* chord, std::size_t worker) const {
+  if (!far_off()) {
+    return fit_model(composition, study_.residuals(), serial_on(worker), std::move(theta), chord);
+  }
+  InNoiseOf residuals(study_.residuals(), base_);
+  return fit_by_secants(composition, residuals, serial_on(worker), std::move(theta), nullptr,
+                        Settle::roughly);
 }
 
 /// A fit that gains much less than first order has led elsewhere: it is begun where the effect's
@@ -656,12 +710,11 @@ void Search::from_other_starts(std::size_t index, const Composition& composition
     if (other.numbers().size() != composition.numbers().size()) {
       continue;
     }
-    ModelFit found = fit_model(
-        composition, study_.residuals(), serial_on(worker),
-        carry(other, begin_near(candidates_[i], directions_[i], other, worker), composition));
-    if (found.objective() < fit.objective()) {
-      fit = std::move(found);
-    }
+    ModelFit found = begun_from(
+        composition,
+        carry(other, begin_near(candidates_[i], directions_[i], other, worker), composition),
+        nullptr, worker);
+    better_of(fit, std::move(found));
   }
 }
 

@@ -90,6 +90,11 @@ class Search {
   [[nodiscard]] const std::map<std::string, Dismissed>& dismissed() const { return dismissed_; }
 
  private:
+  [[nodiscard]] bool far_off() const;
+  [[nodiscard]] ModelFit begun_from(const Composition& composition, std::vector<double> theta,
+                                    const Eigen::MatrixXd* chord, std::size_t worker) const;
+  void from_large_sizes(std::size_t index, const Composition& composition, std::size_t worker,
+                        ModelFit& fit);
   void from_other_starts(std::size_t index, const Composition& composition, std::size_t worker,
                          ModelFit& fit);
   [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
@@ -102,8 +107,11 @@ class Search {
                                                const Direction& direction,
                                                const Composition& composition,
                                                std::size_t worker) const;
+  [[nodiscard]] static std::vector<std::vector<double>> large_sizes(
+      const Candidate& candidate, const Composition& composition, const std::vector<double>& from);
   [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
                                                 const Composition& composition,
+                                                const std::vector<double>& from,
                                                 std::size_t worker) const;
   [[nodiscard]] std::optional<Eigen::MatrixXd> chord_of(const Candidate& candidate,
                                                         const Direction& direction,

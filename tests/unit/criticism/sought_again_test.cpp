@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "processing/criticism/fitting/astray.hpp"
+#include "processing/criticism/fitting/in_noise_of.hpp"
 #include "processing/criticism/search/search.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
@@ -98,6 +101,48 @@ TEST(GaugeFactors, OfTwoGaugesAreSoughtBesideEachOtherBeforeAThird) {
   for (const char* id : {"gauge-factor:g3", "gauge-factor:g4"}) {
     EXPECT_NE(std::ranges::find(said, id), said.end()) << ::testing::PrintToString(said);
   }
+}
+
+// A fit that lacked a gap strained gauge factors by seventy of their deviations, from where no gap
+// of any size found back.
+TEST(FitsAfresh, BeginWithWhatIsFiledAndHoldWhatIsHeld) {
+  Model model = paper_model(BenchKind::shpb, false);
+  EffectUse strained = use_named("gauge-factor:g1");
+  strained.values[0] = {0.35, 0.01, true, 0.005, 0.002};
+  model.effects.push_back(strained);
+  EffectUse held = use_named("gauge-factor:g2");
+  held.values[0] = {0.35, 0.01, false, 0.005, 0.002};
+  model.effects.push_back(held);
+  EffectUse free = use_named("gauge-position:g1");
+  free.values[0] = {0.004, 0.001, true, 0.0, 0.0};
+  model.effects.push_back(free);
+  const std::optional<Model> afresh = with_unfitted_moduli(model);
+  ASSERT_TRUE(afresh.has_value());
+  EXPECT_EQ(afresh->find("gauge-factor:g1")->values[0].value, 0.002);
+  EXPECT_EQ(afresh->find("gauge-factor:g2")->values[0].value, 0.35);
+  EXPECT_EQ(afresh->find("gauge-position:g1")->values[0].value, 0.004);
+  EXPECT_FALSE(with_unfitted_moduli(*afresh).has_value()) << "nothing was left to begin afresh";
+}
+
+// What noise the waves carry is another where they travel otherwise; where they do not, it is not.
+TEST(ResidualsInANoiseThatIsHeld, AreTheSameWhereItIsTheirOwn) {
+  const testing::Campaign truth = testing::draw_campaign(
+      {.seed = 27, .shots = 2, .gauges = 3, .samples = 1200, .rate_Hz = 1e6});
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Studied base = study.fit(paper_model(BenchKind::bar, false));
+  WhiteResiduals& own = study.residuals();
+  InNoiseOf held(own, base);
+  EXPECT_EQ(held.evaluate(base.composition, base.fit.theta, 0),
+            own.evaluate(base.composition, base.fit.theta, 0));
+  std::vector<double> elsewhere = base.fit.theta;
+  elsewhere.front() += 3.0;
+  const Eigen::VectorXd there = held.evaluate(base.composition, elsewhere, 0);
+  EXPECT_EQ(there, own.evaluate_in_noise_of(base.composition, base.fit.theta, base.composition,
+                                            elsewhere, 0));
+  EXPECT_NE(there, own.evaluate(base.composition, elsewhere, 0));
+  EXPECT_EQ(held.evaluate_shot(base.composition, elsewhere, 1, 0),
+            there.tail(static_cast<Eigen::Index>(held.per_shot())));
 }
 
 }  // namespace
