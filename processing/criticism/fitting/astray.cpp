@@ -30,7 +30,7 @@ bool astray(const Model& fitted, const Misfit& misfit) {
          });
 }
 
-std::optional<Model> with_unfitted_moduli(const Model& model) {
+std::optional<Model> begun_afresh(const Model& model) {
   Model afresh = model;
   bool any = false;
   for (EffectUse& use : afresh.effects) {

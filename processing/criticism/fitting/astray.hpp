@@ -14,12 +14,12 @@ inline constexpr double kFarOff = 3.0;
 /// modulus that nothing holds any longer.
 [[nodiscard]] bool astray(const Model& fitted, const Misfit& misfit);
 
-/// A model whose materials begin where nobody has fitted them: all of a material's moduli that an
+/// A model that begins where nobody has fitted it: all of a material's moduli that an
 /// earlier fit found go back to the library's. A fit that lacked an effect may have led them to
 /// where what is added since finds no way back (a specimen's E1 a thousandfold, for want of lateral
 /// inertia). So it may have strained what is filed, which goes back to that (a gauge's factor by
 /// seventy of its deviations, for want of a gap). What is held or written by hand stays.
 /// @return nothing where nothing was fitted before
-[[nodiscard]] std::optional<Model> with_unfitted_moduli(const Model& model);
+[[nodiscard]] std::optional<Model> begun_afresh(const Model& model);
 
 }  // namespace kolsky

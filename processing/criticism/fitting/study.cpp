@@ -63,7 +63,7 @@ Study::Attempt Study::best_attempt(const Model& model) {
   Attempt first = attempt(model);
   const Misfit misfit =
       misfit_of(residuals_, first.fit.residual, first.fit.degrees_of_freedom(first.composition));
-  const std::optional<Model> unfitted = with_unfitted_moduli(model);
+  const std::optional<Model> unfitted = begun_afresh(model);
   if (!unfitted || !astray(fitted(first.begun, first.composition, first.fit), misfit)) {
     return first;
   }

@@ -96,7 +96,7 @@ class Diagnostician {
 
   Diagnosis run(const Model& model) {
     options_.progress("fitting the model");
-    start_ = with_unfitted_moduli(model).value_or(model);
+    start_ = begun_afresh(model).value_or(model);
     Studied first =
         study_.fit(model, options_.safeguards.fitted_noise ? LearnNoise::yes : LearnNoise::no);
     diagnosis_.before = first.misfit;
