@@ -534,9 +534,23 @@ class Diagnostician {
       }
     }
     if (study_.campaign().shots.size() < 2) {
-      diagnosis_.notes.emplace_back(
-          "one shot: held out were parts of its record, not shots; repeat the shot to certify");
+      note_one_shot();
     }
+  }
+
+  void note_one_shot() {
+    diagnosis_.notes.emplace_back(
+        "one shot: held out were parts of its record, not shots; repeat the shot to certify");
+    const HeldOut& misfit = diagnosis_.held_out;
+    if (diagnosis_.verdict == DiagnosisVerdict::adequate && beyond_quiet(misfit)) {
+      diagnosis_.notes.push_back(left_of_one_shot_text("the model", misfit.after));
+    }
+  }
+
+  /// More than noise may be beyond what the quiet part shows of it.
+  [[nodiscard]] static bool beyond_quiet(const HeldOut& misfit) {
+    constexpr double kOfQuiet = 1.5;
+    return misfit.after > kOfQuiet * misfit.floor;
   }
 
   /// Numbers of what is claimed that stand at the end of what they may be.
@@ -586,7 +600,7 @@ class Diagnostician {
       }
     }
     if (leaves_much_of_one_shot()) {
-      reasons.push_back(left_of_one_shot_text(diagnosis_.held_out.after));
+      reasons.push_back(left_of_one_shot_text("what was found", diagnosis_.held_out.after));
     }
     if (!reasons.empty() || !diagnosis_.effects.empty()) {
       judge_filed_bars(before, current, noise, reasons);
@@ -600,10 +614,9 @@ class Diagnostician {
   /// No other shot tells what a claim leaves from noise. Of one shot, then, that must be no more
   /// than noise may be beyond what the quiet part shows of it.
   [[nodiscard]] bool leaves_much_of_one_shot() const {
-    constexpr double kOfQuiet = 1.5;
     const HeldOut& misfit = diagnosis_.held_out;
     return study_.campaign().shots.size() < 2 && !diagnosis_.effects.empty() &&
-           misfit.after > kOfQuiet * misfit.floor &&
+           beyond_quiet(misfit) &&
            misfit.after - misfit.floor > allowed_rest() * (misfit.before - misfit.after);
   }
 

@@ -206,11 +206,11 @@ std::string several_times_text() {
          "the library lacks; measure the bar along its length before these are added";
 }
 
-std::string left_of_one_shot_text(double misfit) {
+std::string left_of_one_shot_text(const std::string& what, double misfit) {
   return fmt::format(
-      "what was found leaves {:.3g} times the noise before the pulse, and of one shot nothing "
-      "tells noise from what is missing: repeat the shot",
-      misfit);
+      "{} leaves {:.3g} times the noise before the pulse, and of one shot nothing tells noise from "
+      "what is missing: repeat the shot",
+      what, misfit);
 }
 
 std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign) {

@@ -35,8 +35,9 @@ inline constexpr std::size_t kMostBelieved = 2;
 
 /// What gauges that are loud show, in a sentence. @param loud  the least likely first
 [[nodiscard]] std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign);
+/// @param what    leaves it
 /// @param misfit  that is left, in units of the noise before the pulse
-[[nodiscard]] std::string left_of_one_shot_text(double misfit);
+[[nodiscard]] std::string left_of_one_shot_text(const std::string& what, double misfit);
 /// At which gauge most is; nothing where it is not one gauge's.
 [[nodiscard]] std::optional<std::string> where_text(const std::vector<LoudPulses>& loud,
                                                     const Campaign& campaign);

@@ -353,5 +353,21 @@ TEST(OneShot, NamesWhatLeavesNoMoreThanNoise) {
   EXPECT_LT(diagnosis.held_out.after, 1.5 * diagnosis.held_out.floor);
 }
 
+// Coarse steps leave more than the quiet shows, and so might what is missing: that is said.
+TEST(OneShot, SaysWhereItLeavesMoreThanItsQuiet) {
+  const auto said_in_bits = [](int bits) {
+    testing::CampaignWishes wishes{.seed = 18, .shots = 1, .gauges = 3};
+    wishes.bits = bits;
+    return diagnosed(testing::shots_of(testing::draw_campaign(wishes)),
+                     paper_model(BenchKind::bar, false));
+  };
+  const std::string note = "of one shot nothing tells noise from what is missing";
+  for (const int bits : {8, 16}) {
+    const Diagnosis diagnosis = said_in_bits(bits);
+    EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << bits;
+    EXPECT_EQ(says(diagnosis, note), bits == 8) << bits << ": " << diagnosis.held_out.after;
+  }
+}
+
 }  // namespace
 }  // namespace kolsky
