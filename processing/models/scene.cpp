@@ -45,6 +45,12 @@ double SpecimenScene::area_m2() const {
   return std::numbers::pi * diameter_m * diameter_m / 4.0;
 }
 
+double SpecimenScene::share_of_stress(double strain) const {
+  const double h = length_m * (1.0 - strain);
+  const double d = diameter_m / std::sqrt(1.0 - strain);
+  return 1.0 / (1.0 + friction * d / (3.0 * h));
+}
+
 bool SpecimenScene::nonlinear() const {
   return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || lateral_inertia_kg_per_m != 0.0 ||
          !further_strain.empty();

@@ -95,6 +95,9 @@ struct SpecimenScene {
   std::vector<double> further_strain{};
 
   [[nodiscard]] double area_m2() const;
+  /// What the material has of the stress measured, at a strain: 1 / (1 + mu d / 3h), with current
+  /// sizes at constant volume.
+  [[nodiscard]] double share_of_stress(double strain) const;
   /// Whether its answer depends on how hard it is loaded.
   [[nodiscard]] bool nonlinear() const;
 };

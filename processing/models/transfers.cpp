@@ -51,11 +51,14 @@ struct Crossing {
 
   explicit Crossing(const Scene& scene) {
     const SpecimenScene& specimen = *scene.specimen;
+    const double share = specimen.share_of_stress(0.0);
     for (std::size_t k = 0; k < scene.s.size(); ++k) {
       const Complex s = scene.s[k];
-      Complex J = specimen.solid.compliance(s, k);
-      // Lateral inertia's linear part: stress += m strain'' / 8.
-      J /= 1.0 + J * specimen.lateral_inertia_kg_per_m * s * s / 8.0;
+      // Friction's and lateral inertia's linear parts: stress of the material = share of that
+      // measured, less m strain'' / 8.
+      const Complex material = specimen.solid.compliance(s, k);
+      const Complex J =
+          material * share / (1.0 + material * specimen.lateral_inertia_kg_per_m * s * s / 8.0);
       J_per_Pa.push_back(J);
       of.push_back(specimen.length_m * s * std::sqrt(specimen.wave_density_kg_m3 * J));
     }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "processing/criticism/fitting/known_departures.hpp"
 #include "processing/criticism/fitting/specimen_response.hpp"
 #include "processing/criticism/noise/carried_noise.hpp"
 #include "processing/criticism/noise/response_end.hpp"
@@ -33,6 +34,7 @@ struct WhiteResiduals::Workspace {
   CarriedNoise::Memory carried_noise;          ///< through these responses
   std::vector<CarriedBin> bins;                ///< the same
   SpecimenResponse response;
+  KnownDepartures departures;
 
   // Much of a fit moves what is added to records alone: how waves travel then stays as it was in
   // the evaluation before.
@@ -45,7 +47,7 @@ struct WhiteResiduals::Workspace {
   std::vector<Eigen::MatrixXcd> cross;                 ///< P G^H by bin
   double leaked = 0.0;                                 ///< shares of a shot's, over all bins
 
-  Workspace(const JudgedBand& band, double period_s)
+  Workspace(const JudgedBand& band, double period_s, std::size_t shots)
       : whole(band.transformed, period_s, kWrapDamping),
         decimated(band.transformed / band.decimation,
                   period_s * static_cast<double>(band.decimation), kWrapDamping),
@@ -58,7 +60,8 @@ struct WhiteResiduals::Workspace {
         carried(decimated.bins()),
         judged(plain.bins()),
         fine_spectrum(fine.bins()),
-        fine_record(fine.length()) {}
+        fine_record(fine.length()),
+        departures(shots) {}
 };
 
 namespace {
@@ -115,7 +118,7 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
     }
   }
   for (std::size_t w = 0; w < workers; ++w) {
-    work_.push_back(std::make_unique<Workspace>(band_, campaign.period_s));
+    work_.push_back(std::make_unique<Workspace>(band_, campaign.period_s, campaign.shots.size()));
   }
   const Workspace& work = *work_.front();
   for (std::size_t k = 0; k < band_.bins_carried; ++k) {
@@ -439,6 +442,46 @@ void WhiteResiduals::freeze(const Composition& composition, const std::vector<do
     spread_[k].noalias() = 0.5 * work.cross[k].lazyProduct(work.whitener[k].adjoint());
   }
   frozen_ = std::move(white);
+  know_source_noise(work);
+}
+
+/// What frozen residuals show of the noise of the sources that bend specimens. Where they are more
+/// than noise, no more of them counts as that.
+void WhiteResiduals::know_source_noise(Workspace& work) {
+  source_noise_.clear();
+  if (!campaign_.bench.specimen) {
+    return;
+  }
+  const std::vector<double> shares = shares_of_noise();
+  std::vector<double> record(campaign_.shots.front().strain[campaign_.reference].size());
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    put_own_noise(work, n, campaign_.reference, shares);
+    std::ranges::copy(work.fine_record, record.begin() + static_cast<std::ptrdiff_t>(band_.begin));
+    transform_record(work, record, source_noise_.emplace_back());
+  }
+}
+
+/// By bin, what noise makes of the frozen residuals' power around it.
+std::vector<double> WhiteResiduals::shares_of_noise() const {
+  constexpr std::size_t kAround = 8;
+  const std::size_t bins = band_.bins_judged;
+  const std::size_t at_bin = 2 * others_.size();
+  std::vector<double> power(bins + 1, 0.0);  // summed up to each bin
+  for (std::size_t k = 0; k < bins; ++k) {
+    power[k + 1] = power[k];
+    for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+      const auto first = static_cast<Eigen::Index>(n * per_shot() + k * at_bin);
+      power[k + 1] += frozen_.segment(first, static_cast<Eigen::Index>(at_bin)).squaredNorm();
+    }
+  }
+  std::vector<double> shares(bins);
+  for (std::size_t k = 0; k < bins; ++k) {
+    const std::size_t first = k > kAround ? k - kAround : 0;
+    const std::size_t end = std::min(bins, k + kAround + 1);
+    const auto expected = static_cast<double>((end - first) * at_bin * campaign_.shots.size());
+    shares[k] = std::min(1.0, expected / (power[end] - power[first]));
+  }
+  return shares;
 }
 
 bool WhiteResiduals::know_steps() {
@@ -485,11 +528,13 @@ SpecimenHistories WhiteResiduals::specimen_histories(const Composition& composit
   transform_record(work, signal(shot, campaign_.reference), source);
   work.response.solve(scene, ratios_of(scene), campaign_.reference, source, damped_filter_,
                       work.decimated);
-  return {work.response.stress_Pa(), work.response.strain()};
+  return work.response.histories(work.decimated);
 }
 
 /// A gauge's noise over the judged window at the records' rate, as much of it as residuals show.
-void WhiteResiduals::put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const {
+/// @param shares  of them by bin that count; empty: all
+void WhiteResiduals::put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge,
+                                   std::span<const double> shares) const {
   std::fill(work.fine_spectrum.begin(), work.fine_spectrum.end(), 0.0);
   const auto rows = static_cast<Eigen::Index>(others_.size());
   for (std::size_t k = 0; k < band_.bins_judged && frozen_.size() > 0; ++k) {
@@ -500,7 +545,8 @@ void WhiteResiduals::put_own_noise(Workspace& work, std::size_t shot, std::size_
       noise +=
           spread_[k](static_cast<Eigen::Index>(gauge), i) * Complex(frozen_[at], frozen_[at + 1]);
     }
-    work.fine_spectrum[k + 1] = noise * static_cast<double>(band_.decimation);
+    work.fine_spectrum[k + 1] =
+        noise * static_cast<double>(band_.decimation) * (shares.empty() ? 1.0 : shares[k]);
   }
   work.fine.inverse(work.fine_spectrum, work.fine_record);
 }
@@ -589,6 +635,23 @@ Eigen::VectorXd WhiteResiduals::evaluate_shot(const Composition& composition,
   return out;
 }
 
+/// By what the specimen departs from its linear law, in the scene that is known. It departs by
+/// the wave, not by its noise, which the others' residuals have as a linear specimen carries it: a
+/// law that lets less of it through would gain by that.
+const std::vector<Complex>& WhiteResiduals::departure_of(Workspace& work, Spectrum source,
+                                                         std::size_t shot) const {
+  for (std::size_t k = 0; k < source.size() && !source_noise_.empty(); ++k) {
+    source[k] -= source_noise_[shot][k];
+  }
+  if (const Spectrum* known = work.departures.find(shot, work.on_waves, source)) {
+    return *known;
+  }
+  work.response.solve(*work.scene, work.ratios, campaign_.reference, source, damped_filter_,
+                      work.decimated);
+  work.departures.keep(shot, work.on_waves, source, work.response.q());
+  return work.response.q();
+}
+
 /// One shot's residuals by other gauge, along the damped path and filtered.
 void WhiteResiduals::find_residuals(Workspace& work, const Composition& composition,
                                     const std::vector<double>& theta, std::size_t shot) const {
@@ -603,10 +666,10 @@ void WhiteResiduals::find_residuals(Workspace& work, const Composition& composit
     records = &work.records;
   }
   const Spectrum& source = (*records)[reference];
-  const bool nonlinear = scene.specimen && scene.specimen->nonlinear();
-  if (nonlinear) {
-    // Of the reference record, what the specimen's further strain q has sent there goes first.
-    work.response.solve(scene, ratios, reference, source, damped_filter_, work.decimated);
+  // Of the reference record, what the specimen's further strain q has sent there goes first.
+  const Spectrum* q = nullptr;
+  if (scene.specimen && scene.specimen->nonlinear()) {
+    q = &departure_of(work, source, shot);
   }
   work.residuals.resize(others_.size());
   for (std::size_t i = 0; i < others_.size(); ++i) {
@@ -616,12 +679,11 @@ void WhiteResiduals::find_residuals(Workspace& work, const Composition& composit
     for (std::size_t k = 0; k < band_.bins_carried; ++k) {
       damped[k] = ratios.mean_at(k) * (*records)[j][k] - ratios.reading[j][k] * source[k];
     }
-    if (nonlinear) {
-      const Spectrum& q = work.response.q();
+    if (q != nullptr) {
       for (std::size_t k = 0; k < band_.bins_carried; ++k) {
         damped[k] -= (ratios.mean_at(k) * ratios.reading_of_q[j][k] -
                       ratios.reading[j][k] * ratios.reading_of_q[reference][k]) *
-                     damped_filter_[k] * q[k];
+                     damped_filter_[k] * (*q)[k];
       }
     }
   }

@@ -6,6 +6,7 @@
 
 #include "processing/criticism/fitting/composition.hpp"
 #include "processing/criticism/fitting/shot_residuals.hpp"
+#include "processing/criticism/fitting/specimen_response.hpp"
 #include "processing/criticism/noise/gauge_noise.hpp"
 #include "processing/criticism/records/campaign.hpp"
 #include "processing/criticism/records/judged_band.hpp"
@@ -22,12 +23,6 @@ struct PlainResiduals {
   /// alike; then, where that gauge is long, of the others' own, and the filter alone.
   std::vector<std::vector<double>> responses;
   std::size_t before = 0;
-};
-
-/// By step of a specimen's histories (`SpecimenScene::further_strain`).
-struct SpecimenHistories {
-  std::vector<double> stress_Pa;
-  std::vector<double> strain;
 };
 
 /// Whitened residuals of a campaign under compositions of effects.
@@ -180,6 +175,8 @@ class WhiteResiduals : public ShotResiduals {
   /// @return shares of what is foretold there that is leaked, summed over the other gauges
   double put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
                       Eigen::MatrixXcd& whitener) const;
+  const std::vector<Complex>& departure_of(Workspace& work, Spectrum source,
+                                           std::size_t shot) const;
   void find_residuals(Workspace& work, const Composition& composition,
                       const std::vector<double>& theta, std::size_t shot) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
@@ -195,7 +192,10 @@ class WhiteResiduals : public ShotResiduals {
   void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
                      std::size_t shot) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
-  void put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge) const;
+  void put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge,
+                     std::span<const double> shares = {}) const;
+  void know_source_noise(Workspace& work);
+  [[nodiscard]] std::vector<double> shares_of_noise() const;
   void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
   void forget_whitener();
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
@@ -217,6 +217,7 @@ class WhiteResiduals : public ShotResiduals {
   ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
   std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
   Eigen::VectorXd frozen_;                ///< whitened residuals as frozen; none before
+  std::vector<Spectrum> source_noise_;    ///< by shot, as frozen, damped and filtered
   std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;

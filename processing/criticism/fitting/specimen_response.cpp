@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "processing/criticism/fitting/creeping_spring.hpp"
 
@@ -9,8 +10,9 @@ namespace kolsky {
 
 namespace {
 
-constexpr int kMostIterations = 200;
 constexpr double kConverged = 1e-7;
+/// Steps that do not halve what is left: a specimen that softens until it gives way has no answer.
+constexpr int kPatience = 20;
 
 /// The sample at which bars begin to approach: what comes before is noise, which closes no gap.
 std::size_t at_rest_until(const std::vector<double>& approach) {
@@ -28,6 +30,23 @@ std::size_t at_rest_until(const std::vector<double>& approach) {
     --at;
   }
   return static_cast<std::size_t>(at - approach.begin());
+}
+
+/// What solids are strained by, however far a fit may go.
+double believable(double strain) {
+  return std::clamp(strain, -0.5, 0.9);
+}
+
+bool bends(const SpecimenScene& specimen) {
+  return specimen.stiffening != 0.0 || specimen.friction != 0.0 ||
+         specimen.lateral_inertia_kg_per_m != 0.0;
+}
+
+void add_products(const std::vector<Complex>& a, const std::vector<Complex>& b,
+                  std::vector<Complex>& sums) {
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    sums[k] += a[k] * b[k];
+  }
 }
 
 }  // namespace
@@ -75,12 +94,48 @@ void SpecimenResponse::prepare(const Scene& scene, const Transfers& transfers,
   }
 }
 
+void SpecimenResponse::give(const std::vector<double>& further_strain, DampedTransform& transform) {
+  given_.assign(of_extra_.size(), 0.0);
+  if (further_strain.empty()) {
+    return;
+  }
+  extra_ = further_strain;
+  extra_.resize(transform.length());
+  to_spectrum(extra_, transform, spectrum_);
+  add_products(of_extra_, spectrum_, given_);
+}
+
 void SpecimenResponse::put_history(const Linear& linear, DampedTransform& transform,
                                    std::vector<double>& out) {
   for (std::size_t k = 0; k < spectrum_.size(); ++k) {
     spectrum_[k] = linear.of_source[k] + linear.of_q[k] * q_[k];
   }
   to_time(spectrum_, transform, out);
+}
+
+/// What stress the material has beside the measured, and how that bends it.
+void SpecimenResponse::bend(const Scene& scene, DampedTransform& transform) {
+  const SpecimenScene& specimen = *scene.specimen;
+  const bool widens = specimen.lateral_inertia_kg_per_m != 0.0;
+  const bool rubs = specimen.friction != 0.0;
+  material_.assign(strain_.size(), 0.0);
+  accelerated_.assign(strain_.size(), 0.0);
+  if (widens) {
+    accelerate(scene, transform);
+  }
+  put_history(of_stress_, transform, stress_);
+  if (rubs) {
+    rub(specimen);
+  }
+  if (widens || rubs) {
+    to_spectrum(material_, transform, spectrum_);
+    add_products(of_material_, spectrum_, next_);
+  }
+  if (specimen.stiffening != 0.0) {
+    stiffen(specimen);
+    to_spectrum(extra_, transform, spectrum_);
+    add_products(of_extra_, spectrum_, next_);
+  }
 }
 
 /// Lateral inertia, from the strain's spectrum.
@@ -100,29 +155,47 @@ void SpecimenResponse::accelerate(const Scene& scene, DampedTransform& transform
   }
 }
 
-/// Friction and stiffening.
-void SpecimenResponse::bend(const SpecimenScene& specimen) {
+/// Beside what friction does to a specimen that is hardly strained, which is in the transfers.
+void SpecimenResponse::rub(const SpecimenScene& specimen) {
+  const double at_rest = specimen.share_of_stress(0.0);
   for (std::size_t n = 0; n < strain_.size(); ++n) {
-    const double e = std::clamp(strain_[n], -0.5, 0.9);
-    if (specimen.friction != 0.0) {
-      // A specimen that keeps its volume: d grows as h^-1/2.
-      const double h = specimen.length_m * (1.0 - e);
-      const double d = specimen.diameter_m / std::sqrt(1.0 - e);
-      material_[n] += stress_[n] * (1.0 / (1.0 + specimen.friction * d / (3.0 * h)) - 1.0);
-    }
-    if (specimen.stiffening != 0.0) {
-      const double spring = std::max(0.05, 1.0 + specimen.stiffening * e);
-      extra_[n] += (stress_[n] + material_[n] - accelerated_[n]) / specimen.solid.E1_Pa *
-                   (1.0 / spring - 1.0);
-    }
+    material_[n] += stress_[n] * (specimen.share_of_stress(believable(strain_[n])) - at_rest);
+  }
+}
+
+void SpecimenResponse::stiffen(const SpecimenScene& specimen) {
+  const double per_E1 = 1.0 / specimen.solid.E1_Pa;
+  const double at_rest = specimen.share_of_stress(0.0);
+  extra_.resize(strain_.size());
+  for (std::size_t n = 0; n < strain_.size(); ++n) {
+    const double spring = std::max(0.05, 1.0 + specimen.stiffening * believable(strain_[n]));
+    extra_[n] =
+        (at_rest * stress_[n] + material_[n] - accelerated_[n]) * per_E1 * (1.0 / spring - 1.0);
+  }
+}
+
+void SpecimenResponse::part(const SpecimenScene& specimen, DampedTransform& transform) {
+  if (!at_rest_) {
+    at_rest_ = at_rest_until(strain_);
+  }
+  apart_.assign(strain_.size(), 0.0);
+  if (specimen.gap_after == GapAfter::pulls_nothing) {
+    const double length = static_cast<double>(transform.length());
+    push_only(specimen, 1.0 / (transform.bin_width_Hz() * length));
+  } else {
+    close_gap(specimen);
+  }
+  to_spectrum(apart_, transform, spectrum_);
+  for (std::size_t k = 0; k < next_.size(); ++k) {
+    next_[k] += spectrum_[k];
   }
 }
 
 void SpecimenResponse::close_gap(const SpecimenScene& specimen) {
   const double gap = specimen.gap_m / specimen.length_m;
   bool open = true;
-  for (std::size_t n = at_rest_; n < strain_.size(); ++n) {
-    const double approach = strain_[n] - strain_[at_rest_];
+  for (std::size_t n = *at_rest_; n < strain_.size(); ++n) {
+    const double approach = strain_[n] - strain_[*at_rest_];
     open = approach < gap && (open || specimen.gap_after == GapAfter::opens_where_it_was);
     apart_[n] = open ? approach : gap;
   }
@@ -134,73 +207,63 @@ void SpecimenResponse::close_gap(const SpecimenScene& specimen) {
 void SpecimenResponse::push_only(const SpecimenScene& specimen, double period_s) {
   const double gap = specimen.gap_m / specimen.length_m;
   CreepingSpring law(specimen.solid, period_s);
-  for (std::size_t n = at_rest_; n < strain_.size(); ++n) {
-    const double approach = strain_[n] - strain_[at_rest_];
+  for (std::size_t n = *at_rest_; n < strain_.size(); ++n) {
+    const double approach = strain_[n] - strain_[*at_rest_];
     const double pushed_Pa = law.stress_at(approach - gap);
     apart_[n] = pushed_Pa < 0.0 ? approach - law.strain_at_rest() : gap;
     law.advance(std::max(0.0, pushed_Pa));
   }
 }
 
+/// What q would be by the histories that it leads to.
+void SpecimenResponse::depart(const Scene& scene, DampedTransform& transform) {
+  const SpecimenScene& specimen = *scene.specimen;
+  put_history(of_strain_, transform, strain_);
+  next_ = given_;
+  if (bends(specimen)) {
+    bend(scene, transform);
+  }
+  if (specimen.gap_m != 0.0) {
+    part(specimen, transform);
+  }
+}
+
 void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std::size_t reference,
                              const std::vector<Complex>& source, std::span<const Complex> filter,
                              DampedTransform& transform) {
-  const SpecimenScene& specimen = *scene.specimen;
   const std::size_t places = scene.s.size();
-  const double period_s =
-      1.0 / (transform.bin_width_Hz() * static_cast<double>(transform.length()));
-  prepare(scene, transfers, reference, source, filter);
-  q_.assign(places, 0.0);
-  next_.resize(places);
   spectrum_.resize(places);
-  double before = 1e300;
-  double mixing = 1.0;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    put_history(of_stress_, transform, stress_);
-    put_history(of_strain_, transform, strain_);
-    extra_ = specimen.further_strain;
-    extra_.resize(strain_.size());
-    material_.assign(strain_.size(), 0.0);
-    accelerated_.assign(strain_.size(), 0.0);
-    if (specimen.lateral_inertia_kg_per_m != 0.0) {
-      accelerate(scene, transform);
-    }
-    bend(specimen);
-    to_spectrum(material_, transform, spectrum_);
-    to_spectrum(extra_, transform, next_);
-    for (std::size_t k = 0; k < places; ++k) {
-      next_[k] = of_extra_[k] * next_[k] + of_material_[k] * spectrum_[k];
-    }
-    if (specimen.gap_m != 0.0) {
-      if (iteration == 0) {
-        at_rest_ = at_rest_until(strain_);
-        apart_.assign(strain_.size(), 0.0);
-      }
-      if (specimen.gap_after == GapAfter::pulls_nothing) {
-        push_only(specimen, period_s);
-      } else {
-        close_gap(specimen);
-      }
-      to_spectrum(apart_, transform, spectrum_);
-      for (std::size_t k = 0; k < places; ++k) {
-        next_[k] += spectrum_[k];
-      }
-    }
+  prepare(scene, transfers, reference, source, filter);
+  give(scene.specimen->further_strain, transform);
+  at_rest_.reset();
+  q_.assign(places, 0.0);
+  steps_.begin(places);
+  double least = std::numeric_limits<double>::infinity();
+  for (int since = 0; since < kPatience; ++since) {
+    depart(scene, transform);
     double change = 0.0;
     double size = 0.0;
     for (std::size_t k = 0; k < places; ++k) {
       change += std::norm(next_[k] - q_[k]);
       size += std::norm(next_[k]);
     }
-    mixing = change < before ? std::min(1.0, mixing * 1.2) : mixing * 0.5;
-    for (std::size_t k = 0; k < places; ++k) {
-      q_[k] += mixing * (next_[k] - q_[k]);
-    }
+    steps_.step(q_, next_);
     if (change <= kConverged * kConverged * size) {
-      break;
+      return;
     }
-    before = change;
+    if (change < 0.25 * least) {
+      least = change;
+      nearest_ = q_;
+      since = 0;
+    }
   }
+  q_ = nearest_;
+}
+
+SpecimenHistories SpecimenResponse::histories(DampedTransform& transform) {
+  put_history(of_stress_, transform, stress_);
+  put_history(of_strain_, transform, strain_);
+  return {stress_, strain_};
 }
 
 }  // namespace kolsky

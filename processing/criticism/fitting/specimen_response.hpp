@@ -1,12 +1,20 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "processing/criticism/fitting/fixed_point.hpp"
 #include "processing/models/transfers.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
+
+/// By step of a specimen's histories (`SpecimenScene::further_strain`).
+struct SpecimenHistories {
+  std::vector<double> stress_Pa;
+  std::vector<double> strain;
+};
 
 /// The strain q(t) by which a specimen departs from its linear law under one shot's source, found
 /// with the source: the reference gauge has seen what q sent there, too. What is bent is not the
@@ -29,9 +37,8 @@ class SpecimenResponse {
              DampedTransform& transform);
 
   [[nodiscard]] const std::vector<Complex>& q() const { return q_; }
-  /// Histories at the last solution, over the transform's length.
-  [[nodiscard]] const std::vector<double>& stress_Pa() const { return stress_; }
-  [[nodiscard]] const std::vector<double>& strain() const { return strain_; }
+  /// At the last solution, over the transform's length.
+  [[nodiscard]] SpecimenHistories histories(DampedTransform& transform);
 
  private:
   /// A history's spectrum is a source's and so much more for each unit of q.
@@ -42,9 +49,14 @@ class SpecimenResponse {
 
   void prepare(const Scene& scene, const Transfers& transfers, std::size_t reference,
                const std::vector<Complex>& source, std::span<const Complex> filter);
+  void give(const std::vector<double>& further_strain, DampedTransform& transform);
   void put_history(const Linear& linear, DampedTransform& transform, std::vector<double>& out);
+  void depart(const Scene& scene, DampedTransform& transform);
+  void bend(const Scene& scene, DampedTransform& transform);
   void accelerate(const Scene& scene, DampedTransform& transform);
-  void bend(const SpecimenScene& specimen);
+  void rub(const SpecimenScene& specimen);
+  void stiffen(const SpecimenScene& specimen);
+  void part(const SpecimenScene& specimen, DampedTransform& transform);
   void close_gap(const SpecimenScene& specimen);
   void push_only(const SpecimenScene& specimen, double period_s);
   void to_time(const std::vector<Complex>& spectrum, DampedTransform& transform,
@@ -55,10 +67,12 @@ class SpecimenResponse {
   Linear of_stress_, of_strain_;
   std::vector<Complex> of_extra_;     ///< q of strain beside the material's
   std::vector<Complex> of_material_;  ///< q of stress that the material has beside the measured
-  std::vector<Complex> q_, next_, wide_, spectrum_;
+  std::vector<Complex> given_;        ///< q of the given history
+  std::vector<Complex> q_, next_, nearest_, wide_, spectrum_;
   std::vector<double> stress_, strain_, rate_, accelerated_, extra_, material_;
   std::vector<double> apart_;  ///< the gap's share of q
-  std::size_t at_rest_ = 0;
+  std::optional<std::size_t> at_rest_;
+  FixedPoint steps_;
 };
 
 }  // namespace kolsky
