@@ -41,6 +41,8 @@ struct EffectParameter {
   /// First order at null says nothing of a finite size, in which it acts otherwise (a gap that
   /// closes): fits begin at several.
   bool sudden = false;
+  /// The strength that the effect has by its formula with the sizes filed; 0: none is known.
+  double by_formula = 0.0;
 
   [[nodiscard]] bool auxiliary() const { return !starts.empty(); }
 };

@@ -25,6 +25,7 @@
 #include "processing/criticism/verdict/filed_bars.hpp"
 #include "processing/criticism/verdict/filed_conflict.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
+#include "processing/criticism/verdict/strength_notes.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 
 namespace kolsky {
@@ -568,8 +569,15 @@ class Diagnostician {
       diagnosis_.notes.push_back(in_words(number));
     }
     for (const std::string& id : diagnosis_.effects) {
-      if (const auto text = either_branch_text(current.model, id)) {
-        diagnosis_.notes.push_back(*text);
+      const EffectUse* use = current.model.find(id);
+      if (use == nullptr) {
+        continue;
+      }
+      for (const auto& text : {either_branch_text(current.model, id), unlike_formula_text(*use),
+                               only_begins_text(*use)}) {
+        if (text) {
+          diagnosis_.notes.push_back(*text);
+        }
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "processing/criticism/verdict/cancelling.hpp"
+#include "processing/criticism/verdict/strength_notes.hpp"
 
 namespace kolsky {
 
@@ -56,28 +57,11 @@ bool of_two_gauges(const Campaign& campaign) {
   return campaign.bench.kind == BenchKind::bar && campaign.gauges() == 2;
 }
 
-/// A relaxation of which the records tell no strength and no time apart, only what both do
-/// together, is the beginning of something slow. Of a bar with two gauges that is as well a channel
-/// that droops, and a true relaxation that is no better known says no more than that.
+/// Of a bar with two gauges what only begins is as well a channel that droops, and a true
+/// relaxation that is no better known says no more than that.
 bool only_imitates(const Studied& studied, const std::string& id) {
-  constexpr double kKnown = 3.0;  // deviations
   const EffectUse* use = studied.model.find(id);
-  if (use == nullptr) {
-    return false;
-  }
-  bool strength_known = false;
-  bool has_time = false;
-  bool time_known = false;
-  const auto& parameters = use->effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const ModelValue& own = use->values[p];
-    const bool known = std::abs(own.value - parameters[p].null_value) > kKnown * own.sd;
-    const bool time = parameters[p].auxiliary() && parameters[p].unit == "s";
-    has_time = has_time || (time && own.free);
-    time_known = time_known || (time && known);
-    strength_known = strength_known || (p == use->effect->about().strength && known);
-  }
-  return has_time && !time_known && !strength_known;
+  return use != nullptr && only_begins(*use);
 }
 
 /// Of the lesser's change what both together make, at least. Of 69 true pairs it is 1.0 and more; a
