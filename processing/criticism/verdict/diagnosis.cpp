@@ -597,7 +597,8 @@ class Diagnostician {
       return {};
     }
     std::vector<std::string> reasons =
-        why_unknown(diagnosis_, current, study_.campaign(), remains, options_.log_alpha);
+        why_unknown(diagnosis_, current, study_.campaign(), remains,
+                    (before.fit.objective() - current.fit.objective()) / noise, options_.log_alpha);
     if (const FiledConflict filed = conflict_with_filed(current); filed.log_p < kSure) {
       reasons.push_back(filed_text(filed));
     }

@@ -109,19 +109,23 @@ std::string rejected_text(const CandidateResult& own, const Campaign& campaign) 
                                                own.strength, own.sd, peak_strain_of(campaign), 1.0);
   return fmt::format("{} explains what noise leaves {}, but {}: something else is there",
                      own.effect, chance_text(own.log_p),
-                     stronger ? "would have to be stronger than anything is built"
-                              : "shots do not foretell it of each other or disagree on it");
+                     stronger
+                         ? "would have to be stronger than anything is built"
+                         : "shots do not foretell it of each other or disagree on it, or it is "
+                           "no more than the limit of something else");
 }
 
-/// What explains so much that noise hardly would, though the shots do not foretell it of each other
-/// or disagree on it, or nothing is built so: something is there, and it is not that.
-/// @return nothing where something is claimed
-const CandidateResult* surest_rejected(const Diagnosis& diagnosis) {
+/// What explains so much that noise hardly would, and more than what is claimed does, though the
+/// shots do not foretell it of each other or disagree on it, or nothing is built so: something is
+/// there, and it is not that.
+/// @param explained  by what is claimed, of chi2
+const CandidateResult* surest_rejected(const Diagnosis& diagnosis, double explained) {
   constexpr double kSure = -11.5;  // 1e-5, the search counted
+  constexpr double kAhead = 16.0;  // what is there leaves no more than noise does to gain
   const CandidateResult* surest = nullptr;
   for (const CandidateResult& own : diagnosis.candidates) {
-    if (diagnosis.effects.empty() && !own.per_shot && own.verdict == "rejected" &&
-        own.log_p < (surest != nullptr ? surest->log_p : kSure)) {
+    if ((diagnosis.effects.empty() || own.gain > explained + kAhead) && !own.per_shot &&
+        own.verdict == "rejected" && own.log_p < (surest != nullptr ? surest->log_p : kSure)) {
       surest = &own;
     }
   }
@@ -222,7 +226,8 @@ std::optional<std::string> where_text(const std::vector<LoudPulses>& loud,
 
 std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& current,
                                      const Campaign& campaign,
-                                     const std::optional<Unexplained>& remains, double log_alpha) {
+                                     const std::optional<Unexplained>& remains, double explained,
+                                     double log_alpha) {
   std::vector<std::string> reasons;
   if (remains) {
     const bool apart = remains->apart.log_p < log_alpha;
@@ -234,7 +239,7 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
       reasons.insert(surer ? reasons.begin() : reasons.end(), apart_text(remains->apart, campaign));
     }
   }
-  if (const CandidateResult* own = surest_rejected(diagnosis)) {
+  if (const CandidateResult* own = surest_rejected(diagnosis, explained)) {
     reasons.push_back(rejected_text(*own, campaign));
   }
   if (at_all_gauges_but_one(diagnosis, campaign)) {
@@ -251,11 +256,11 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
     if (beyond_belief(current, id, campaign, 1.0)) {
       reasons.push_back(id + " would have to be stronger than anything is built");
     }
-    if (of_two_gauges(campaign) && only_imitates(current, id)) {
-      reasons.push_back(
-          id +
-          " has neither a strength nor a time of its own: it stands for something slow, of the bar "
-          "or of one of its two channels");
+    if ((of_two_gauges(campaign) || diagnosis.effects.size() > 1) && only_imitates(current, id)) {
+      reasons.push_back(id + " has neither a strength nor a time of its own: it stands for " +
+                        (of_two_gauges(campaign)
+                             ? "something slow, of the bar or of one of its two channels"
+                             : "whatever slow is left beside what else was found"));
     }
   }
   if (const auto pair = most_cancelling(current, diagnosis.effects); pair && pair->left < kUndone) {

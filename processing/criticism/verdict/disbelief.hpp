@@ -45,10 +45,11 @@ inline constexpr std::size_t kMostBelieved = 2;
 /// Why what was claimed is not what is missing, in sentences; empty: it may be.
 /// @param current  fitted with what was claimed
 /// @param remains  misfit that nothing explains, where there is any
+/// @param explained  of chi2, by what was claimed
 /// @param log_alpha  ln of the chance at which something is there
 [[nodiscard]] std::vector<std::string> why_unknown(const Diagnosis& diagnosis,
                                                    const Studied& current, const Campaign& campaign,
                                                    const std::optional<Unexplained>& remains,
-                                                   double log_alpha);
+                                                   double explained, double log_alpha);
 
 }  // namespace kolsky

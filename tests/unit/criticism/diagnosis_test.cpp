@@ -493,8 +493,9 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   CandidateResult& own = diagnosis.candidates.emplace_back();
   own.effect = "bridge-nonlinearity";
   own.verdict = "rejected";
+  double explained = 0.0;
   const auto reasons = [&] {
-    return why_unknown(diagnosis, current, campaign, std::nullopt, -5.8).size();
+    return why_unknown(diagnosis, current, campaign, std::nullopt, explained, -5.8).size();
   };
   own.log_p = -14.0;
   EXPECT_EQ(reasons(), 1U);
@@ -505,8 +506,9 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   for (CampaignShot& shot : campaign.shots) {
     shot.facts.peak_strain = 2e-3;
   }
-  EXPECT_NE(why_unknown(diagnosis, current, campaign, std::nullopt, -5.8)[0].find("stronger than"),
-            std::string::npos);
+  EXPECT_NE(
+      why_unknown(diagnosis, current, campaign, std::nullopt, 0.0, -5.8)[0].find("stronger than"),
+      std::string::npos);
   own.per_shot = true;
   EXPECT_EQ(reasons(), 0U) << "strengths of single shots follow slow noise";
   own.per_shot = false;
@@ -514,7 +516,36 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   EXPECT_EQ(reasons(), 0U);
   own.verdict = "rejected";
   diagnosis.effects = {"gauge-factor:" + campaign.bench.gauges.back().name};
+  own.gain = 60.0;
+  explained = 50.0;
   EXPECT_EQ(reasons(), 0U) << "what is claimed may take its part";
+  explained = 23.0;
+  EXPECT_EQ(reasons(), 1U) << "what is claimed explains less by far";
+}
+
+// A relaxation of which only strength over time is known, beside a damping, was what a bearing's
+// drag leaves of one. By itself it may be what it says.
+TEST(Unknown, IsARelaxationThatOnlyBeginsBesideAnotherEffect) {
+  const Made made = make(88, {});
+  const Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  Model model = paper_model(BenchKind::bar, false);
+  EffectUse slow = null_use(*find_effect("second-relaxation"));
+  slow.values[0] = {.value = 3e-12, .sd = 9e-12, .free = true};
+  slow.values[1] = {.value = 1e-3, .sd = 3e-3, .free = true};
+  Studied current = study.fit(model);
+  current.model.effects.push_back(slow);
+  Diagnosis diagnosis;
+  diagnosis.effects = {"second-relaxation"};
+  const auto reasons = [&] {
+    return why_unknown(diagnosis, current, campaign, std::nullopt, 0.0, -5.8);
+  };
+  EXPECT_TRUE(reasons().empty());
+  diagnosis.effects.emplace_back("series-dashpot");
+  ASSERT_EQ(reasons().size(), 1U);
+  EXPECT_NE(reasons()[0].find("neither a strength nor a time of its own"), std::string::npos);
+  current.model.find("second-relaxation")->values[0].sd = 1e-13;
+  EXPECT_TRUE(reasons().empty());
 }
 
 // In a metal bar every gauge sees the same wave, and a bridge bends them all alike: nothing but
