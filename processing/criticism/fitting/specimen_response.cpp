@@ -257,7 +257,10 @@ void SpecimenResponse::solve(const Scene& scene, const Transfers& transfers, std
       since = 0;
     }
   }
-  q_ = nearest_;
+  // Without any that is a number, what is not one: no fit takes that for an answer.
+  if (std::isfinite(least)) {
+    q_ = nearest_;
+  }
 }
 
 SpecimenHistories SpecimenResponse::histories(DampedTransform& transform) {

@@ -6,6 +6,7 @@
 
 #include "processing/criticism/fitting/fixed_point.hpp"
 #include "processing/criticism/fitting/known_departures.hpp"
+#include "processing/criticism/fitting/specimen_response.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
 
@@ -84,6 +85,39 @@ TEST(Friction, IsNotPulledAtByTheNoiseOfTheSource) {
     EXPECT_LT(mu.sd, 0.05) << noise_strain;
     EXPECT_LT(fit.misfit.chi2_reduced, 1.05) << noise_strain;
   }
+}
+
+// A source that is no number leads to none, and not to what was found before.
+TEST(Departure, OfNoNumberIsNone) {
+  const Campaign campaign = rubbed(5, 2, 4e-6);
+  DampedTransform transform(512, campaign.period_s);
+  Spectrum path;
+  for (std::size_t k = 0; k < 100; ++k) {
+    path.push_back(transform.s(k));
+  }
+  Scene scene(campaign.bench, campaign.shots.front().facts, path);
+  EffectUse specimen = null_use(*find_effect("three-element-specimen"));
+  std::vector<double> moduli;
+  for (const ModelValue& value : specimen.values) {
+    moduli.push_back(value.value);
+  }
+  shape({{find_effect("elementary-waves"), 0, {}},
+         {specimen.effect, 0, moduli},
+         {find_effect("interface-friction"), 0, {0.25}}},
+        scene);
+  const Transfers transfers = transfers_of(scene, campaign.reference);
+  const Spectrum filter(path.size(), 1.0);
+  Spectrum source(path.size(), 1e-3);
+  SpecimenResponse response;
+  const auto all_numbers = [&] {
+    response.solve(scene, transfers, campaign.reference, source, filter, transform);
+    return std::ranges::all_of(
+        response.q(), [](Complex q) { return std::isfinite(q.real()) && std::isfinite(q.imag()); });
+  };
+  EXPECT_TRUE(all_numbers());
+  source[3] = std::nan("");
+  EXPECT_FALSE(all_numbers());
+  EXPECT_EQ(response.q().size(), path.size());
 }
 
 // It was, in one campaign of five: a nonlinearity lets noise through, and gained by that.
