@@ -7,6 +7,7 @@
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/noise/converter_steps.hpp"
+#include "processing/criticism/noise/quiet_scatter.hpp"
 #include "processing/criticism/noise/smooth_power.hpp"
 #include "processing/identification/noise_spectrum.hpp"
 
@@ -21,26 +22,32 @@ constexpr double kCarriedFrom = 1.4;
 /// that stretch is too short to show what is slow.
 constexpr double kMostHidden = 4.0;
 
-std::vector<NoiseSpectrum> quiet_spectra(const Campaign& campaign) {
-  std::vector<NoiseSpectrum> spectra;
+using Quiet = std::vector<std::vector<double>>;  ///< of a gauge, by shot
+
+std::vector<Quiet> quiet_of_gauges(const Campaign& campaign) {
+  std::vector<Quiet> list;
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-    std::vector<std::span<const double>> quiet;
-    for (const CampaignShot& shot : campaign.shots) {
-      quiet.emplace_back(shot.strain[j].data(), shot.quiet_samples);
-    }
-    spectra.emplace_back(quiet);
+    list.push_back(quiet_scatter(campaign, j));
+  }
+  return list;
+}
+
+std::vector<NoiseSpectrum> spectra_of(const std::vector<Quiet>& gauges) {
+  std::vector<NoiseSpectrum> spectra;
+  for (const Quiet& quiet : gauges) {
+    spectra.emplace_back(std::vector<std::span<const double>>(quiet.begin(), quiet.end()));
   }
   return spectra;
 }
 
 /// Sums of products of two gauges' quiet samples, all shots together, the second so much later.
-double quiet_product(const Campaign& campaign, std::size_t a, std::size_t b, std::size_t later) {
+double product_of(const Quiet& a, const Quiet& b, std::size_t later) {
   double sum = 0.0;
-  for (const CampaignShot& shot : campaign.shots) {
-    if (later < shot.quiet_samples) {
-      const auto left = static_cast<Eigen::Index>(shot.quiet_samples - later);
-      const Eigen::Map<const Eigen::VectorXd> first(shot.strain[a].data(), left);
-      const Eigen::Map<const Eigen::VectorXd> second(shot.strain[b].data() + later, left);
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    if (later < a[n].size()) {
+      const auto left = static_cast<Eigen::Index>(a[n].size() - later);
+      const Eigen::Map<const Eigen::VectorXd> first(a[n].data(), left);
+      const Eigen::Map<const Eigen::VectorXd> second(b[n].data() + later, left);
       sum += first.dot(second);
     }
   }
@@ -49,24 +56,24 @@ double quiet_product(const Campaign& campaign, std::size_t a, std::size_t b, std
 
 /// Of a gauge's quiet samples by lag, from 1 to a quarter of the shortest quiet, at most
 /// `kMostLags`.
-std::vector<double> quiet_autocorrelation(const Campaign& campaign, std::size_t gauge) {
+std::vector<double> autocorrelation_of(const Quiet& quiet) {
   constexpr std::size_t kMostLags = 256;
   std::size_t shortest = 4 * kMostLags;
-  for (const CampaignShot& shot : campaign.shots) {
-    shortest = std::min(shortest, shot.quiet_samples);
+  for (const std::vector<double>& own : quiet) {
+    shortest = std::min(shortest, own.size());
   }
   std::vector<double> list;
-  const double power = quiet_product(campaign, gauge, gauge, 0);
+  const double power = product_of(quiet, quiet, 0);
   for (std::size_t lag = 1; power > 0.0 && lag <= shortest / 4; ++lag) {
-    list.push_back(quiet_product(campaign, gauge, gauge, lag) / power);
+    list.push_back(product_of(quiet, quiet, lag) / power);
   }
   return list;
 }
 
 /// How many times fewer independent samples tell as much of two gauges' correlation.
-double slowness(const Campaign& campaign, std::size_t a, std::size_t b) {
-  const std::vector<double> of_a = quiet_autocorrelation(campaign, a);
-  const std::vector<double> of_b = quiet_autocorrelation(campaign, b);
+double slowness(const Quiet& a, const Quiet& b) {
+  const std::vector<double> of_a = autocorrelation_of(a);
+  const std::vector<double> of_b = autocorrelation_of(b);
   const auto lags = static_cast<std::ptrdiff_t>(std::min(of_a.size(), of_b.size()));
   const double alike = std::inner_product(of_a.begin(), of_a.begin() + lags, of_b.begin(), 0.0);
   return std::max(1.0, 1.0 + 2.0 * alike);
@@ -89,23 +96,23 @@ Eigen::MatrixXd as_of_noise(const Eigen::MatrixXd& correlation) {
 
 /// How far gauges share their noise; nothing where chance does as much. Slow samples tell less than
 /// as many independent ones: var rho = (1 + 2 sum rho_a(k) rho_b(k)) / n (Bartlett 1935).
-Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
-  const std::size_t gauges = campaign.gauges();
+Eigen::MatrixXd correlation_of(const std::vector<Quiet>& gauges) {
   double samples = 0.0;
-  for (const CampaignShot& shot : campaign.shots) {
-    samples += static_cast<double>(shot.quiet_samples);
+  for (const std::vector<double>& own : gauges.front()) {
+    samples += static_cast<double>(own.size());
   }
-  const auto size = static_cast<Eigen::Index>(gauges);
+  const auto size = static_cast<Eigen::Index>(gauges.size());
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
-  for (std::size_t a = 0; a < gauges; ++a) {
+  for (std::size_t a = 0; a < gauges.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const double scale =
-          std::sqrt(quiet_product(campaign, a, a, 0) * quiet_product(campaign, b, b, 0));
-      const double rho = scale > 0.0 ? quiet_product(campaign, a, b, 0) / scale : 0.0;
+          std::sqrt(product_of(gauges[a], gauges[a], 0) * product_of(gauges[b], gauges[b], 0));
+      const double rho = scale > 0.0 ? product_of(gauges[a], gauges[b], 0) / scale : 0.0;
       constexpr double kSignificant = 5.0;
       const double least = kSignificant / std::sqrt(samples);
       // How slow they are is asked where it can matter.
-      if (std::abs(rho) > least && std::abs(rho) > least * std::sqrt(slowness(campaign, a, b))) {
+      if (std::abs(rho) > least &&
+          std::abs(rho) > least * std::sqrt(slowness(gauges[a], gauges[b]))) {
         const auto row = static_cast<Eigen::Index>(a);
         const auto column = static_cast<Eigen::Index>(b);
         correlation(row, column) = correlation(column, row) = std::clamp(rho, -0.95, 0.95);
@@ -113,6 +120,18 @@ Eigen::MatrixXd quiet_correlation(const Campaign& campaign) {
     }
   }
   return as_of_noise(correlation);
+}
+
+/// Mean square of a gauge's quiet samples.
+double quiet_square(const Campaign& campaign, std::size_t gauge) {
+  double sum = 0.0;
+  double samples = 0.0;
+  for (const CampaignShot& shot : campaign.shots) {
+    const auto count = static_cast<Eigen::Index>(shot.quiet_samples);
+    sum += Eigen::Map<const Eigen::VectorXd>(shot.strain[gauge].data(), count).squaredNorm();
+    samples += static_cast<double>(shot.quiet_samples);
+  }
+  return sum / samples;
 }
 
 double rounding_square(double step) {
@@ -128,8 +147,9 @@ double least_power(const Campaign& campaign, std::size_t gauge) {
 
 GaugeNoise::GaugeNoise(const Campaign& campaign, const JudgedBand& band)
     : campaign_(campaign), band_(band) {
-  const std::vector<NoiseSpectrum> spectra = quiet_spectra(campaign);
-  measure(spectra, quiet_correlation(campaign));
+  const std::vector<Quiet> quiet = quiet_of_gauges(campaign);
+  const std::vector<NoiseSpectrum> spectra = spectra_of(quiet);
+  measure(spectra, correlation_of(quiet));
   const auto decimation = static_cast<double>(band.decimation);
   const WindowInRecord place{band.judged, band.begin / band.decimation,
                              campaign.shots.front().quiet_samples / band.decimation,
@@ -208,12 +228,8 @@ double GaugeNoise::unrounded_sd(std::size_t gauge) const {
 }
 
 bool GaugeNoise::is_coarse(std::size_t gauge) const {
-  double samples = 0.0;
-  for (const CampaignShot& shot : campaign_.shots) {
-    samples += static_cast<double>(shot.quiet_samples);
-  }
   const double step = campaign_.step[gauge];
-  const double square = quiet_product(campaign_, gauge, gauge, 0) / samples;
+  const double square = quiet_square(campaign_, gauge);
   // Noise of 0.42 steps leaves a thousandth of the saw teeth; rounding adds its own to it.
   return step > 0.0 && square - rounding_square(step) < 0.18 * step * step;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "processing/criticism/noise/quiet_scatter.hpp"
 #include "processing/criticism/records/judged_band.hpp"
 #include "tests/generators/campaign.hpp"
 
@@ -65,6 +66,71 @@ TEST(GaugeNoise, IsSharedWhereGaugesHaveAPartInCommon) {
     draw_quiet(campaign, keep, 0.5, 3);
     EXPECT_EQ(pairs_that_share(campaign), 6) << keep;
   }
+}
+
+double slowest_power(const Campaign& campaign) {
+  return GaugeNoise(campaign, judged_band(campaign, 0.0)).power(1, 0);
+}
+
+/// As a hum or a drift does that every shot triggers at the same phase of.
+void slope_alike(Campaign& campaign) {
+  constexpr double kPerSample = 4e-8;
+  for (CampaignShot& shot : campaign.shots) {
+    for (std::size_t n = 0; n < shot.quiet_samples; ++n) {
+      shot.strain[1][n] += kPerSample * static_cast<double>(n);
+    }
+  }
+}
+
+// What comes again in every shot is what there is to find, and passed for slow noise: a hundred
+// times as much as there was.
+TEST(GaugeNoise, IsNotWhatAllShotsHaveAlikeBeforeThePulse) {
+  Campaign campaign = small();
+  draw_quiet(campaign, 0.0, 0.0, 5);
+  const double without = slowest_power(campaign);
+  slope_alike(campaign);
+  const double with = slowest_power(campaign);
+  EXPECT_NEAR(with / without, 1.0, 1e-9);
+}
+
+// Three shots have much slow noise alike by chance.
+TEST(GaugeNoise, OfThreeShotsIsAllOfIt) {
+  Campaign campaign = small();
+  draw_quiet(campaign, 0.0, 0.0, 5);
+  campaign.shots.pop_back();
+  const double without = slowest_power(campaign);
+  slope_alike(campaign);
+  EXPECT_GT(slowest_power(campaign), 2.0 * without);
+}
+
+TEST(QuietScatter, IsThatOfIndependentNoise) {
+  Campaign campaign = small();
+  draw_quiet(campaign, 0.0, 0.0, 5);
+  double squares = 0.0;
+  double samples = 0.0;
+  for (const std::vector<double>& own : quiet_scatter(campaign, 1)) {
+    for (const double value : own) {
+      squares += value * value;
+      samples += 1.0;
+    }
+  }
+  // Three of four degrees of freedom, six deviations.
+  EXPECT_NEAR(squares / samples / 16e-12, 1.0, 6.0 * std::sqrt(2.0 / (0.75 * samples)));
+}
+
+// A shot whose pulse comes early tells as long as it is quiet.
+TEST(QuietScatter, GoesAsFarAsFourShotsAreQuiet) {
+  Campaign campaign = read_campaign(
+      testing::shots_of(testing::draw_campaign({.seed = 11, .shots = 5, .gauges = 2})));
+  const std::size_t quiet = campaign.shots[0].quiet_samples;
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    campaign.shots[n].quiet_samples = quiet - 10 * n;
+  }
+  const auto scatter = quiet_scatter(campaign, 0);
+  ASSERT_EQ(scatter.size(), 5U);
+  EXPECT_EQ(scatter[0].size(), quiet - 30);
+  EXPECT_EQ(scatter[3].size(), quiet - 30);
+  EXPECT_EQ(scatter[4].size(), quiet - 40);
 }
 
 }  // namespace
