@@ -68,6 +68,13 @@ const std::map<std::string, std::function<void(BarWorld&, const HiddenEffect&)>>
        [](W& w, const H& e) {
          w.hum.amplitude = e.strength;
          w.hum.frequency_Hz = e.detail("frequency", w.hum.frequency_Hz);
+         for (TrueShot& shot : w.shots) {
+           shot.hum_phase = e.detail("phase", shot.hum_phase);
+         }
+         w.hum.share.assign(w.gauges.size(), 1.0);
+         for (std::size_t g = 1; g < w.gauges.size(); g += 2) {
+           w.hum.share[g] = e.detail("others", 1.0);
+         }
        }},
       {"x-clamp",
        [](W& w, const H& e) {

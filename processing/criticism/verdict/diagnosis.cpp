@@ -357,24 +357,44 @@ class Diagnostician {
 
   /// A drift of each shot's own is a hum of another phase in every shot, picked up by one gauge or
   /// by several in unequal shares of which the source takes up the rest: where a hum at that gauge
-  /// does as well, or other gauges slope before the pulses, too, nothing tells the two apart.
+  /// does as well, or other gauges slope before the pulses, too, nothing tells the two apart. One
+  /// that all shots have alike is a hum of one phase, where another gauge drifts beside it.
   void weigh_hums(const Studied& current) {
     const std::string hum = find_effect("mains-hum")->about().id;
     if (std::ranges::count(diagnosis_.effects, hum) > 0) {
       return;
     }
+    const auto drifts = std::ranges::count_if(diagnosis_.effects, [&](const std::string& id) {
+      const EffectUse* use = current.model.find(id);
+      return use != nullptr && !use->gauge.empty() && is_addition(*use->effect);
+    });
     for (const std::string& id : diagnosis_.effects) {
       const EffectUse* drift = current.model.find(id);
-      if (drift == nullptr || !drift->per_shot || drift->gauge.empty() ||
-          !is_addition(*drift->effect)) {
+      std::vector<std::string>& ties = diagnosis_.tied_with[id];
+      if (drift == nullptr || drift->gauge.empty() || !is_addition(*drift->effect) ||
+          std::ranges::count(ties, hum) > 0) {
         continue;
       }
-      std::vector<std::string>& ties = diagnosis_.tied_with[id];
-      if (std::ranges::count(ties, hum) == 0 &&
-          (others_slope(drift->gauge) || hum_does_as_well(without(current, id), *drift))) {
+      const bool may_be_hum = drift->per_shot ? others_slope(drift->gauge) ||
+                                                    hum_does_as_well(without(current, id), *drift)
+                                              : drifts > 1 || others_drift(current);
+      if (may_be_hum) {
         ties.push_back(hum);
       }
     }
+  }
+
+  /// Whether a drift at any other gauge, alike in all shots, is missed beside those claimed. All of
+  /// them at once tell less: a slope at every gauge is the source's.
+  [[nodiscard]] bool others_drift(const Studied& current) {
+    for (const Gauge& gauge : study_.campaign().bench.gauges) {
+      const Model more = with_drift(current.model, gauge.name);
+      if (more.effects.size() > current.model.effects.size() &&
+          missed_in(current, changed(current, more))) {
+        return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] bool others_slope(const std::string& gauge) const {

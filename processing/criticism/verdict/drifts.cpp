@@ -10,13 +10,19 @@ constexpr const char* kDrift = "baseline-drift";
 
 }  // namespace
 
+Model with_drift(const Model& model, const std::string& gauge) {
+  Model drifting = model;
+  EffectUse drift = null_use(*find_effect(kDrift), gauge);
+  if (drifting.find(drift.id()) == nullptr) {
+    drifting.effects.push_back(std::move(drift));
+  }
+  return drifting;
+}
+
 Model with_drifts(const Model& model, const Bench& bench) {
   Model drifting = model;
   for (const Gauge& gauge : bench.gauges) {
-    EffectUse drift = null_use(*find_effect(kDrift), gauge.name);
-    if (drifting.find(drift.id()) == nullptr) {
-      drifting.effects.push_back(std::move(drift));
-    }
+    drifting = with_drift(drifting, gauge.name);
   }
   return drifting;
 }

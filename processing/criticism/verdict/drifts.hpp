@@ -7,6 +7,9 @@
 
 namespace kolsky {
 
+/// The model with a drift at a gauge, alike in all shots; as it is where it has one there.
+[[nodiscard]] Model with_drift(const Model& model, const std::string& gauge);
+
 /// The model with a drift at every gauge, alike in all shots.
 [[nodiscard]] Model with_drifts(const Model& model, const Bench& bench);
 

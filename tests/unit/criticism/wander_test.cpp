@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processing/criticism/search/own_strengths.hpp"
@@ -326,6 +327,46 @@ TEST(MainsHum, IsNoWanderForAPartThatTheSourceTakesUp) {
     }
   }
   EXPECT_TRUE(confirmed());
+}
+
+/// Gauges that pick up a hum the one way and the other by turns, at one phase in every shot.
+testing::Campaign one_phase(std::uint64_t seed, testing::NoiseColour colour) {
+  testing::Campaign campaign =
+      testing::draw_campaign({.seed = seed, .shots = 6, .gauges = 4, .colour = colour});
+  testing::hide(campaign, testing::parse_effect("mains-hum=8e-6,phase=1.3,others=-0.8"));
+  return campaign;
+}
+
+// A source that is free takes up what gauges have alike of it, so that one gauge or two of four may
+// be left to slope: as drifts of these it was named, and as nothing else.
+TEST(Drifts, OfOneHumAreTiedWithIt) {
+  using enum testing::NoiseColour;
+  int drifts = 0;
+  for (const auto& [seed, colour] : {std::pair{12U, pink}, {13U, coloured}}) {
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(one_phase(seed, colour)));
+    drifts += says_hum(diagnosis) && diagnosis.effects[0] != "mains-hum" ? 1 : 0;
+    for (const std::string& id : diagnosis.effects) {
+      EXPECT_TRUE(id == "mains-hum" ||
+                  std::ranges::count(diagnosis.tied_with.at(id), "mains-hum") == 1)
+          << seed << " " << id;
+    }
+  }
+  EXPECT_GT(drifts, 0) << "nothing to try it on";
+}
+
+// But a drift of one gauge stays one.
+TEST(Drifts, OfOneGaugeAreNoHum) {
+  int named = 0;
+  for (const std::uint64_t seed : {2U, 3U, 4U}) {
+    testing::Campaign campaign = testing::draw_campaign({.seed = seed, .shots = 6});
+    testing::hide(campaign, testing::parse_effect("baseline-drift:g2=0.008"));
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(campaign));
+    named += diagnosis.effects == std::vector<std::string>{"baseline-drift:g2"} &&
+                     diagnosis.verdict == DiagnosisVerdict::named
+                 ? 1
+                 : 0;
+  }
+  EXPECT_EQ(named, 3);
 }
 
 // Slopes that every gauge has of its own in every shot are products by chance only.
