@@ -115,16 +115,31 @@ std::string rejected_text(const CandidateResult& own, const Campaign& campaign) 
                            "no more than the limit of something else");
 }
 
+/// Of chi2 by what is claimed: all of it by the noise as it shows in the end, or one alone by that
+/// which its rivals were weighed by.
+double most_explained(const Diagnosis& diagnosis, double explained) {
+  for (const CandidateResult& own : diagnosis.candidates) {
+    if (std::ranges::count(diagnosis.effects, own.effect) > 0) {
+      explained = std::max(explained, own.gain);
+    }
+  }
+  return explained;
+}
+
 /// What explains so much that noise hardly would, and more than what is claimed does, though the
 /// shots do not foretell it of each other or disagree on it, or nothing is built so: something is
 /// there, and it is not that.
 /// @param explained  by what is claimed, of chi2
 const CandidateResult* surest_rejected(const Diagnosis& diagnosis, double explained) {
   constexpr double kSure = -11.5;  // 1e-5, the search counted
-  constexpr double kAhead = 16.0;  // what is there leaves no more than noise does to gain
+  // What is there leaves no more than noise does to gain, and what is as good is its own limit.
+  constexpr double kAhead = 16.0;
+  constexpr double kShare = 0.05;
+  const double most = most_explained(diagnosis, explained);
+  const double limit = most + std::max(kAhead, kShare * most);
   const CandidateResult* surest = nullptr;
   for (const CandidateResult& own : diagnosis.candidates) {
-    if ((diagnosis.effects.empty() || own.gain > explained + kAhead) && !own.per_shot &&
+    if ((diagnosis.effects.empty() || own.gain > limit) && !own.per_shot &&
         own.verdict == "rejected" && own.log_p < (surest != nullptr ? surest->log_p : kSure)) {
       surest = &own;
     }

@@ -357,6 +357,24 @@ TEST(Diagnosis, BelievesABridgeByItsGaugesOrByWhatItBends) {
   EXPECT_TRUE(beyond(-400.0, 3e-4));
 }
 
+// What a formula foretells may be some times as much. A bearing that rubs on a bar was a dashpot,
+// which it nearly is, beside a punching of 38 times what the specimen's size makes.
+TEST(Diagnosis, BelievesAFormulaWithinTwentyTimes) {
+  const Made made = make(77, {});
+  const Campaign campaign = read_campaign(made.shots);
+  Study study(campaign, 0.0, Workers{});
+  Studied studied = study.fit(paper_model(BenchKind::bar, false));
+  for (const std::string id : {"punching", "radial-inertia"}) {
+    studied.model.effects.push_back(null_use(*find_effect(id), ""));
+    ModelValue& s = studied.model.effects.back().values[0];
+    s.sd = 9.0;
+    s.value = 20.0;
+    EXPECT_FALSE(beyond_belief(studied, id, campaign, 1.0)) << id;
+    s.value = 38.0;
+    EXPECT_TRUE(beyond_belief(studied, id, campaign, 1.0)) << id;
+  }
+}
+
 // Anything can be expanded in three effects: what needs as many is likelier to be missing itself.
 TEST(LongDiagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
   const Made made =
@@ -521,6 +539,11 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   EXPECT_EQ(reasons(), 0U) << "what is claimed may take its part";
   explained = 23.0;
   EXPECT_EQ(reasons(), 1U) << "what is claimed explains less by far";
+  CandidateResult& claimed = diagnosis.candidates.emplace_back();
+  claimed.effect = diagnosis.effects.front();
+  claimed.verdict = "named";
+  claimed.gain = 59.0;
+  EXPECT_EQ(reasons(), 0U) << "by the noise of the search it explains as much";
 }
 
 // A relaxation of which only strength over time is known, beside a damping, was what a bearing's
