@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 
 namespace kolsky::scoring {
 
@@ -91,18 +93,41 @@ double most_of(const EffectKind& kind, const Campaign& campaign) {
                   kMostOfBranch * first_branch_per_Pa(kind, campaign));
 }
 
+// A bench's hum has phases by shot or one in all, and is alike at all gauges or picked up the other
+// way at every second, one bench as often as the other.
+std::map<std::string, double> hum_of(const Campaign& campaign) {
+  const double phase = campaign.world.shots.front().hum_phase;
+  const auto quarter = static_cast<int>(2.0 * phase / std::numbers::pi);
+  std::map<std::string, double> details;
+  if (quarter % 2 == 1) {
+    details["phase"] = campaign.world.shots.back().hum_phase;
+  }
+  if (quarter / 2 == 1) {
+    details["others"] = -0.8;
+  }
+  return details;
+}
+
+// What a kind of effect has besides a strength, each in turn.
+std::vector<std::map<std::string, double>> variants_of(const EffectKind& kind,
+                                                       const Campaign& campaign) {
+  if (kind.id == "second-relaxation") {
+    return {{{"tau", 3e-4}}, {{"tau", 2e-5}}, {{"tau", 8e-5}}, {{"tau", 1.5e-3}}};
+  }
+  if (kind.id == "mains-hum") {
+    return {hum_of(campaign)};
+  }
+  return {{}};
+}
+
 std::vector<Candidate> all_candidates(const Campaign& campaign) {
   std::vector<Candidate> out;
   for (const EffectKind& kind : campaign.split ? testing::shpb_effects() : testing::bar_effects()) {
     const double most = most_of(kind, campaign);
     if (!kind.per_gauge) {
-      out.push_back({probe_of(kind, ""), kind, kind.null, most});
-      if (kind.id == "second-relaxation") {
-        out.back().effect.details["tau"] = 3e-4;
-        for (const double tau : {2e-5, 8e-5, 1.5e-3}) {
-          out.push_back({probe_of(kind, ""), kind, kind.null, most});
-          out.back().effect.details["tau"] = tau;
-        }
+      for (const auto& details : variants_of(kind, campaign)) {
+        out.push_back({probe_of(kind, ""), kind, kind.null, most});
+        out.back().effect.details = details;
       }
       continue;
     }
