@@ -27,6 +27,7 @@
 #include "processing/criticism/verdict/loud_pulses.hpp"
 #include "processing/criticism/verdict/strength_notes.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
+#include "processing/criticism/verdict/unlisted.hpp"
 
 namespace kolsky {
 
@@ -637,6 +638,7 @@ class Diagnostician {
     if (reasons.empty()) {
       judge_temperature(current, noise, reasons);
     }
+    judge_unlisted(before, current, reasons);
     return reasons;
   }
 
@@ -666,6 +668,32 @@ class Diagnostician {
       if (changed(current, *any).fit.objective() < current.fit.objective() + kTie * noise) {
         reasons.push_back(no_temperature_text());
       }
+    }
+  }
+
+  /// One thing that the library lacks is likelier than two effects which do no better, and worth
+  /// being told of where it leaves next to nothing of what is unknown. Of two gauges a bar's own
+  /// effects do as well.
+  void judge_unlisted(const Studied& before, const Studied& current,
+                      std::vector<std::string>& reasons) {
+    constexpr double kNearlyAll = 0.9;
+    const Campaign& campaign = study_.campaign();
+    const bool claimed = reasons.empty();
+    if (campaign.gauges() < 3 || (claimed && surprises(diagnosis_.effects) < 2)) {
+      return;
+    }
+    std::optional<Studied> best;
+    for (const Model& model : with_unlisted(before.model, campaign.bench)) {
+      Studied unlisted = changed(before, model);
+      if (!best || unlisted.fit.objective() < best->fit.objective()) {
+        best = std::move(unlisted);
+      }
+    }
+    const double noise = noise_of(best->misfit, campaign.shots.size());
+    const double explained = (before.fit.objective() - best->fit.objective()) / noise;
+    if (claimed ? best->fit.objective() < current.fit.objective()
+                : explained > kNearlyAll * (explained + repeated_excess(best->misfit))) {
+      reasons.push_back(unlisted_text(best->model, claimed));
     }
   }
 

@@ -1,4 +1,5 @@
 // What no effect of the library is, on benches that leave most room for one to take its place.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -186,6 +187,55 @@ TEST(Drifts, OfBothGaugesAreNoHumByItself) {
     }
   }
   EXPECT_GT(hums, 0) << "nothing to try it on";
+}
+
+testing::Campaign creeping(std::uint64_t seed, const std::string& gauge, double share) {
+  testing::Campaign truth = testing::draw_campaign({.seed = seed, .shots = 4, .gauges = 3});
+  testing::hide(truth, testing::parse_effect(fmt::format("x-gauge-creep:{}={}", gauge, share)));
+  return truth;
+}
+
+// Two effects of the library do nearly what a weak creep of one of three gauges does, and were
+// named.
+TEST(CreepingGauge, IsNoPairThatDoesNoBetter) {
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(creeping(2, "g3", 0.007)), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+  EXPECT_TRUE(says(diagnosis, "a reading of g3 that droops by 0.7"));
+}
+
+// What is unknown is told, with the size and the time that it has: 2 % within 100 us.
+TEST(CreepingGauge, IsToldOfWhereItLeavesNothing) {
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(creeping(4, "g2", 0.02)), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+  EXPECT_TRUE(
+      says(diagnosis, "a reading of g2 that droops by 2 % within 1e+02 us explains nearly"));
+}
+
+// An amplifier that runs out of its range, 2 % at 1000 microstrain.
+TEST(CurvedReadings, AreToldOfWhereTheyLeaveNothing) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 5, .shots = 6, .gauges = 4});
+  testing::hide(truth, testing::parse_effect("x-gain-compression=0.02"));
+  const Diagnosis diagnosis =
+      diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
+  EXPECT_TRUE(says(diagnosis, "too small at 1000 microstrain of either sign explain nearly all"));
+}
+
+TEST(Unlisted, LeavesTrueEffectsWhatTheyAre) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 2, .shots = 6, .gauges = 3});
+  for (const char* effect : {"crosstalk:g1=0.004", "second-relaxation=6e-12"}) {
+    testing::hide(truth, testing::parse_effect(effect));
+  }
+  const Diagnosis pair = diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(pair.effects.size(), 2U);
+  EXPECT_TRUE(pair.notes.empty());
+  testing::Campaign clamped = testing::draw_campaign({.seed = 3, .shots = 4, .gauges = 3});
+  testing::hide(clamped, testing::parse_effect("x-clamp=0.8"));
+  const Diagnosis other = diagnosed(testing::shots_of(clamped), paper_model(BenchKind::bar, false));
+  EXPECT_EQ(name_of(other.verdict), "unknown");
+  EXPECT_FALSE(says(other, "creeps") || says(other, "droops")) << "it is none of a gauge";
 }
 
 /// A first-order high pass, as of an amplifier that is coupled by a capacitor.

@@ -1,0 +1,148 @@
+#include "processing/criticism/verdict/unlisted.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "processing/models/scene.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Between the times of amplifiers, which the library has, and a share that is as good as constant.
+constexpr double kQuickest_s = 30e-6;
+constexpr double kSlowest_s = 10e-3;
+/// Of 3000 microstrain nearly a fifth.
+constexpr double kMostCurved = 2e4;
+
+class CreepingGauge final : public Effect {
+ public:
+  CreepingGauge()
+      : Effect({
+            .id = "creeping-gauge",
+            .stage = Stage::sensor,
+            .definition = "reading x (1 + c / (1 + s tau))",
+            .reference = "docs/methods/diagnosis.md",
+            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .parameters = {{.name = "c", .unit = "-", .lower = -1.0, .upper = 1.0, .typical = 0.01},
+                           {.name = "tau",
+                            .unit = "s",
+                            .lower = kQuickest_s,
+                            .upper = kSlowest_s,
+                            .typical = 1e-4,
+                            .starts = {200e-6}}},
+            .per_gauge = true,
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
+    for (std::size_t k = 0; k < scene.s.size(); ++k) {
+      scene.gauges[gauge].factor[k] *= 1.0 + values[0] / (1.0 + scene.s[k] * values[1]);
+    }
+  }
+};
+
+class CurvedReading final : public Effect {
+ public:
+  CurvedReading(const char* id, bool of_one)
+      : Effect({
+            .id = id,
+            .stage = Stage::record,
+            .definition = "reading = e (1 + c e^2)",
+            .reference = "docs/methods/diagnosis.md",
+            .kinds = {BenchKind::bar, BenchKind::shpb},
+            .parameters = {{.name = "c",
+                            .unit = "-",
+                            .lower = -kMostCurved,
+                            .upper = kMostCurved,
+                            .typical = 100.0}},
+            .per_gauge = of_one,
+        }) {}
+
+  void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
+    const double c = values[0];
+    const RecordMap curve = [c](std::span<const std::complex<double>> strain,
+                                std::span<std::complex<double>> reading) {
+      std::ranges::transform(strain, reading.begin(),
+                             [c](const auto& e) { return e * (1.0 + c * e * e); });
+    };
+    scene.record.maps.resize(scene.gauges.size());
+    for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
+      if (c != 0.0 && (!about().per_gauge || j == gauge)) {
+        scene.record.maps[j].push_back(curve);
+      }
+    }
+  }
+};
+
+const Effect& creeping_gauge() {
+  static const CreepingGauge effect;
+  return effect;
+}
+
+const Effect& curved_gauge() {
+  static const CurvedReading effect("curved-gauge", true);
+  return effect;
+}
+
+const Effect& curved_readings() {
+  static const CurvedReading effect("curved-readings", false);
+  return effect;
+}
+
+const EffectUse& use_in(const Model& fitted) {
+  return *std::ranges::find_if(fitted.effects, [](const EffectUse& use) {
+    return use.effect == &creeping_gauge() || use.effect == &curved_gauge() ||
+           use.effect == &curved_readings();
+  });
+}
+
+/// What it is and its verb.
+std::string shape_text(const EffectUse& use) {
+  const double strength = use.values[0].value;
+  if (use.effect == &creeping_gauge()) {
+    return fmt::format("a reading of {} that {} by {:.2g} % within {:.2g} us explains", use.gauge,
+                       strength < 0.0 ? "droops" : "creeps", 100.0 * std::abs(strength),
+                       1e6 * use.values[1].value);
+  }
+  constexpr double kAt = 1e-3;
+  const std::string much =
+      fmt::format("{:.2g} % too {} at 1000 microstrain of either sign",
+                  100.0 * kAt * kAt * std::abs(strength), strength < 0.0 ? "small" : "large");
+  return use.gauge.empty() ? fmt::format("readings that are {} explain", much)
+                           : fmt::format("a reading of {} that is {} explains", use.gauge, much);
+}
+
+std::string mend_text(const EffectUse& use) {
+  if (use.effect == &creeping_gauge()) {
+    return "look at its bond and at how its amplifier is coupled, or add it by a formula of your "
+           "own (docs/methods/expressions.md, stage `sensor`: 1 + c / (1 + s*tau))";
+  }
+  return "look at the range of amplifiers and digitiser, or add it by a formula of your own "
+         "(docs/methods/expressions.md, stage `record`: strain * (1 + c*strain^2))";
+}
+
+}  // namespace
+
+std::vector<Model> with_unlisted(const Model& model, const Bench& bench) {
+  std::vector<Model> list;
+  const auto add = [&](const Effect& effect, const std::string& gauge) {
+    list.emplace_back(model).effects.push_back(null_use(effect, gauge));
+  };
+  add(curved_readings(), "");
+  for (const Gauge& gauge : bench.gauges) {
+    add(creeping_gauge(), gauge.name);
+    add(curved_gauge(), gauge.name);
+  }
+  return list;
+}
+
+std::string unlisted_text(const Model& fitted, bool as_much) {
+  const EffectUse& use = use_in(fitted);
+  return fmt::format("{} {}, which no effect of the library is: {}", shape_text(use),
+                     as_much ? "as much as these effects" : "nearly all of it", mend_text(use));
+}
+
+}  // namespace kolsky
