@@ -676,25 +676,39 @@ class Diagnostician {
   /// effects do as well.
   void judge_unlisted(const Studied& before, const Studied& current,
                       std::vector<std::string>& reasons) {
-    constexpr double kNearlyAll = 0.9;
-    const Campaign& campaign = study_.campaign();
     const bool claimed = reasons.empty();
-    if (campaign.gauges() < 3 || (claimed && surprises(diagnosis_.effects) < 2)) {
+    if (study_.campaign().gauges() < 3 || (claimed && surprises(diagnosis_.effects) < 2)) {
       return;
     }
-    std::optional<Studied> best;
-    for (const Model& model : with_unlisted(before.model, campaign.bench)) {
-      Studied unlisted = changed(before, model);
-      if (!best || unlisted.fit.objective() < best->fit.objective()) {
-        best = std::move(unlisted);
-      }
+    std::vector<Studied> fits;
+    for (const Model& model : with_unlisted(before.model, study_.campaign().bench)) {
+      fits.push_back(changed(before, model));
     }
-    const double noise = noise_of(best->misfit, campaign.shots.size());
-    const double explained = (before.fit.objective() - best->fit.objective()) / noise;
-    if (claimed ? best->fit.objective() < current.fit.objective()
-                : explained > kNearlyAll * (explained + repeated_excess(best->misfit))) {
+    const auto best =
+        std::ranges::min_element(fits, {}, [](const Studied& own) { return own.fit.objective(); });
+    const bool tells = claimed ? best->fit.objective() < current.fit.objective()
+                               : explains_nearly_all(before, *best, fits);
+    if (tells && numbers_at_bounds(best->model).empty()) {
       reasons.push_back(unlisted_text(best->model, claimed));
     }
+  }
+
+  /// Far more than noise does, with next to nothing left, and far ahead of the others of a kind.
+  [[nodiscard]] bool explains_nearly_all(const Studied& before, const Studied& best,
+                                         const std::vector<Studied>& others) const {
+    constexpr double kNearlyAll = 0.9;
+    constexpr double kAhead = 0.2;
+    constexpr double kDeviations = 3.0;  // of chi2
+    const double noise = noise_of(best.misfit, study_.campaign().shots.size());
+    const double explained = (before.fit.objective() - best.fit.objective()) / noise;
+    const double of_noise = kDeviations * std::sqrt(2.0 * best.misfit.degrees_of_freedom);
+    const std::string own = unlisted_id(best.model);
+    return explained >
+               std::max(of_noise, kNearlyAll * (explained + repeated_excess(best.misfit))) &&
+           std::ranges::all_of(others, [&](const Studied& other) {
+             return unlisted_id(other.model) == own ||
+                    other.fit.objective() - best.fit.objective() > kAhead * noise * explained;
+           });
   }
 
   /// What is claimed must do at least as well as other bars would. Where it is doubted anyway, they

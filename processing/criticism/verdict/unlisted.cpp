@@ -14,7 +14,7 @@ namespace {
 
 /// Between the times of amplifiers, which the library has, and a share that is as good as constant.
 constexpr double kQuickest_s = 30e-6;
-constexpr double kSlowest_s = 10e-3;
+constexpr double kSlowest_s = 50e-3;
 /// Of 3000 microstrain nearly a fifth.
 constexpr double kMostCurved = 2e4;
 
@@ -33,7 +33,7 @@ class CreepingGauge final : public Effect {
                             .lower = kQuickest_s,
                             .upper = kSlowest_s,
                             .typical = 1e-4,
-                            .starts = {200e-6}}},
+                            .starts = {100e-6, 5e-3}}},
             .per_gauge = true,
         }) {}
 
@@ -128,15 +128,21 @@ std::string mend_text(const EffectUse& use) {
 
 std::vector<Model> with_unlisted(const Model& model, const Bench& bench) {
   std::vector<Model> list;
-  const auto add = [&](const Effect& effect, const std::string& gauge) {
-    list.emplace_back(model).effects.push_back(null_use(effect, gauge));
+  const auto add = [&](const Effect& effect, const std::string& gauge) -> EffectUse& {
+    return list.emplace_back(model).effects.emplace_back(null_use(effect, gauge));
   };
   add(curved_readings(), "");
   for (const Gauge& gauge : bench.gauges) {
-    add(creeping_gauge(), gauge.name);
+    for (const double start_s : creeping_gauge().about().parameters[1].starts) {
+      add(creeping_gauge(), gauge.name).values[1].value = start_s;
+    }
     add(curved_gauge(), gauge.name);
   }
   return list;
+}
+
+std::string unlisted_id(const Model& fitted) {
+  return use_in(fitted).id();
 }
 
 std::string unlisted_text(const Model& fitted, bool as_much) {

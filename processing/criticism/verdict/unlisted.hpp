@@ -16,8 +16,11 @@ namespace kolsky {
 /// What they explain is told, and never claimed.
 [[nodiscard]] std::vector<Model> with_unlisted(const Model& model, const Bench& bench);
 
+/// Which of them it is, and of which gauge. @param fitted  one of `with_unlisted`
+[[nodiscard]] std::string unlisted_id(const Model& fitted);
+
 /// What such a fit says, and the formula by which to add it.
-/// @param fitted  one of `with_unlisted`
+/// @param fitted   likewise
 /// @param as_much  it explains as much as two effects and more do, not nearly all that is unknown
 [[nodiscard]] std::string unlisted_text(const Model& fitted, bool as_much);
 
