@@ -86,6 +86,10 @@ class Effect {
   /// @param gauge   its place in the bench, for effects of one gauge
   virtual void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const = 0;
 
+  /// Relative deviation of its strength by that of filed numbers which the formula goes by and no
+  /// number of a model stands for.
+  [[nodiscard]] virtual double filed_share(const Bench& /*bench*/) const { return 0.0; }
+
   /// What keeps the effect from being tested on this bench at all; empty where nothing does.
   [[nodiscard]] virtual std::string untestable_because(const Bench& /*bench*/) const { return {}; }
 

@@ -30,10 +30,18 @@ std::string notes_text(const Diagnosis& diagnosis) {
   return text;
 }
 
+/// How `kolsky model add` has to be told of what was found.
+std::string added_as_text(const Diagnosis& diagnosis, const std::string& id) {
+  const EffectUse* use = diagnosis.model ? diagnosis.model->find(id) : nullptr;
+  return use != nullptr && use->per_shot
+             ? "   with a strength of every shot's own (`model add --per-shot`)"
+             : "";
+}
+
 std::string missing_text(const Diagnosis& diagnosis) {
   std::string text;
   for (const std::string& id : diagnosis.effects) {
-    text += "  missing: " + id;
+    text += "  missing: " + id + added_as_text(diagnosis, id);
     const auto& ties = diagnosis.tied_with.at(id);
     for (std::size_t i = 0; i < ties.size(); ++i) {
       text += (i == 0 ? "   (cannot be told from " : ", ") + ties[i];

@@ -168,10 +168,10 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
         const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
         const auto [least, most] =
             value.bounds.value_or(std::array{parameter.lower, parameter.upper});
-        numbers_.push_back({uses_.size(), p, value.value, scale, least, most, value.prior_mean,
-                            value.prior_sd,
-                            by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1,
-                            parameter.difference, parameter.power});
+        numbers_.push_back(
+            {uses_.size(), p, value.value, scale, least, most, value.prior_mean, value.prior_sd,
+             by_shot > 1 ? static_cast<std::ptrdiff_t>(place / by_gauge) : -1, parameter.difference,
+             parameter.power, p == about.strength ? use.effect->filed_share(campaign.bench) : 0.0});
       }
     }
     slots[p] = std::move(own);

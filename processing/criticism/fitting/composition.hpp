@@ -24,6 +24,7 @@ struct FreeNumber {
   std::ptrdiff_t shot = -1;  ///< the only one it acts on; -1: all
   double difference = 2e-3;  ///< step of numeric derivatives, in scales
   double power = 1.0;
+  double filed_share = 0.0;  ///< relative deviation by filed numbers, beside that of the fit
 
   [[nodiscard]] double theta_of(double value) const;
   [[nodiscard]] double value_at(double theta) const;

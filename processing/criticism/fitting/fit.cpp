@@ -312,7 +312,7 @@ Model fitted(const Model& model, const Composition& composition, const ModelFit&
           const double theta_variance =
               fit.covariance(at, at) + (fit.doubt.size() > 0 ? fit.doubt(at, at) : 0.0);
           const double sd = number.sd_at(fit.theta[i], std::sqrt(theta_variance));
-          variance += sd * sd;
+          variance += sd * sd + std::pow(number.filed_share * value, 2);
           ++count;
         }
       }

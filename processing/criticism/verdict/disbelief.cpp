@@ -150,7 +150,9 @@ const CandidateResult* surest_rejected(const Diagnosis& diagnosis, double explai
 }  // namespace
 
 std::size_t surprises(const std::vector<std::string>& effects) {
-  return effects.size() - static_cast<std::size_t>(std::ranges::count(effects, "end-reflection"));
+  return static_cast<std::size_t>(std::ranges::count_if(effects, [](const std::string& id) {
+    return id != "end-reflection" && id != "geometric-dispersion";
+  }));
 }
 
 bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,

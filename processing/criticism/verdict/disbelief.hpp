@@ -14,7 +14,8 @@ namespace kolsky {
 /// Anything can be expanded in three effects: that one is missing which the library does not have
 /// is likelier than that three are at once.
 inline constexpr std::size_t kMostBelieved = 2;
-/// How many of them count: that a bar ends, and sends waves back from there, is no surprise.
+/// How many of them count: that a bar ends, and sends waves back from there, and that it is as
+/// thick as it is are no surprise.
 [[nodiscard]] std::size_t surprises(const std::vector<std::string>& effects);
 
 /// Whether an effect is so strong that nothing is built so: then noise was fitted with it.

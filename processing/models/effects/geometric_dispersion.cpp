@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "processing/models/effect.hpp"
 #include "processing/models/exact_waves.hpp"
 #include "processing/models/scene.hpp"
@@ -23,6 +25,14 @@ class GeometricDispersion final : public Effect {
         blend_exact_waves(bar, scene.s, values[0]);
       }
     }
+  }
+
+  /// It grows with the square of Poisson's ratio times the radius. Between two bars a diameter is a
+  /// number of its own.
+  [[nodiscard]] double filed_share(const Bench& bench) const override {
+    const double diameter =
+        bench.kind == BenchKind::bar ? relative_sd(bench.input.diameter_m) : 0.0;
+    return 2.0 * std::hypot(relative_sd(bench.input.poisson_ratio), diameter);
   }
 };
 

@@ -385,6 +385,18 @@ TEST(LongDiagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
   ASSERT_FALSE(diagnosis.notes.empty());
 }
 
+// But that a bar ends and is as thick as it is are no surprise: two effects beside these were given
+// up for three.
+TEST(Surprises, AreNoEffectsThatEveryBarHas) {
+  EXPECT_EQ(surprises({"geometric-dispersion", "end-reflection"}), 0U);
+  EXPECT_EQ(surprises({"geometric-dispersion", "gauge-factor:g3", "amplifier-bandwidth:g3"}), 2U);
+  const Made made =
+      make(82, {"geometric-dispersion=1", "gauge-factor:g3=0.015", "channel-delay:g2=1.5e-6"});
+  const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
+  EXPECT_EQ(diagnosis.effects.size(), 3U);
+  EXPECT_EQ(std::ranges::count(diagnosis.effects, "geometric-dispersion"), 1);
+}
+
 // A hum that gauges pick up by different shares is nearly a drift of its own at each of them. That
 // its phases are common makes it claimable; what it explains weighs against the drifts all the
 // same.
