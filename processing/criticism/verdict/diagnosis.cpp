@@ -509,8 +509,8 @@ class Diagnostician {
     const Unexplained left = unexplained(study_, current);
     diagnosis_.unexplained_log_p = left.log_p;
     diagnosis_.after = current.misfit;
-    // Both by the same measure of the noise.
-    const Studied before = diagnosis_.effects.empty() ? first : study_.refit(first);
+    // Both by the same measure of the noise, which what was found and let go again has changed.
+    const Studied before = diagnosis_.effects.empty() ? current : study_.refit(first);
     diagnosis_.before = before.misfit;
     diagnosis_.model = current.model;
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
