@@ -698,13 +698,13 @@ class Diagnostician {
                                          const std::vector<Studied>& others) const {
     constexpr double kNearlyAll = 0.9;
     constexpr double kAhead = 0.2;
-    constexpr double kDeviations = 3.0;  // of chi2
+    constexpr double kDeviations = 3.0;
     const double noise = noise_of(best.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - best.fit.objective()) / noise;
-    const double of_noise = kDeviations * std::sqrt(2.0 * best.misfit.degrees_of_freedom);
+    const double of_noise = std::sqrt(2.0 * best.misfit.degrees_of_freedom);  // in chi2
+    const double left = std::max(0.0, repeated_excess(best.misfit) - of_noise);
     const std::string own = unlisted_id(best.model);
-    return explained >
-               std::max(of_noise, kNearlyAll * (explained + repeated_excess(best.misfit))) &&
+    return explained > std::max(kDeviations * of_noise, kNearlyAll * (explained + left)) &&
            std::ranges::all_of(others, [&](const Studied& other) {
              return unlisted_id(other.model) == own ||
                     other.fit.objective() - best.fit.objective() > kAhead * noise * explained;
