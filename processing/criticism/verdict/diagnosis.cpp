@@ -12,19 +12,19 @@
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
-#include "processing/criticism/search/common_amplitude.hpp"
+#include "processing/criticism/search/candidate_table.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
-#include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_noise.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
-#include "processing/criticism/verdict/drifts.hpp"
 #include "processing/criticism/verdict/filed_bars.hpp"
 #include "processing/criticism/verdict/filed_conflict.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
+#include "processing/criticism/verdict/refits.hpp"
+#include "processing/criticism/verdict/slow_ties.hpp"
 #include "processing/criticism/verdict/strength_notes.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 #include "processing/criticism/verdict/unlisted.hpp"
@@ -67,15 +67,6 @@ std::string name_of(DiagnosisVerdict verdict) {
 
 namespace {
 
-/// What a fit gains over one that lacks some of its numbers, as a square of a normal deviate: a hum
-/// of every gauge's own takes a dozen numbers along, each of which fits some noise.
-double evidence(const Studied& without, const Studied& with, double noise) {
-  const double gain = (without.fit.objective() - with.fit.objective()) / noise;
-  const double freedom = without.fit.degrees_of_freedom(without.composition) -
-                         with.fit.degrees_of_freedom(with.composition);
-  return equivalent_square(log_gain_tail(gain, std::max(1.0, freedom), false));
-}
-
 /// Where earlier beginnings of a search have been.
 struct Trail {
   /// Effects that stood beside each other when two were found, and which of them was on trial.
@@ -112,7 +103,7 @@ class Diagnostician {
     }
     if (diagnosis_.effects.size() == 1 && any_beyond_belief(current)) {
       // Nothing was found beside it that takes its part.
-      drop(0, "rejected", without(current, diagnosis_.effects[0]), current);
+      drop(0, "rejected", without(study_, current, diagnosis_.effects[0]), current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1 && !settled) {
       go_back(current);
@@ -123,8 +114,8 @@ class Diagnostician {
       current = study_.refit(first);
     }
     make_alike(current);
-    weigh_drifts(current);
-    weigh_hums(current);
+    tie_with_drifts(study_, current, diagnosis_);
+    tie_with_hum(study_, current, diagnosis_);
     conclude(first, current);
     return std::move(diagnosis_);
   }
@@ -199,8 +190,8 @@ class Diagnostician {
     if (!options_.safeguards.backward) {
       return false;
     }
-    Studied left = without(current, diagnosis_.effects.front());
-    if (missed_in(left, current)) {
+    Studied left = without(study_, current, diagnosis_.effects.front());
+    if (missed_in(study_, left, current)) {
       return false;
     }
     drop(0, "not needed", std::move(left), current);
@@ -243,7 +234,7 @@ class Diagnostician {
     for (std::size_t i = 0; i + spared < diagnosis_.effects.size(); ++i) {
       const std::string id = diagnosis_.effects[i];
       options_.progress("seeking " + id + " again beside the others");
-      const Studied base = without(current, id);
+      const Studied base = without(study_, current, id);
       Model start = start_;
       std::erase_if(start.effects, [&](const EffectUse& use) { return use.id() == id; });
       Search search(study_, base, start, options_.safeguards);
@@ -273,16 +264,6 @@ class Diagnostician {
     return changed;
   }
 
-  static Model model_without(const Studied& current, const std::string& id) {
-    Model model = current.model;
-    std::erase_if(model.effects, [&](const EffectUse& use) { return use.id() == id; });
-    return model;
-  }
-
-  Studied without(const Studied& current, const std::string& id) {
-    return changed(current, model_without(current, id));
-  }
-
   /// The same begun from the moduli that the model started with: what goes may have stood in for
   /// one of them, which has moved to where it does nothing and does not find back.
   Studied without_from_start(const Studied& current, const std::string& id) {
@@ -292,22 +273,7 @@ class Diagnostician {
       use = use.effect->about().base && start != nullptr ? *start : use;
     }
     start_moduli(model, study_.campaign(), study_.residuals());
-    return begun_at(model, Composition(model, study_.campaign()).start());
-  }
-
-  /// Another model, begun from where one stands.
-  Studied changed(const Studied& current, const Model& model) {
-    const Composition composition(model, study_.campaign());
-    return begun_at(model, carry(current.composition, current.fit.theta, composition));
-  }
-
-  Studied begun_at(const Model& model, std::vector<double> theta) {
-    Composition composition(model, study_.campaign());
-    ModelFit fit = fit_model(composition, study_.residuals(), study_.executor(), std::move(theta));
-    const Misfit misfit =
-        misfit_of(study_.residuals(), fit.residual, fit.degrees_of_freedom(composition));
-    Model after = fitted(model, composition, fit);
-    return {std::move(after), std::move(composition), std::move(fit), misfit};
+    return begun_at(study_, model, Composition(model, study_.campaign()).start());
   }
 
   /// Strengths that every gauge has of its own lean to none, since what all gauges have alike could
@@ -321,7 +287,7 @@ class Diagnostician {
         continue;
       }
       use->alike = true;
-      Studied alike = changed(current, model);
+      Studied alike = changed(study_, current, model);
       const double freedom = alike.fit.degrees_of_freedom(alike.composition) -
                              current.fit.degrees_of_freedom(current.composition);
       const double loss = (alike.fit.objective() - current.fit.objective()) /
@@ -332,131 +298,16 @@ class Diagnostician {
     }
   }
 
-  /// In a record shorter than a period a hum of one phase in all shots is a slope at every gauge,
-  /// and drifts at several of them are as much. A source that is free takes up one of them, so that
-  /// each by itself may hardly show, and one after the other they are not found.
-  void weigh_drifts(const Studied& current) {
-    for (const std::string& id : diagnosis_.effects) {
-      const EffectUse* hum = current.model.find(id);
-      if (hum == nullptr || !hum->effect->about().quadrature) {
-        continue;
-      }
-      const Studied neither = without(current, id);
-      const Studied drifts = changed(neither, with_drifts(neither.model, study_.campaign().bench));
-      const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-      if (evidence(neither, drifts, noise) < evidence(neither, current, noise) - kTie) {
-        continue;
-      }
-      std::vector<std::string>& ties = diagnosis_.tied_with[id];
-      for (const std::string& drift : drifting_gauges(drifts.model)) {
-        if (std::ranges::count(ties, drift) == 0) {
-          ties.push_back(drift);
-        }
-      }
-    }
-  }
-
-  /// A drift of each shot's own is a hum of another phase in every shot, picked up by one gauge or
-  /// by several in unequal shares of which the source takes up the rest: where a hum at that gauge
-  /// does as well, or other gauges slope before the pulses, too, nothing tells the two apart. One
-  /// that all shots have alike is a hum of one phase, where another gauge drifts beside it.
-  void weigh_hums(const Studied& current) {
-    const std::string hum = find_effect("mains-hum")->about().id;
-    if (std::ranges::count(diagnosis_.effects, hum) > 0) {
-      return;
-    }
-    const auto drifts = std::ranges::count_if(diagnosis_.effects, [&](const std::string& id) {
-      const EffectUse* use = current.model.find(id);
-      return use != nullptr && !use->gauge.empty() && is_addition(*use->effect);
-    });
-    for (const std::string& id : diagnosis_.effects) {
-      const EffectUse* drift = current.model.find(id);
-      std::vector<std::string>& ties = diagnosis_.tied_with[id];
-      if (drift == nullptr || drift->gauge.empty() || !is_addition(*drift->effect) ||
-          std::ranges::count(ties, hum) > 0) {
-        continue;
-      }
-      const bool may_be_hum = drift->per_shot ? others_slope(drift->gauge) ||
-                                                    hum_does_as_well(without(current, id), *drift)
-                                              : drifts > 1 || others_drift(current);
-      if (may_be_hum) {
-        ties.push_back(hum);
-      }
-    }
-  }
-
-  /// Whether a drift at any other gauge, alike in all shots, is missed beside those claimed. All of
-  /// them at once tell less: a slope at every gauge is the source's.
-  [[nodiscard]] bool others_drift(const Studied& current) {
-    for (const Gauge& gauge : study_.campaign().bench.gauges) {
-      const Model more = with_drift(current.model, gauge.name);
-      if (more.effects.size() > current.model.effects.size() &&
-          missed_in(current, changed(current, more))) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool others_slope(const std::string& gauge) const {
-    const auto& gauges = study_.campaign().bench.gauges;
-    for (std::size_t j = 0; j < gauges.size(); ++j) {
-      if (gauges[j].name != gauge && log_chance_of_slopes(study_.campaign(), j) < kSure) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// A hum has one amplitude in all shots and any phase, a drift any slope: the likelihoods of
-  /// both, to first order, which for additions is all there is.
-  bool hum_does_as_well(const Studied& neither, const EffectUse& drift) {
-    const double noise = noise_of(neither.misfit, study_.campaign().shots.size());
-    double of_drift = 0.0;
-    double of_hum = -HUGE_VAL;
-    for (const Candidate& candidate : candidates_for(neither, study_.campaign())) {
-      const EffectUse& use = candidate.use;
-      if (!use.per_shot || use.alike || !is_addition(*use.effect)) {
-        continue;
-      }
-      if (use.id() == drift.id()) {
-        const Direction direction = direction_of(candidate, neither, study_, 0);
-        of_drift = log_likelihood_of_drawn_strengths(direction.pull / noise,
-                                                     direction.information.diagonal() / noise);
-      } else if (use.effect->about().quadrature) {
-        const Direction direction = direction_of(candidate, neither, study_, 0);
-        of_hum = std::max(
-            of_hum, log_likelihood_of_common_amplitude(parts_at(direction, noise, drift.gauge)));
-      }
-    }
-    return 2.0 * of_hum > 2.0 * of_drift - kTie;
-  }
-
-  /// Of a hum's strengths, which go by parameter, shot and gauge, each shot's at one gauge.
-  [[nodiscard]] std::vector<QuadratureParts> parts_at(const Direction& direction, double noise,
-                                                      const std::string& gauge) const {
-    const auto& gauges = study_.campaign().bench.gauges;
-    const auto at = std::ranges::find(gauges, gauge, &Gauge::name) - gauges.begin();
-    const auto count = static_cast<Eigen::Index>(gauges.size());
-    const auto shots = static_cast<Eigen::Index>(study_.campaign().shots.size());
-    std::vector<QuadratureParts> parts;
-    for (Eigen::Index n = 0; n < shots; ++n) {
-      const std::vector<Eigen::Index> own{n * count + at, (shots + n) * count + at};
-      parts.push_back({direction.pull(own) / noise, direction.information(own, own) / noise});
-    }
-    return parts;
-  }
-
   /// Backward: what others have made superfluous goes, but for so many of the last.
   void drop_unneeded(Studied& current, std::size_t spared) {
     for (std::size_t i = 0; i + spared < diagnosis_.effects.size();) {
       const std::string id = diagnosis_.effects[i];
-      Studied left = without(current, id);
+      Studied left = without(study_, current, id);
       const bool confirmed = !options_.safeguards.own_strengths || stands(left, current, id);
-      if (confirmed && missed_in(left, current)) {
+      if (confirmed && missed_in(study_, left, current)) {
         left = without_from_start(current, id);
       }
-      if (!confirmed || !missed_in(left, current)) {
+      if (!confirmed || !missed_in(study_, left, current)) {
         drop(i, "not needed", std::move(left), current);
       } else {
         ++i;
@@ -489,13 +340,6 @@ class Diagnostician {
     return slow_noise_excluded(SlowNoise(left, study_).log_chance({&addition, 1}), Claim::standing);
   }
 
-  /// Whether a fit is worse for want of what went.
-  [[nodiscard]] bool missed_in(const Studied& left, const Studied& current) const {
-    constexpr double kMissed = 16.0;  // as a square of a normal deviate
-    const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-    return evidence(left, current, noise) >= kMissed;
-  }
-
   /// @param left  the fit without it
   void drop(std::size_t i, const std::string& verdict, Studied left, Studied& current) {
     const std::string id = diagnosis_.effects[i];
@@ -516,7 +360,7 @@ class Diagnostician {
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
     const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     // Smooth distortions show that something is left; how much, all that repeats.
-    const double excess = std::max(left.excess, repeated_excess(current.misfit));
+    const double excess = std::max(left.excess, repeated_excess(study_, current));
     // Shots that ask for moduli or readings of their own may leave no more than noise does. What a
     // claim leaves of what it explains is its own inexactness only while noise might leave as much:
     // ends that return waves explain so much that anything else would be less than a share of it.
@@ -638,7 +482,10 @@ class Diagnostician {
     if (reasons.empty()) {
       judge_temperature(current, noise, reasons);
     }
-    judge_unlisted(before, current, reasons);
+    if (const auto unlisted = unlisted_in_place_of(
+            study_, before, current, surprises(diagnosis_.effects), !reasons.empty())) {
+      reasons.push_back(*unlisted);
+    }
     return reasons;
   }
 
@@ -665,50 +512,10 @@ class Diagnostician {
       return use.id() != temperature && std::ranges::count(diagnosis_.effects, use.id()) > 0;
     });
     if (const std::optional<Model> any = with_bars_of_any_moduli(alone, bench)) {
-      if (changed(current, *any).fit.objective() < current.fit.objective() + kTie * noise) {
+      if (changed(study_, current, *any).fit.objective() < current.fit.objective() + kTie * noise) {
         reasons.push_back(no_temperature_text());
       }
     }
-  }
-
-  /// One thing that the library lacks is likelier than two effects which do no better, and worth
-  /// being told of where it leaves next to nothing of what is unknown. Of two gauges a bar's own
-  /// effects do as well.
-  void judge_unlisted(const Studied& before, const Studied& current,
-                      std::vector<std::string>& reasons) {
-    const bool claimed = reasons.empty();
-    if (study_.campaign().gauges() < 3 || (claimed && surprises(diagnosis_.effects) < 2)) {
-      return;
-    }
-    std::vector<Studied> fits;
-    for (const Model& model : with_unlisted(before.model, study_.campaign().bench)) {
-      fits.push_back(changed(before, model));
-    }
-    const auto best =
-        std::ranges::min_element(fits, {}, [](const Studied& own) { return own.fit.objective(); });
-    const bool tells = claimed ? best->fit.objective() < current.fit.objective()
-                               : explains_nearly_all(before, *best, fits);
-    if (tells && numbers_at_bounds(best->model).empty()) {
-      reasons.push_back(unlisted_text(best->model, claimed));
-    }
-  }
-
-  /// Far more than noise does, with next to nothing left, and far ahead of the others of a kind.
-  [[nodiscard]] bool explains_nearly_all(const Studied& before, const Studied& best,
-                                         const std::vector<Studied>& others) const {
-    constexpr double kNearlyAll = 0.9;
-    constexpr double kAhead = 0.2;
-    constexpr double kDeviations = 3.0;
-    const double noise = noise_of(best.misfit, study_.campaign().shots.size());
-    const double explained = (before.fit.objective() - best.fit.objective()) / noise;
-    const double of_noise = std::sqrt(2.0 * best.misfit.degrees_of_freedom);  // in chi2
-    const double left = std::max(0.0, repeated_excess(best.misfit) - of_noise);
-    const std::string own = unlisted_id(best.model);
-    return explained > std::max(kDeviations * of_noise, kNearlyAll * (explained + left)) &&
-           std::ranges::all_of(others, [&](const Studied& other) {
-             return unlisted_id(other.model) == own ||
-                    other.fit.objective() - best.fit.objective() > kAhead * noise * explained;
-           });
   }
 
   /// What is claimed must do at least as well as other bars would. Where it is doubted anyway, they
@@ -722,7 +529,7 @@ class Diagnostician {
     if (!any) {
       return;
     }
-    const Studied other = changed(before, *any);
+    const Studied other = changed(study_, before, *any);
     const double behind = other.fit.objective() - current.fit.objective();
     const double explained = before.fit.objective() - current.fit.objective();
     const bool doubted = !reasons.empty() && !diagnosis_.effects.empty();
@@ -744,11 +551,6 @@ class Diagnostician {
     return std::any_of(
         diagnosis_.effects.begin(), diagnosis_.effects.end(),
         [&](const std::string& id) { return beyond_belief(current, id, study_.campaign(), 1.0); });
-  }
-
-  [[nodiscard]] double repeated_excess(const Misfit& misfit) const {
-    const double noise = noise_of(misfit, study_.campaign().shots.size());
-    return (misfit.chi2_reduced / noise - 1.0) * misfit.degrees_of_freedom;
   }
 
   /// Effects together fit what is not in the library better than one does, so less may remain.

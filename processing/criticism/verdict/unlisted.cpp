@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <vector>
 
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/verdict/at_bounds.hpp"
+#include "processing/criticism/verdict/refits.hpp"
 #include "processing/models/scene.hpp"
 
 namespace kolsky {
@@ -124,8 +128,6 @@ std::string mend_text(const EffectUse& use) {
          "(docs/methods/expressions.md, stage `record`: strain * (1 + c*strain^2))";
 }
 
-}  // namespace
-
 std::vector<Model> with_unlisted(const Model& model, const Bench& bench) {
   std::vector<Model> list;
   const auto add = [&](const Effect& effect, const std::string& gauge) -> EffectUse& {
@@ -141,14 +143,50 @@ std::vector<Model> with_unlisted(const Model& model, const Bench& bench) {
   return list;
 }
 
-std::string unlisted_id(const Model& fitted) {
-  return use_in(fitted).id();
-}
-
-std::string unlisted_text(const Model& fitted, bool as_much) {
+/// @param as_much  it explains as much as two effects and more do, not nearly all that is unknown
+std::string text_of(const Model& fitted, bool as_much) {
   const EffectUse& use = use_in(fitted);
   return fmt::format("{} {}, which no effect of the library is: {}", shape_text(use),
                      as_much ? "as much as these effects" : "nearly all of it", mend_text(use));
+}
+
+/// Far more than noise does, with next to nothing left, and far ahead of the others of a kind.
+bool explains_nearly_all(const Study& study, const Studied& before, const Studied& best,
+                         const std::vector<Studied>& others) {
+  constexpr double kNearlyAll = 0.9;
+  constexpr double kAhead = 0.2;
+  constexpr double kDeviations = 3.0;
+  const double noise = noise_of(best.misfit, study.campaign().shots.size());
+  const double explained = (before.fit.objective() - best.fit.objective()) / noise;
+  const double of_noise = std::sqrt(2.0 * best.misfit.degrees_of_freedom);  // in chi2
+  const double left = std::max(0.0, repeated_excess(study, best) - of_noise);
+  const std::string own = use_in(best.model).id();
+  return explained > std::max(kDeviations * of_noise, kNearlyAll * (explained + left)) &&
+         std::ranges::all_of(others, [&](const Studied& other) {
+           return use_in(other.model).id() == own ||
+                  other.fit.objective() - best.fit.objective() > kAhead * noise * explained;
+         });
+}
+
+}  // namespace
+
+std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& before,
+                                                const Studied& current, std::size_t effects,
+                                                bool unknown) {
+  if (study.campaign().gauges() < 3 || (!unknown && effects < 2)) {
+    return std::nullopt;
+  }
+  std::vector<Studied> fits;
+  for (const Model& model : with_unlisted(before.model, study.campaign().bench)) {
+    fits.push_back(changed(study, before, model));
+  }
+  const auto best =
+      std::ranges::min_element(fits, {}, [](const Studied& own) { return own.fit.objective(); });
+  const bool tells = unknown ? explains_nearly_all(study, before, *best, fits)
+                             : best->fit.objective() < current.fit.objective();
+  return tells && numbers_at_bounds(best->model).empty()
+             ? std::optional(text_of(best->model, !unknown))
+             : std::nullopt;
 }
 
 }  // namespace kolsky

@@ -1,27 +1,29 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
-#include <vector>
 
-#include "processing/models/model.hpp"
+#include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky {
 
-/// Models that hold, each, something that laboratories meet and no effect of the library is:
+/// What laboratories meet and no effect of the library is:
 ///
 ///     reading x (1 + c / (1 + s tau))   of one gauge: a bond that creeps, an amplifier that droops
 ///     reading = e (1 + c e^2)           of one gauge or of all: an amplifier that runs out of
 ///     range
 ///
-/// What they explain is told, and never claimed.
-[[nodiscard]] std::vector<Model> with_unlisted(const Model& model, const Bench& bench);
-
-/// Which of them it is, and of which gauge. @param fitted  one of `with_unlisted`
-[[nodiscard]] std::string unlisted_id(const Model& fitted);
-
-/// What such a fit says, and the formula by which to add it.
-/// @param fitted   likewise
-/// @param as_much  it explains as much as two effects and more do, not nearly all that is unknown
-[[nodiscard]] std::string unlisted_text(const Model& fitted, bool as_much);
+/// It is never claimed. One such thing is likelier than two effects which do no better, and worth
+/// being told of where it leaves next to nothing of what is unknown. Of two gauges a bar's own
+/// effects do as well.
+/// @param before   without what is claimed
+/// @param current  with it
+/// @param effects  that are claimed and count as surprises
+/// @param unknown  what was found is not believed, or nothing was
+/// @return what it does and the formula by which to add it; nothing where it does not
+[[nodiscard]] std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& before,
+                                                              const Studied& current,
+                                                              std::size_t effects, bool unknown);
 
 }  // namespace kolsky

@@ -1,0 +1,165 @@
+#include "processing/criticism/verdict/slow_ties.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processing/criticism/search/candidates.hpp"
+#include "processing/criticism/search/common_amplitude.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
+#include "processing/criticism/verdict/choice.hpp"
+#include "processing/criticism/verdict/refits.hpp"
+
+namespace kolsky {
+
+namespace {
+
+constexpr const char* kDrift = "baseline-drift";
+constexpr const char* kHum = "mains-hum";
+
+/// The model with a drift at a gauge, alike in all shots; as it is where it has one there.
+Model with_drift(const Model& model, const std::string& gauge) {
+  Model drifting = model;
+  EffectUse drift = null_use(*find_effect(kDrift), gauge);
+  if (drifting.find(drift.id()) == nullptr) {
+    drifting.effects.push_back(std::move(drift));
+  }
+  return drifting;
+}
+
+Model with_drifts(const Model& model, const Bench& bench) {
+  Model drifting = model;
+  for (const Gauge& gauge : bench.gauges) {
+    drifting = with_drift(drifting, gauge.name);
+  }
+  return drifting;
+}
+
+/// Of a fitted model, the drifts that are more than three of their deviations: "baseline-drift:g2".
+std::vector<std::string> drifting_gauges(const Model& fitted) {
+  constexpr double kKnown = 3.0;
+  std::vector<std::string> list;
+  for (const EffectUse& use : fitted.effects) {
+    const ModelValue& rate = use.values.front();
+    if (use.effect->about().id == kDrift && std::abs(rate.value) > kKnown * rate.sd) {
+      list.push_back(use.id());
+    }
+  }
+  return list;
+}
+
+bool is_drift(const EffectUse* use) {
+  return use != nullptr && !use->gauge.empty() && is_addition(*use->effect);
+}
+
+/// Whether a drift at any other gauge, alike in all shots, is missed beside those claimed. All of
+/// them at once tell less: a slope at every gauge is the source's.
+bool others_drift(Study& study, const Studied& current) {
+  return std::ranges::any_of(study.campaign().bench.gauges, [&](const Gauge& gauge) {
+    const Model more = with_drift(current.model, gauge.name);
+    return more.effects.size() > current.model.effects.size() &&
+           missed_in(study, current, changed(study, current, more));
+  });
+}
+
+/// Before the pulses, which noise does once in 1e5 campaigns.
+bool others_slope(const Campaign& campaign, const std::string& gauge) {
+  constexpr double kSure = -11.5;
+  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
+    if (campaign.bench.gauges[j].name != gauge && log_chance_of_slopes(campaign, j) < kSure) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Of a hum's strengths, which go by parameter, shot and gauge, each shot's at one gauge.
+std::vector<QuadratureParts> parts_at(const Campaign& campaign, const Direction& direction,
+                                      double noise, const std::string& gauge) {
+  const auto& gauges = campaign.bench.gauges;
+  const auto at = std::ranges::find(gauges, gauge, &Gauge::name) - gauges.begin();
+  const auto count = static_cast<Eigen::Index>(gauges.size());
+  const auto shots = static_cast<Eigen::Index>(campaign.shots.size());
+  std::vector<QuadratureParts> parts;
+  for (Eigen::Index n = 0; n < shots; ++n) {
+    const std::vector<Eigen::Index> own{n * count + at, (shots + n) * count + at};
+    parts.push_back({direction.pull(own) / noise, direction.information(own, own) / noise});
+  }
+  return parts;
+}
+
+/// A hum has one amplitude in all shots and any phase, a drift any slope: the likelihoods of
+/// both, to first order, which for additions is all there is.
+bool hum_does_as_well(Study& study, const Studied& neither, const EffectUse& drift) {
+  const Campaign& campaign = study.campaign();
+  const double noise = noise_of(neither.misfit, campaign.shots.size());
+  double of_drift = 0.0;
+  double of_hum = -HUGE_VAL;
+  for (const Candidate& candidate : candidates_for(neither, campaign)) {
+    const EffectUse& use = candidate.use;
+    if (!use.per_shot || use.alike || !is_addition(*use.effect)) {
+      continue;
+    }
+    if (use.id() == drift.id()) {
+      const Direction direction = direction_of(candidate, neither, study, 0);
+      of_drift = log_likelihood_of_drawn_strengths(direction.pull / noise,
+                                                   direction.information.diagonal() / noise);
+    } else if (use.effect->about().quadrature) {
+      const Direction direction = direction_of(candidate, neither, study, 0);
+      of_hum = std::max(of_hum, log_likelihood_of_common_amplitude(
+                                    parts_at(campaign, direction, noise, drift.gauge)));
+    }
+  }
+  return 2.0 * of_hum > 2.0 * of_drift - kTie;
+}
+
+}  // namespace
+
+void tie_with_drifts(Study& study, const Studied& current, Diagnosis& diagnosis) {
+  for (const std::string& id : diagnosis.effects) {
+    const EffectUse* hum = current.model.find(id);
+    if (hum == nullptr || !hum->effect->about().quadrature) {
+      continue;
+    }
+    const Studied neither = without(study, current, id);
+    const Studied drifts =
+        changed(study, neither, with_drifts(neither.model, study.campaign().bench));
+    const double noise = noise_of(current.misfit, study.campaign().shots.size());
+    if (evidence(neither, drifts, noise) < evidence(neither, current, noise) - kTie) {
+      continue;
+    }
+    std::vector<std::string>& ties = diagnosis.tied_with[id];
+    for (const std::string& drift : drifting_gauges(drifts.model)) {
+      if (std::ranges::count(ties, drift) == 0) {
+        ties.push_back(drift);
+      }
+    }
+  }
+}
+
+void tie_with_hum(Study& study, const Studied& current, Diagnosis& diagnosis) {
+  if (std::ranges::count(diagnosis.effects, kHum) > 0) {
+    return;
+  }
+  const auto drifts = std::ranges::count_if(
+      diagnosis.effects, [&](const std::string& id) { return is_drift(current.model.find(id)); });
+  for (const std::string& id : diagnosis.effects) {
+    const EffectUse* drift = current.model.find(id);
+    std::vector<std::string>& ties = diagnosis.tied_with[id];
+    if (!is_drift(drift) || std::ranges::count(ties, kHum) > 0) {
+      continue;
+    }
+    const bool may_be_hum = drift->per_shot
+                                ? others_slope(study.campaign(), drift->gauge) ||
+                                      hum_does_as_well(study, without(study, current, id), *drift)
+                                : drifts > 1 || others_drift(study, current);
+    if (may_be_hum) {
+      ties.emplace_back(kHum);
+    }
+  }
+}
+
+}  // namespace kolsky
