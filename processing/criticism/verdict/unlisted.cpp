@@ -107,7 +107,7 @@ const EffectUse& use_in(const Model& fitted) {
 std::string shape_text(const EffectUse& use) {
   const double strength = use.values[0].value;
   if (use.effect == &creeping_gauge()) {
-    return fmt::format("a reading of {} that {} by {:.2g} % within {:.2g} us explains", use.gauge,
+    return fmt::format("a reading of {} that {} by {:.2g} % within {:.0f} us explains", use.gauge,
                        strength < 0.0 ? "droops" : "creeps", 100.0 * std::abs(strength),
                        1e6 * use.values[1].value);
   }
@@ -124,8 +124,10 @@ std::string mend_text(const EffectUse& use) {
     return "look at its bond and at how its amplifier is coupled, or add it by a formula of your "
            "own (docs/methods/expressions.md, stage `sensor`: 1 + c / (1 + s*tau))";
   }
-  return "look at the range of amplifiers and digitiser, or add it by a formula of your own "
-         "(docs/methods/expressions.md, stage `record`: strain * (1 + c*strain^2))";
+  return fmt::format(
+      "look at the range of amplifiers and digitiser, or add it by a formula of your own "
+      "(docs/methods/expressions.md, stage `record`{}: strain * (1 + c*strain^2))",
+      use.gauge.empty() ? "" : ", `per_gauge = true`");
 }
 
 std::vector<Model> with_unlisted(const Model& model, const Bench& bench) {

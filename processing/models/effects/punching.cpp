@@ -1,5 +1,6 @@
 #include "processing/models/effect.hpp"
 #include "processing/models/scene.hpp"
+#include "processing/models/times_formula.hpp"
 
 namespace kolsky {
 namespace {
@@ -13,12 +14,7 @@ class Punching final : public Effect {
             .definition = "shortening += s sum over faces of k F (1 - nu^2) J_bar / d_s",
             .reference = "docs/methods/effects.md; Safa and Gary 2010",
             .kinds = {BenchKind::shpb},
-            .parameters = {{.name = "s",
-                            .unit = "-",
-                            .upper = 100.0,
-                            .typical = 0.2,
-                            .most = 20.0,
-                            .by_formula = 1.0}},
+            .parameters = {times_formula()},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

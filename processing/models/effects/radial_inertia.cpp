@@ -1,5 +1,6 @@
 #include "processing/models/effect.hpp"
 #include "processing/models/scene.hpp"
+#include "processing/models/times_formula.hpp"
 
 namespace kolsky {
 namespace {
@@ -13,12 +14,7 @@ class RadialInertia final : public Effect {
             .definition = "stress += s (2 nu)^2 rho a^2 (strain''/8 + strain'^2/16)",
             .reference = "docs/methods/effects.md; Kolsky 1949, Samanta 1971",
             .kinds = {BenchKind::shpb},
-            .parameters = {{.name = "s",
-                            .unit = "-",
-                            .upper = 100.0,
-                            .typical = 0.2,
-                            .most = 20.0,
-                            .by_formula = 1.0}},
+            .parameters = {times_formula()},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {
