@@ -26,6 +26,22 @@ bool says(const Diagnosis& diagnosis, const std::string& words) {
   });
 }
 
+/// The number that stands in a note between these words; NaN: none does.
+double number_told(const Diagnosis& diagnosis, const std::string& before,
+                   const std::string& after) {
+  for (const std::string& note : diagnosis.notes) {
+    if (const std::size_t at = note.find(before); at != std::string::npos) {
+      std::size_t length = 0;
+      const std::string rest = note.substr(at + before.size());
+      const double number = std::stod(rest, &length);
+      if (rest.compare(length, after.size(), after) == 0) {
+        return number;
+      }
+    }
+  }
+  return std::nan("");
+}
+
 // Bars of another lot than the material file's, with one gauge each: a relaxation or a damping of
 // the bars does nearly as well, and less well than their moduli.
 TEST(FiledBars, OfOtherModuliAreNoEffect) {
@@ -201,7 +217,7 @@ TEST(CreepingGauge, IsNoPairThatDoesNoBetter) {
   const Diagnosis diagnosis =
       diagnosed(testing::shots_of(creeping(2, "g3", 0.007)), paper_model(BenchKind::bar, false));
   EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
-  EXPECT_TRUE(says(diagnosis, "a reading of g3 that droops by 0.7"));
+  EXPECT_NEAR(number_told(diagnosis, "a reading of g3 that droops by ", " % within"), 0.7, 0.07);
 }
 
 // What is unknown is told, with the size and the time that it has: 2 % within 100 us.
@@ -209,7 +225,8 @@ TEST(CreepingGauge, IsToldOfWhereItLeavesNothing) {
   const Diagnosis diagnosis =
       diagnosed(testing::shots_of(creeping(4, "g2", 0.02)), paper_model(BenchKind::bar, false));
   EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
-  EXPECT_TRUE(says(diagnosis, "a reading of g2 that droops by 2 % within 10"));
+  EXPECT_NEAR(number_told(diagnosis, "a reading of g2 that droops by ", " % within"), 2.0, 0.1);
+  EXPECT_NEAR(number_told(diagnosis, " % within ", " us explains nearly all"), 100.0, 10.0);
 }
 
 // An amplifier that runs out of its range, 2 % at 1000 microstrain.
@@ -219,7 +236,9 @@ TEST(CurvedReadings, AreToldOfWhereTheyLeaveNothing) {
   const Diagnosis diagnosis =
       diagnosed(testing::shots_of(truth), paper_model(BenchKind::bar, false));
   EXPECT_EQ(name_of(diagnosis.verdict), "unknown");
-  EXPECT_TRUE(says(diagnosis, "too small at 1000 microstrain of either sign explain nearly all"));
+  const double told = number_told(diagnosis, "readings that are ",
+                                  " % too small at 1000 microstrain of either sign explain nearly");
+  EXPECT_NEAR(told, 2.0, 0.2);
 }
 
 TEST(Unlisted, LeavesTrueEffectsWhatTheyAre) {
