@@ -288,12 +288,15 @@ std::string verdict_line(const Diagnosis& diagnosis) {
 
 PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
   const HeldOut& held_out = diagnosis.held_out;
+  const std::string misfit =
+      diagnosis.effects.empty()
+          ? fmt::format("is {:.4g}, and stays so as no effect is added", held_out.before)
+          : fmt::format("falls from {:.4g} to {:.4g}", held_out.before, held_out.after);
   PageSection section{
       "Before and after",
-      {fmt::format("On {} that the fit did not see, chi-square per residual falls from {:.4g} to "
-                   "{:.4g}; noise alone leaves {:.4g}.",
-                   shots > 1 ? "shots" : "parts of the one record", held_out.before, held_out.after,
-                   held_out.floor)}};
+      {fmt::format("On {} that the fit did not see, chi-square per residual {}; noise alone leaves "
+                   "{:.4g}.",
+                   shots > 1 ? "shots" : "parts of the one record", misfit, held_out.floor)}};
   section.tables.push_back({{"", "chi-square per degree of freedom", "repeats, share of the signal",
                              "noise, share of the signal"},
                             {{"before", fmt::format("{:.4g}", diagnosis.before.chi2_reduced),

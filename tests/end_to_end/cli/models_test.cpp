@@ -61,6 +61,14 @@ TEST_F(SimulatedBar, FallsToTheNoiseByTheEffectAddedByHand) {
   EXPECT_GT(fall["steps"][0]["held_out"], fall["steps"][1]["held_out"]);
   EXPECT_NEAR(fall["steps"][1]["held_out"], fall["floor"], 0.1);
   EXPECT_GT(fall["closed"], 0.7);
+  // Nothing more is found then, and the report says of no misfit that it falls.
+  ASSERT_EQ(kolsky({"diagnose", file("shots"), "--model", file("m2.toml"), "--report",
+                    file("nothing.html")})
+                .code,
+            0);
+  const std::string page = content(file("nothing.html"));
+  EXPECT_NE(page.find("stays so as no effect is added"), std::string::npos);
+  EXPECT_EQ(page.find("falls from"), std::string::npos);
   // What the simulation was drawn with.
   const json delay = fall["steps"][1]["strengths"]["tau"];
   const json truth = json_of(kolsky({"tour", "--seed", "3", "--quick", "--truth-only", "--json"}));
@@ -363,7 +371,9 @@ TEST_F(SimulatedBar, SaysOfOneShotThatPartsOfItWereHeldOut) {
   const scene::Answer told = diagnose({"-o", file("d.toml"), "--report", file("d.html")});
   EXPECT_EQ(told.code, 0) << told.err;
   EXPECT_NE(told.out.find("note: " + held_out), std::string::npos) << told.out;
-  EXPECT_NE(content(file("d.html")).find(held_out), std::string::npos);
+  const std::string page = content(file("d.html"));
+  EXPECT_NE(page.find(held_out), std::string::npos);
+  EXPECT_NE(page.find("chi-square per residual falls from"), std::string::npos);
   const json diagnosis = json_of(diagnose({"--json"}));
   EXPECT_EQ(diagnosis["verdict"], "named");
   EXPECT_EQ(diagnosis["effects"], json({"channel-delay:g3"}));
