@@ -41,6 +41,9 @@ struct EffectParameter {
   /// First order at null says nothing of a finite size, in which it acts otherwise (a gap that
   /// closes): fits begin at several.
   bool sudden = false;
+  /// With any but the first of its starts the effect has the strength of its formula and no other:
+  /// a size that is filed is in it otherwise, too.
+  bool only_by_formula = false;
   /// The strength that the effect has by its formula with the sizes filed; 0: none is known.
   double by_formula = 0.0;
 

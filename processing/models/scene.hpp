@@ -86,6 +86,7 @@ struct SpecimenScene {
   Solid solid{};
   double wave_density_kg_m3 = 0.0;        ///< density that waves in it see; 0: equilibrium
   double lateral_inertia_kg_per_m = 0.0;  ///< m of stress += m (strain''/8 + strain'^2/16)
+  bool crossed_sideways = false;          ///< waves cross its section; m is their first term
   double punching = 0.0;                  ///< strength of the bar ends' indentation
   double stiffening = 0.0;                ///< E1 (1 + b strain)
   double friction = 0.0;                  ///< mu of Coulomb friction at its faces

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processing/models/bending.hpp"
+#include "processing/models/lateral_inertia.hpp"
 #include "processing/waves/each_exp.hpp"
 
 namespace kolsky {
@@ -43,34 +44,74 @@ struct Junction {
   Complex strain, strain_q;
 };
 
-/// Waves across the specimen.
+/// tanh(x) / x, entire near 0.
+Complex tanhc(Complex x) {
+  return std::norm(x) < 1e-6 ? 1.0 - x * x / 3.0 : std::tanh(x) / x;
+}
+
+/// Waves from face to face: force and velocity at one are those at the other times
+/// (same, force_per_velocity; velocity_per_force, same).
 struct Crossing {
-  std::vector<Complex> J_per_Pa;
-  std::vector<Complex> of;  ///< wavenumber times length
-  std::vector<Complex> exp_of;
+  std::vector<Complex> same, force_per_velocity, velocity_per_force;
 
   explicit Crossing(const Scene& scene) {
     const SpecimenScene& specimen = *scene.specimen;
     const double share = specimen.share_of_stress(0.0);
+    std::vector<Complex> material, J;  // without and with lateral inertia
     for (std::size_t k = 0; k < scene.s.size(); ++k) {
-      const Complex s = scene.s[k];
       // Friction's and lateral inertia's linear parts: stress of the material = share of that
-      // measured, less m strain'' / 8.
-      const Complex material = specimen.solid.compliance(s, k);
-      const Complex J =
-          material * share / (1.0 + material * specimen.lateral_inertia_kg_per_m * s * s / 8.0);
-      J_per_Pa.push_back(J);
-      of.push_back(specimen.length_m * s * std::sqrt(specimen.wave_density_kg_m3 * J));
+      // measured, less what it takes to move outwards.
+      const Complex own = specimen.solid.compliance(scene.s[k], k);
+      material.push_back(own * share);
+      J.push_back(own * share / (1.0 + own * lateral_stress_Pa(specimen, own, scene.s[k])));
     }
-    exp_of = of;
-    each_exp(exp_of);
+    if (specimen.crossed_sideways && specimen.lateral_inertia_kg_per_m != 0.0) {
+      by_halves(scene, material, J);
+    } else {
+      as_a_layer(scene, J);
+    }
   }
 
-  [[nodiscard]] Complex cosh(std::size_t k) const { return 0.5 * (exp_of[k] + 1.0 / exp_of[k]); }
-  /// sinh(x) / x
-  [[nodiscard]] Complex sinhc(std::size_t k) const {
-    const Complex x = of[k];
-    return std::norm(x) < 1e-6 ? 1.0 + x * x / 6.0 : 0.5 * (exp_of[k] - 1.0 / exp_of[k]) / x;
+ private:
+  void as_a_layer(const Scene& scene, const std::vector<Complex>& J) {
+    const SpecimenScene& specimen = *scene.specimen;
+    const double l = specimen.length_m;
+    std::vector<Complex> of;  // wavenumber times length
+    for (std::size_t k = 0; k < J.size(); ++k) {
+      of.push_back(l * scene.s[k] * std::sqrt(specimen.wave_density_kg_m3 * J[k]));
+    }
+    std::vector<Complex> exp_of = of;
+    each_exp(exp_of);
+    for (std::size_t k = 0; k < J.size(); ++k) {
+      const Complex x = of[k];
+      const Complex S =
+          std::norm(x) < 1e-6 ? 1.0 + x * x / 6.0 : 0.5 * (exp_of[k] - 1.0 / exp_of[k]) / x;
+      same.push_back(0.5 * (exp_of[k] + 1.0 / exp_of[k]));
+      force_per_velocity.push_back(S * scene.s[k] * specimen.wave_density_kg_m3 * l *
+                                   specimen.area_m2());
+      velocity_per_force.push_back(S * scene.s[k] * l * J[k] / specimen.area_m2());
+    }
+  }
+
+  /// Faces that move against each other squeeze the section outwards, faces that move alike squeeze
+  /// one half and stretch the other, which hardly moves it.
+  void by_halves(const Scene& scene, const std::vector<Complex>& material,
+                 const std::vector<Complex>& J) {
+    const SpecimenScene& specimen = *scene.specimen;
+    const double half_m = specimen.length_m / 2.0;
+    for (std::size_t k = 0; k < J.size(); ++k) {
+      const Complex s = scene.s[k];
+      const auto tanhc_of = [&](Complex compliance) {
+        return tanhc(half_m * s * std::sqrt(specimen.wave_density_kg_m3 * compliance));
+      };
+      // Force per velocity of each face.
+      const Complex against = specimen.area_m2() / (s * half_m * J[k] * tanhc_of(J[k]));
+      const Complex alike =
+          s * specimen.wave_density_kg_m3 * half_m * specimen.area_m2() * tanhc_of(material[k]);
+      same.push_back((against + alike) / (against - alike));
+      force_per_velocity.push_back(2.0 * against * alike / (against - alike));
+      velocity_per_force.push_back(2.0 / (against - alike));
+    }
   }
 };
 
@@ -90,13 +131,11 @@ Junction junction(const Scene& scene, const Crossing& crossing, std::size_t at,
   const Complex Z2 = out.area_m2 * out.density_kg_m3 * s * s /
                      (out.gamma_per_m[at] * out.gamma_per_m[at]) * (1.0 + round_trip);
   const Complex V2 = s / out.gamma_per_m[at] * (1.0 - round_trip);
-  const Complex J = crossing.J_per_Pa[at];
-  const Complex C = crossing.cosh(at);
-  const Complex S = crossing.sinhc(at);
+  const Complex C = crossing.same[at];
   const Complex dents = specimen.punching * (indentation_m_per_N(in, specimen, at) +
                                              indentation_m_per_N(out, specimen, at));
-  const Complex force_a = Z2 * C + s * specimen.wave_density_kg_m3 * l * area * S * V2;
-  const Complex velocity_a = V2 * C + Z2 * s * (l * J / area * S + dents);
+  const Complex force_a = Z2 * C + crossing.force_per_velocity[at] * V2;
+  const Complex velocity_a = V2 * C + Z2 * (crossing.velocity_per_force[at] + s * dents);
   const Complex whole = velocity_a + V1 * force_a / Z1;
   Junction j;
   j.transmitted = 2.0 * V1 / whole;

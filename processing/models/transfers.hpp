@@ -35,8 +35,9 @@ struct Transfers {
 void set_elementary_waves(Scene& scene);
 
 /// Bar: exp(-gamma x) + R exp(-gamma (2 L - x)). Specimen between two bars: continuity of force and
-/// velocity at both faces, a layer that waves cross where it has inertia (docs/methods/effects.md,
-/// specimen-inertia, punching), the output bar's far end as filed.
+/// velocity at both faces, a layer that waves cross where it has inertia, by halves where they
+/// cross its section, too (docs/methods/effects.md, specimen-inertia, radial-inertia, punching),
+/// the output bar's far end as filed.
 [[nodiscard]] Transfers transfers_of(const Scene& scene, std::size_t reference);
 
 }  // namespace kolsky

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "processing/criticism/fitting/creeping_spring.hpp"
+#include "processing/models/lateral_inertia.hpp"
 
 namespace kolsky {
 
@@ -75,6 +76,7 @@ void SpecimenResponse::prepare(const Scene& scene, const Transfers& transfers,
     linear->of_source.resize(places);
     linear->of_q.resize(places);
   }
+  of_lateral_.resize(places);
   of_extra_.resize(places);
   of_material_.resize(places);
   for (std::size_t k = 0; k < places; ++k) {
@@ -89,7 +91,8 @@ void SpecimenResponse::prepare(const Scene& scene, const Transfers& transfers,
     of_strain_.of_q[k] = transfers.strain_of_q[k] - transfers.strain[k] * seen;
     // What the material strains further it must also accelerate sideways.
     const Complex J = specimen.solid.compliance(s, k);
-    of_extra_[k] = 1.0 / (1.0 + J * specimen.lateral_inertia_kg_per_m * s * s / 8.0);
+    of_lateral_[k] = lateral_stress_Pa(specimen, J, s);
+    of_extra_[k] = 1.0 / (1.0 + J * of_lateral_[k]);
     of_material_[k] = J * of_extra_[k];
   }
 }
@@ -141,17 +144,15 @@ void SpecimenResponse::bend(const Scene& scene, DampedTransform& transform) {
 /// Lateral inertia, from the strain's spectrum.
 void SpecimenResponse::accelerate(const Scene& scene, DampedTransform& transform) {
   const double m = scene.specimen->lateral_inertia_kg_per_m;
+  sideways_.assign(spectrum_.size(), 0.0);
+  add_products(of_lateral_, spectrum_, sideways_);
+  to_time(sideways_, transform, accelerated_);
   for (std::size_t k = 0; k < spectrum_.size(); ++k) {
     spectrum_[k] *= scene.s[k];
   }
   to_time(spectrum_, transform, rate_);
-  for (std::size_t k = 0; k < spectrum_.size(); ++k) {
-    spectrum_[k] *= scene.s[k];
-  }
-  to_time(spectrum_, transform, accelerated_);
   for (std::size_t n = 0; n < rate_.size(); ++n) {
     material_[n] -= m * rate_[n] * rate_[n] / 16.0;
-    accelerated_[n] *= m / 8.0;
   }
 }
 

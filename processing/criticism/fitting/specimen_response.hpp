@@ -65,10 +65,11 @@ class SpecimenResponse {
                    std::vector<Complex>& out);
 
   Linear of_stress_, of_strain_;
+  std::vector<Complex> of_lateral_;   ///< stress of lateral inertia, of strain
   std::vector<Complex> of_extra_;     ///< q of strain beside the material's
   std::vector<Complex> of_material_;  ///< q of stress that the material has beside the measured
   std::vector<Complex> given_;        ///< q of the given history
-  std::vector<Complex> q_, next_, nearest_, wide_, spectrum_;
+  std::vector<Complex> q_, next_, nearest_, wide_, spectrum_, sideways_;
   std::vector<double> stress_, strain_, rate_, accelerated_, extra_, material_;
   std::vector<double> apart_;  ///< the gap's share of q
   std::optional<std::size_t> at_rest_;

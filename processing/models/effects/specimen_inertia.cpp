@@ -13,7 +13,8 @@ class SpecimenInertia final : public Effect {
             .definition = "waves cross the specimen, of density s rho",
             .reference = "docs/methods/effects.md; Davies and Hunter 1963",
             .kinds = {BenchKind::shpb},
-            .parameters = {{"s", "-", 0.0, 0.0, 4.0, 0.2, {}}},
+            .parameters =
+                {{.name = "s", .unit = "-", .upper = 4.0, .typical = 0.2, .by_formula = 1.0}},
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t /*gauge*/) const override {

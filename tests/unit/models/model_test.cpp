@@ -410,6 +410,24 @@ TEST(ModelFile, HoldsBoundsOfItsOwnWithinTheEffectsOwn) {
   }
 }
 
+// Halves that are pushed against each other and halves that are carried along make up the layer.
+TEST(Transfers, OfASectionThatTakesNextToNothingToMoveAreThoseOfALayer) {
+  const Bench bench = bench_of(BenchKind::shpb);
+  const auto with_radial = [&](double s, double waves) {
+    Model model = paper_model(BenchKind::shpb, false);
+    model.effects.push_back(use_named("specimen-inertia"));
+    model.effects.back().values[0].value = 1.0;
+    model.effects.push_back(use_named("radial-inertia"));
+    model.effects.back().values[0].value = s;
+    model.effects.back().values[1].value = waves;
+    auto all = said(model, bench);
+    all.pop_back();  // the strength itself
+    return all;
+  };
+  EXPECT_LT(difference(with_radial(0.0, 0.0), with_radial(1e-10, 1.0)), 1e-9);
+  EXPECT_GT(difference(with_radial(1.0, 0.0), with_radial(1.0, 1.0)), 1e-4);
+}
+
 TEST(ModelFile, ReadsBackThePapersModelOfEveryBench) {
   for (const BenchKind kind : {BenchKind::bar, BenchKind::shpb, BenchKind::impact}) {
     ModelFile file;
@@ -430,6 +448,18 @@ TEST(ModelFile, RefusesUnknownEffectsOutOfBoundsAndWrongUnits) {
                                         "value = 1e-12\nunit = \"1/MPa\"\n",
                                  "m"),
                InputError);
+}
+
+// Files from before it had waves across the section.
+TEST(ModelFile, HasTheFirstTermOfRadialInertiaWhereItSaysNoMore) {
+  const Model model = parse_model(
+                          "kolsky_model = 1\nkind = \"shpb\"\n[[effects]]\n"
+                          "id = \"radial-inertia\"\n[effects.parameters.s]\nvalue = 1\n",
+                          "m")
+                          .model;
+  ASSERT_EQ(model.effects.back().id(), "radial-inertia");
+  EXPECT_EQ(model.effects.back().values[0].value, 1.0);
+  EXPECT_EQ(model.effects.back().values[1].value, 0.0);
 }
 
 TEST(ModelFile, RefusesAPriorThatIsNoDeviation) {
