@@ -9,6 +9,7 @@
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/claims.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
+#include "processing/models/formula_strength.hpp"
 
 namespace kolsky {
 
@@ -48,6 +49,19 @@ bool confirmed_otherwise(const Refit& refit) {
 
 std::string id_of(const Search& search, const Refit& refit) {
   return search.candidates()[refit.candidate].id();
+}
+
+/// Whether an effect comes out about as strong as the sizes filed make it. Formulas of a solid are
+/// the first terms of series.
+bool about_its_formula(const Search& search, const Refit& refit) {
+  constexpr double kAbout = 2.0 / 3.0;
+  return agrees_with_formula(*refit.studied.model.find(id_of(search, refit)), kAbout);
+}
+
+/// How far ahead of a rival the best is told from it. Before any record is seen, what physics asks
+/// for is likelier than a fault (a number filed as exact that is not) that does as well.
+double tie_limit(const Search& search, const Refit& best, const Refit& rival) {
+  return about_its_formula(search, rival) && !about_its_formula(search, best) ? 2.0 * kTie : kTie;
 }
 
 }  // namespace
@@ -115,7 +129,8 @@ Chooser::Places Chooser::places_of(const Found& found) {
     const bool may_be_named = claimable(found.search, refit);
     leading = may_be_named && !leading ? i : leading;
     const bool is_sound = sound(found, i);
-    if (leading && lead(found.refits[places.best.value_or(*leading)], refit) > kTie) {
+    const Refit& ahead = found.refits[places.best.value_or(leading.value_or(i))];
+    if (leading && lead(ahead, refit) > tie_limit(found.search, ahead, refit)) {
       // What is ahead may only be so for want of another.
       places.nearest = is_sound && may_be_named && !places.nearest ? i : places.nearest;
       continue;
@@ -244,11 +259,13 @@ std::vector<Certification> Chooser::certify(const Search& search, const std::vec
                                             const Studied& base) const {
   const auto leading =
       std::ranges::find_if(refits, [&](const Refit& refit) { return claimable(search, refit); });
+  // The best that is sound may be one tie behind, its formula's rival two behind that.
+  constexpr double kNearest = 3.0 * kTie;
   std::vector<Certification> held_out;
   const std::vector<double> before = held_out_squares(base, study_);
   for (const Refit& refit : refits) {
     const bool near =
-        leading != refits.end() && plausible(search, refit) && lead(*leading, refit) < 2.0 * kTie;
+        leading != refits.end() && plausible(search, refit) && lead(*leading, refit) < kNearest;
     const Studied& own = refit.studied;
     held_out.push_back(certification(
         before, near ? held_out_squares(own, study_) : foretold_squares(own, study_),

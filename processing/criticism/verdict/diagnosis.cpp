@@ -25,6 +25,7 @@
 #include "processing/criticism/verdict/loud_pulses.hpp"
 #include "processing/criticism/verdict/refits.hpp"
 #include "processing/criticism/verdict/slow_ties.hpp"
+#include "processing/criticism/verdict/small_rest.hpp"
 #include "processing/criticism/verdict/strength_notes.hpp"
 #include "processing/criticism/verdict/unexplained.hpp"
 #include "processing/criticism/verdict/unlisted.hpp"
@@ -113,6 +114,7 @@ class Diagnostician {
       drop_claims(diagnosis_);
       current = study_.refit(first);
     }
+    set_dwarfed_aside(current);
     make_alike(current);
     tie_with_drifts(study_, current, diagnosis_);
     tie_with_hum(study_, current, diagnosis_);
@@ -126,8 +128,8 @@ class Diagnostician {
   /// @return that nothing was added to two that stand beside each other
   bool seek(Studied& current) {
     bool gone_back = false;
-    while (surprises(diagnosis_.effects) < options_.most_effects) {
-      const bool two = surprises(diagnosis_.effects) == 2;
+    while (surprises(diagnosis_.effects, current.model).size() < options_.most_effects) {
+      const bool two = beside_the_bar(diagnosis_.effects).size() == 2;
       if (two && !gone_back && options_.safeguards.backward) {
         go_back(current);
         gone_back = true;
@@ -136,7 +138,7 @@ class Diagnostician {
         }
       }
       if (!add_one(current)) {
-        return two && gone_back && surprises(diagnosis_.effects) == 2;
+        return two && gone_back && beside_the_bar(diagnosis_.effects).size() == 2;
       }
     }
     return false;
@@ -145,7 +147,7 @@ class Diagnostician {
   /// Whether an earlier beginning came by the same pair: from there on the way is the same.
   bool has_been_here() {
     const std::set<std::string> here(diagnosis_.effects.begin(), diagnosis_.effects.end());
-    trodden_ = surprises(diagnosis_.effects) == 2 &&
+    trodden_ = beside_the_bar(diagnosis_.effects).size() == 2 &&
                !trail_.pairs.insert({here, on_trial_.value_or("")}).second;
     return trodden_;
   }
@@ -217,7 +219,7 @@ class Diagnostician {
 
   void go_back(Studied& current) {
     const std::size_t found = diagnosis_.effects.size();
-    const bool many = surprises(diagnosis_.effects) > kMostBelieved;
+    const bool many = beside_the_bar(diagnosis_.effects).size() > kMostBelieved;
     // The last was certified beside all others, unless these take its part from another start.
     drop_unneeded(current, many ? 0 : 1);
     // It stood beside what is gone now, and its rivals may have been what that took up.
@@ -298,6 +300,43 @@ class Diagnostician {
     }
   }
 
+  /// A third beside a solid's formula that explains next to nothing of what the others do is what
+  /// these leave.
+  void set_dwarfed_aside(Studied& current) {
+    if (!options_.safeguards.unknown ||
+        beside_the_bar(diagnosis_.effects).size() <= kMostBelieved) {
+      return;
+    }
+    const double noise = noise_of(current.misfit, study_.campaign().shots.size());
+    const ClaimGains gains = claim_gains(study_, current, diagnosis_.effects, noise);
+    const std::optional<std::string> id = dwarfed(gains);
+    if (id) {
+      set_aside_ = {*id, gains.others.at(*id), dwarfed_text(gains, *id)};
+      const auto at = std::ranges::find(diagnosis_.effects, *id);
+      drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), "rejected",
+           without(study_, current, *id), current);
+    }
+  }
+
+  /// What claims beside a solid's formula leave, where it is so little of what they explain that it
+  /// is their own; it is told, and counts in their deviations.
+  /// @param more  it is more than noise leaves
+  std::optional<SmallRest> their_own(const Studied& current, const Unexplained& left, bool more,
+                                     double noise) {
+    constexpr double kSpread = 2.0;  // deviations of what noise leaves of all that repeats
+    if (!options_.safeguards.unknown || beside_the_bar(diagnosis_.effects).size() < 2 ||
+        left.apart.log_p < options_.log_alpha || !(more || set_aside_)) {
+      return std::nullopt;
+    }
+    const double repeated = repeated_excess(study_, current) -
+                            kSpread * std::sqrt(2.0 * current.misfit.degrees_of_freedom);
+    const double rest =
+        std::max(set_aside_ ? set_aside_->gain : 0.0, more ? std::max(left.excess, repeated) : 0.0);
+    ClaimGains gains = claim_gains(study_, current, diagnosis_.effects, noise);
+    return rest < small_rest(gains) ? std::optional(SmallRest{std::move(gains), rest})
+                                    : std::nullopt;
+  }
+
   /// Backward: what others have made superfluous goes, but for so many of the last.
   void drop_unneeded(Studied& current, std::size_t spared) {
     for (std::size_t i = 0; i + spared < diagnosis_.effects.size();) {
@@ -364,13 +403,18 @@ class Diagnostician {
     // Shots that ask for moduli or readings of their own may leave no more than noise does. What a
     // claim leaves of what it explains is its own inexactness only while noise might leave as much:
     // ends that return waves explain so much that anything else would be less than a share of it.
-    const bool remains = diagnosis_.unexplained_log_p < options_.log_alpha &&
-                         (diagnosis_.effects.empty() || diagnosis_.unexplained_log_p < kSure ||
-                          excess > allowed_rest() * std::max(0.0, explained));
+    const bool more = diagnosis_.unexplained_log_p < options_.log_alpha &&
+                      (diagnosis_.effects.empty() || diagnosis_.unexplained_log_p < kSure ||
+                       excess > allowed_rest() * std::max(0.0, explained));
+    small_rest_ = their_own(current, left, more, noise);
+    const bool remains = more && !small_rest_;
     diagnosis_.held_out =
         held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
     std::vector<std::string> reasons =
         doubts(before, current, remains ? std::optional(left) : std::nullopt, noise);
+    if (set_aside_ && !small_rest_) {
+      reasons.push_back(set_aside_->text);
+    }
     const bool doubted = !reasons.empty();
     if (options_.safeguards.unknown && !doubted && diagnosis_.effects.empty()) {
       judge_loud_pulses(current, reasons);
@@ -378,7 +422,8 @@ class Diagnostician {
     if (reasons.empty()) {
       settle_claims(diagnosis_, [&](CandidateResult& result) {
         set_strength(current, result.effect, study_.residuals().per_shot(), result);
-        result.sd = std::hypot(result.sd, variants_differ_[result.effect]);
+        result.sd = std::hypot(result.sd, variants_differ_[result.effect],
+                               share_moved(small_rest_, result.effect) * result.strength);
       });
       note_strengths(current);
       if (blames_bar_of_two_gauges(diagnosis_, study_.campaign())) {
@@ -430,6 +475,10 @@ class Diagnostician {
 
   /// What the strengths found do not say by themselves.
   void note_strengths(const Studied& current) {
+    if (small_rest_) {
+      diagnosis_.notes.push_back(
+          small_rest_text(*small_rest_, set_aside_ ? set_aside_->effect : ""));
+    }
     for (const AtBound& number : claimed_at_bounds(current)) {
       diagnosis_.notes.push_back(in_words(number));
     }
@@ -483,7 +532,7 @@ class Diagnostician {
       judge_temperature(current, noise, reasons);
     }
     if (const auto unlisted = unlisted_in_place_of(
-            study_, before, current, surprises(diagnosis_.effects), !reasons.empty())) {
+            study_, before, current, beside_the_bar(diagnosis_.effects).size(), !reasons.empty())) {
       reasons.push_back(*unlisted);
     }
     return reasons;
@@ -563,6 +612,14 @@ class Diagnostician {
   const DiagnosisOptions& options_;
   Model start_;                                    ///< unfitted, with the effects found so far
   std::map<std::string, double> variants_differ_;  ///< strengths of what is claimed, see `Choice`
+  /// Claimed as the third, see `set_dwarfed_aside`.
+  struct SetAside {
+    std::string effect;
+    double gain = 0.0;
+    std::string text;  ///< why nothing is named where what it leaves is not the others' own
+  };
+  std::optional<SetAside> set_aside_;
+  std::optional<SmallRest> small_rest_;
   std::vector<std::string> barred_;
   Trail& trail_;
   bool trodden_ = false;

@@ -9,6 +9,7 @@
 
 #include "processing/criticism/verdict/cancelling.hpp"
 #include "processing/criticism/verdict/strength_notes.hpp"
+#include "processing/models/formula_strength.hpp"
 
 namespace kolsky {
 
@@ -149,10 +150,21 @@ const CandidateResult* surest_rejected(const Diagnosis& diagnosis, double explai
 
 }  // namespace
 
-std::size_t surprises(const std::vector<std::string>& effects) {
-  return static_cast<std::size_t>(std::ranges::count_if(effects, [](const std::string& id) {
-    return id != "end-reflection" && id != "geometric-dispersion";
-  }));
+std::vector<std::string> beside_the_bar(const std::vector<std::string>& effects) {
+  std::vector<std::string> counted = effects;
+  std::erase_if(counted, [](const std::string& id) {
+    return id == "end-reflection" || id == "geometric-dispersion";
+  });
+  return counted;
+}
+
+std::vector<std::string> surprises(const std::vector<std::string>& effects, const Model& fitted) {
+  std::vector<std::string> counted = beside_the_bar(effects);
+  std::erase_if(counted, [&](const std::string& id) {
+    const EffectUse* use = fitted.find(id);
+    return use != nullptr && is_its_formula(*use);
+  });
+  return counted;
 }
 
 bool beyond_belief(const Studied& studied, const std::string& id, const Campaign& campaign,
@@ -264,7 +276,7 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
         "the records ask for one effect at every gauge but one: it stands for something of that "
         "one which the library lacks");
   }
-  if (surprises(diagnosis.effects) > kMostBelieved) {
+  if (surprises(diagnosis.effects, current.model).size() > kMostBelieved) {
     reasons.emplace_back(
         "it takes three effects of the library: likelier than that three are missing is that one "
         "is which the library lacks");

@@ -14,9 +14,13 @@ namespace kolsky {
 /// Anything can be expanded in three effects: that one is missing which the library does not have
 /// is likelier than that three are at once.
 inline constexpr std::size_t kMostBelieved = 2;
-/// How many of them count: that a bar ends, and sends waves back from there, and that it is as
-/// thick as it is are no surprise.
-[[nodiscard]] std::size_t surprises(const std::vector<std::string>& effects);
+/// Those which not every bar has: it ends, and sends waves back from there, and has a thickness.
+[[nodiscard]] std::vector<std::string> beside_the_bar(const std::vector<std::string>& effects);
+/// Those of these which count: what a solid does as its formula has it of the sizes filed is no
+/// surprise.
+/// @param fitted  with all of them
+[[nodiscard]] std::vector<std::string> surprises(const std::vector<std::string>& effects,
+                                                 const Model& fitted);
 
 /// Whether an effect is so strong that nothing is built so: then noise was fitted with it.
 /// @param slack  while effects beside it are still missing, it stands for a part of these, too

@@ -4,17 +4,16 @@
 
 #include <cmath>
 
+#include "processing/models/formula_strength.hpp"
+
 namespace kolsky {
 
 std::optional<std::string> unlike_formula_text(const EffectUse& fitted) {
-  constexpr double kDeviations = 3.0;
-  constexpr double kMuch = 0.1;
   const EffectAbout& about = fitted.effect->about();
   const EffectParameter& strength = about.parameters[about.strength];
   const ModelValue& own = fitted.values[about.strength];
-  const double off = std::abs(own.value - strength.by_formula);
-  if (strength.by_formula == 0.0 || off < kDeviations * own.sd ||
-      off < kMuch * strength.by_formula) {
+  constexpr double kMuch = 0.1;
+  if (!has_formula(fitted) || agrees_with_formula(fitted, kMuch)) {
     return std::nullopt;
   }
   return fmt::format(

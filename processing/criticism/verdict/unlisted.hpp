@@ -19,7 +19,7 @@ namespace kolsky {
 /// effects do as well.
 /// @param before   without what is claimed
 /// @param current  with it
-/// @param effects  that are claimed and count as surprises
+/// @param effects  that are claimed, but for those which every bar has
 /// @param unknown  what was found is not believed, or nothing was
 /// @return what it does and the formula by which to add it; nothing where it does not
 [[nodiscard]] std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& before,

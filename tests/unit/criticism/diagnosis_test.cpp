@@ -385,11 +385,29 @@ TEST(LongDiagnosis, CallsUnknownWhatThreeEffectsAreNeededFor) {
   ASSERT_FALSE(diagnosis.notes.empty());
 }
 
-// But that a bar ends and is as thick as it is are no surprise: two effects beside these were given
-// up for three.
+// But that a bar ends and is as thick as it is are no surprise.
 TEST(Surprises, AreNoEffectsThatEveryBarHas) {
-  EXPECT_EQ(surprises({"geometric-dispersion", "end-reflection"}), 0U);
-  EXPECT_EQ(surprises({"geometric-dispersion", "gauge-factor:g3", "amplifier-bandwidth:g3"}), 2U);
+  Model fitted;
+  fitted.effects = {use_named("specimen-inertia"), use_named("radial-inertia")};
+  for (EffectUse& use : fitted.effects) {
+    use.values.front().value = 0.97;
+    use.values.front().sd = 0.01;
+  }
+  EXPECT_TRUE(surprises({"geometric-dispersion", "end-reflection"}, fitted).empty());
+  EXPECT_EQ(
+      surprises({"geometric-dispersion", "gauge-factor:g3", "amplifier-bandwidth:g3"}, fitted),
+      (std::vector<std::string>{"gauge-factor:g3", "amplifier-bandwidth:g3"}));
+  // A solid that has mass and widens as its sizes have it.
+  EXPECT_TRUE(surprises({"specimen-inertia", "radial-inertia"}, fitted).empty());
+  fitted.effects[1].values.front().value = 8.0;
+  EXPECT_EQ(surprises({"specimen-inertia", "radial-inertia"}, fitted),
+            std::vector<std::string>{"radial-inertia"});
+  EXPECT_EQ(beside_the_bar({"specimen-inertia", "end-reflection"}),
+            std::vector<std::string>{"specimen-inertia"});
+}
+
+// Two were given up for three.
+TEST(Surprises, OfABarAreTwoBesideItsThickness) {
   const Made made =
       make(82, {"geometric-dispersion=1", "gauge-factor:g3=0.015", "channel-delay:g2=1.5e-6"});
   const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);

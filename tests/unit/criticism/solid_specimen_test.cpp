@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string>
 
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
@@ -36,6 +39,38 @@ TEST(SolidSpecimen, WithoutFrictionLacksInertia) {
       }
     }
   }
+}
+
+// A soft one of 11 mm by 3 mm has a resonance of its section within the pulse's band. That it has
+// mass and widens is no surprise, and hides no gauge that is off.
+TEST(SolidSpecimen, ThatIsSoftIsToldFromItsGauge) {
+  testing::CampaignWishes draw{.seed = 2, .shots = 5, .split = true, .solid_specimen = true};
+  draw.noise_strain = 1.5e-6;
+  testing::Campaign truth = testing::draw_campaign(draw);
+  testing::hide(truth, testing::parse_effect("gauge-factor:g1=0.01"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(
+      study, truth.filed_bars ? filed_split_bar(truth) : paper_model(BenchKind::shpb, true), {});
+  EXPECT_EQ(std::set<std::string>(diagnosis.effects.begin(), diagnosis.effects.end()),
+            (std::set<std::string>{"specimen-inertia", "radial-inertia", "gauge-factor:g1"}));
+  const std::map<std::string, double> hidden{
+      {"specimen-inertia", 1.0}, {"radial-inertia", 1.0}, {"gauge-factor:g1", 0.01}};
+  for (const CandidateResult& candidate : diagnosis.candidates) {
+    if (hidden.contains(candidate.effect)) {
+      EXPECT_NEAR(candidate.strength, hidden.at(candidate.effect), 3.0 * candidate.sd)
+          << candidate.effect;
+    }
+  }
+  EXPECT_LT(diagnosis.after.chi2_reduced, 1.1);
+  // By the first term of radial inertia E1 came out 13 % off.
+  ASSERT_TRUE(diagnosis.model);
+  const EffectUse* specimen = diagnosis.model->find("three-element-specimen");
+  ASSERT_NE(specimen, nullptr);
+  EXPECT_NEAR(specimen->values[0].value, truth.split->specimen.E1_Pa,
+              0.02 * truth.split->specimen.E1_Pa);
+  EXPECT_NEAR(specimen->values[2].value, truth.split->specimen.eta2_Pa_s,
+              0.05 * truth.split->specimen.eta2_Pa_s);
 }
 
 // Coulomb's friction turns with the direction in which faces slide and goes beside inertia both
