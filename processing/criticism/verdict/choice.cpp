@@ -230,7 +230,8 @@ Choice Chooser::chosen(Found& found, Places places) {
     }
   }
   // An effect's variant that is confirmed stands for it, wherever it stands among them.
-  std::ranges::stable_partition(places.confirmed, [&](std::size_t i) { return i == best; });
+  std::stable_partition(places.confirmed.begin(), places.confirmed.end(),
+                        [&](std::size_t i) { return i == best; });
   note_refits(found.search, found.refits, found.held_out, places.confirmed,
               study_.residuals().per_shot(), diagnosis_.candidates);
   Refit& refit = found.refits[best];
