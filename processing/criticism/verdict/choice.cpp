@@ -51,20 +51,17 @@ std::string id_of(const Search& search, const Refit& refit) {
   return search.candidates()[refit.candidate].id();
 }
 
-/// Whether an effect comes out about as strong as the sizes filed make it. Formulas of a solid are
-/// the first terms of series.
-bool about_its_formula(const Search& search, const Refit& refit) {
-  constexpr double kAbout = 2.0 / 3.0;
-  return agrees_with_formula(*refit.studied.model.find(id_of(search, refit)), kAbout);
-}
-
-/// How far ahead of a rival the best is told from it. Before any record is seen, what physics asks
-/// for is likelier than a fault (a number filed as exact that is not) that does as well.
-double tie_limit(const Search& search, const Refit& best, const Refit& rival) {
-  return about_its_formula(search, rival) && !about_its_formula(search, best) ? 2.0 * kTie : kTie;
+const EffectUse& fitted_use(const Search& search, const Refit& refit) {
+  return *refit.studied.model.find(id_of(search, refit));
 }
 
 }  // namespace
+
+double tie_limit(const EffectUse& best, const EffectUse& rival) {
+  constexpr double kAbout = 2.0 / 3.0;
+  return agrees_with_formula(rival, kAbout) && !agrees_with_formula(best, kAbout) ? 2.0 * kTie
+                                                                                  : kTie;
+}
 
 std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool first,
                                       const std::vector<std::string>& barred) {
@@ -130,7 +127,10 @@ Chooser::Places Chooser::places_of(const Found& found) {
     leading = may_be_named && !leading ? i : leading;
     const bool is_sound = sound(found, i);
     const Refit& ahead = found.refits[places.best.value_or(leading.value_or(i))];
-    if (leading && lead(ahead, refit) > tie_limit(found.search, ahead, refit)) {
+    const double limit =
+        places.best ? tie_limit(fitted_use(found.search, ahead), fitted_use(found.search, refit))
+                    : kTie;
+    if (leading && lead(ahead, refit) > limit) {
       // What is ahead may only be so for want of another.
       places.nearest = is_sound && may_be_named && !places.nearest ? i : places.nearest;
       continue;

@@ -12,6 +12,11 @@ namespace kolsky {
 /// Beside the best, rivals this close in evidence (squares of normal deviates) are not told apart:
 /// the true one stays in the set in 99.7 of 100 cases.
 inline constexpr double kTie = 7.5;
+/// How far the best is ahead of a rival that is told from it: twice as far where that comes out
+/// about as strong as the sizes filed make it and the best does not. Before any record is seen,
+/// what physics asks for is likelier than a fault (a number filed as exact that is not) that does
+/// as well, and formulas of a solid are first terms.
+[[nodiscard]] double tie_limit(const EffectUse& best, const EffectUse& rival);
 
 /// What one search certifies: the best, and what cannot be told from it.
 struct Choice {
