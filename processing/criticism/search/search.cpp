@@ -498,14 +498,6 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       chosen.push_back(i);
     }
   }
-  // Of what every specimen does by formula it says little where moduli do its work.
-  constexpr double kSomething = 25.0;  // of evidence: noise seldom has as much
-  const bool something = !ranked.empty() && ranked.front().first > kSomething;
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (something && has_formula(candidates_[i].use) && !is_chosen(i)) {
-      chosen.push_back(i);
-    }
-  }
   // Of the material, what can say nothing at first order for standing at its bound.
   const bool material = std::any_of(chosen.begin(), chosen.end(),
                                     [&](std::size_t i) { return of_material(candidates_[i]); });
@@ -647,9 +639,6 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
     better_of(fit, fit_from(carry(again, again.start(), composition)));
   }
   from_large_sizes(index, composition, worker, fit);
-  if (has_formula(candidate.use)) {
-    from_formula(index, composition, worker, fit);
-  }
   constexpr double kFallsShort = 0.5;
   if (base_.fit.objective() - fit.objective() < kFallsShort * direction.gain) {
     from_other_starts(index, composition, worker, fit);
@@ -687,23 +676,6 @@ void Search::from_large_sizes(std::size_t index, const Composition& composition,
        large_sizes(candidate, composition, carry(again, again.start(), composition))) {
     begin(std::move(start));
   }
-}
-
-/// With moduli that do its work, what a formula gives gains nothing by a little of it: it is begun
-/// with the strength that the formula gives, beside others of that kind with theirs.
-/// @param fit  takes what is better
-void Search::from_formula(std::size_t index, const Composition& composition, std::size_t worker,
-                          ModelFit& fit) const {
-  Model model = with(begun_.value_or(base_.model), candidates_[index], true);
-  for (EffectUse& use : model.effects) {
-    const EffectAbout& about = use.effect->about();
-    if (has_formula(use) && use.values[about.strength].free) {
-      use.values[about.strength].value = about.parameters[about.strength].by_formula;
-    }
-  }
-  const Composition again(model, study_.campaign());
-  better_of(fit,
-            begun_from(composition, carry(again, again.start(), composition), nullptr, worker));
 }
 
 /// Where the model is far off, many beginnings lead nowhere: by secants, and in the noise that the

@@ -95,8 +95,6 @@ class Search {
                                     const Eigen::MatrixXd* chord, std::size_t worker) const;
   void from_large_sizes(std::size_t index, const Composition& composition, std::size_t worker,
                         ModelFit& fit);
-  void from_formula(std::size_t index, const Composition& composition, std::size_t worker,
-                    ModelFit& fit) const;
   void from_other_starts(std::size_t index, const Composition& composition, std::size_t worker,
                          ModelFit& fit);
   [[nodiscard]] bool beyond_the_record(const Studied& studied, const Refit& refit) const;
