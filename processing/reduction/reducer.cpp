@@ -1,9 +1,13 @@
 #include "processing/reduction/reducer.hpp"
 
+#include <optional>
+#include <utility>
+
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
+#include "processing/reduction/gauge_order.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/recent.hpp"
 #include "processing/reduction/requested.hpp"
@@ -29,6 +33,22 @@ void require_reducible_bench(const Shot& shot) {
                      std::to_string(shot.bench.gauges.size()) + " are filed but the shot has " +
                          std::to_string(shot.channels.size()) + " channels",
                      "file one gauge per channel, in their order");
+  }
+}
+
+/// A bench whose gauges are exchanged spoils every number and names none: where the bars' work does
+/// not add up, or nothing can be reduced, the order in which the pulse comes to them is looked at.
+void ask_for_gauge_order(const Shot& shot, Quality& quality) {
+  const Check* energy = quality.find("energy_balance");
+  const bool adds_up = energy != nullptr && energy->verdict == Verdict::pass;
+  if (adds_up && quality.verdict() != Verdict::fail) {
+    return;
+  }
+  std::optional<Check> order = gauge_order(shot);
+  if (order && quality.reducible) {
+    quality.checks.push_back(*std::move(order));
+  } else if (order) {
+    quality.mend = order->text + " Else " + quality.mend;
   }
 }
 
@@ -119,6 +139,7 @@ Reduction Reducer::State::reduce(const Shot& shot) {
                                             material, in, out);
       });
   Reduction reduction = shpb_pass(shot, in, out, told, own_plans, own_tables);
+  ask_for_gauge_order(shot, reduction.quality);
   reduction.bar_model =
       all_elastic(shot.bench)
           ? "elastic bars, moduli from the bench"

@@ -47,6 +47,9 @@ std::string quote_text(const Quotable& part) {
 
 /// Why the curve must not be quoted at all; empty where it may.
 std::string curve_in_doubt(const Reduction& r) {
+  if (const Check* order = r.quality.find("gauge_order"); order != nullptr) {
+    return order->text;
+  }
   const Check* overlap = r.quality.find("window_overlap");
   if (overlap != nullptr && overlap->verdict != Verdict::pass &&
       r.separation == Separation::never) {
