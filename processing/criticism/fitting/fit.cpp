@@ -44,6 +44,9 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
                             const std::vector<double>& theta, const Eigen::VectorXd& at_theta,
                             const std::vector<std::size_t>& numbers, const Workers& executor) {
   Eigen::MatrixXd columns(at_theta.size(), static_cast<Eigen::Index>(numbers.size()));
+  const Eigen::VectorXd here =
+      residuals.differs_by_less() ? residuals.evaluate_to_differ(composition, theta, executor.first)
+                                  : at_theta;
   executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
     std::vector<double> moved = theta;
     const FreeNumber& number = composition.numbers()[numbers[i]];
@@ -59,11 +62,11 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
       const auto shot = static_cast<std::size_t>(number.shot);
       columns.col(column).setZero();
       columns.col(column).segment(first, size) =
-          (residuals.evaluate_shot(composition, moved, shot, worker) -
-           at_theta.segment(first, size)) /
+          (residuals.evaluate_shot(composition, moved, shot, worker) - here.segment(first, size)) /
           step;
     } else {
-      columns.col(column) = (residuals.evaluate(composition, moved, worker) - at_theta) / step;
+      columns.col(column) =
+          (residuals.evaluate_to_differ(composition, moved, worker) - here) / step;
     }
   });
   return columns;

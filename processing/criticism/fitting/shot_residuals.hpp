@@ -33,6 +33,15 @@ class ShotResiduals {
   [[nodiscard]] virtual Eigen::VectorXd evaluate_shot(const Composition& composition,
                                                       const std::vector<double>& theta,
                                                       std::size_t shot, std::size_t worker) = 0;
+  /// Whether something quicker differs by a number as these residuals do, as well as a rough fit's
+  /// steps need it.
+  [[nodiscard]] virtual bool differs_by_less() const { return false; }
+  /// That, where there is such.
+  [[nodiscard]] virtual Eigen::VectorXd evaluate_to_differ(const Composition& composition,
+                                                           const std::vector<double>& theta,
+                                                           std::size_t worker) {
+    return evaluate(composition, theta, worker);
+  }
   /// By how much the residuals' squares are less for noise that is foretold but not known: no fit
   /// may count it as a gain.
   [[nodiscard]] virtual double taken_by_noise(const Composition& /*composition*/,

@@ -106,8 +106,8 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
   double reading_square = 0.0;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
-    const BallRun slower = force(ball, g, false);
-    const BallRun faster = force(ball, g, true);
+    const BallRun slower = force(moves_, ball, g, false);
+    const BallRun faster = force(moves_, ball, g, true);
     const auto low = recorded(read(slower, transfer, executor_.first), 0.0);
     const auto high = recorded(read(faster, transfer, executor_.first), 0.0);
     const auto mesh = recorded(read(anchors_[g][0].mesh, transfer, executor_.first), 0.0);

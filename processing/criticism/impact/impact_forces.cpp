@@ -14,19 +14,21 @@ constexpr double kChangeBySpeed = 1.5;
 
 }  // namespace
 
-BallRun ImpactResiduals::force(const BallScene& ball, std::size_t group, bool high) {
+BallRun ImpactResiduals::force(Moves mesh, const BallScene& ball, std::size_t group, bool high) {
   const SpeedGroup& own = records_.groups[group];
   const double speed = high ? own.high_m_per_s : own.low_m_per_s;
   const Anchor& anchor = anchors_[group][high ? 1 : 0];
-  const BallRun there = *runs_->run(ball, own.speed_m_per_s, moving_elements());
   const double growth = std::pow(speed / own.speed_m_per_s, kChangeBySpeed);
-  const BallRun moved = sum_of(anchor.fine, growth, sum_of(there, -1.0, anchor.moving));
-  if (!law_moves()) {
-    return sum_of(moved, ball.cauchy_share, anchor.law);
+  const auto moved_from = [&](const BallRun& there, std::size_t elements) {
+    const BallRun here = *runs_->run(ball, own.speed_m_per_s, elements);
+    return sum_of(anchor.fine, growth, sum_of(here, -1.0, there));
+  };
+  if (mesh == Moves::coarse) {
+    return sum_of(moved_from(anchor.coarse, meshes_.coarse), ball.cauchy_share, anchor.law);
   }
-  const BallRun law = law_by(ball, own.speed_m_per_s, moving_elements());
-  return sum_of(moved, ball.cauchy_share,
-                sum_of(anchor.law, growth, sum_of(law, -1.0, anchor.moving_law)));
+  const BallRun law = law_by(ball, own.speed_m_per_s, meshes_.middle);
+  return sum_of(moved_from(anchor.middle, meshes_.middle), ball.cauchy_share,
+                sum_of(anchor.law, growth, sum_of(law, -1.0, anchor.middle_law)));
 }
 
 /// Cauchy's less Kirchhoff's.
@@ -78,7 +80,7 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
         own.mesh = sum_of(*run({speed, meshes_.fine, false}), -1.0, middle);
       }
       own.fine = sum_of(middle, 1.0, own.mesh);
-      own.moving = coarse;
+      own.coarse = coarse;
       own.law = law_by(ball, speed, meshes_.middle);
     }
   }
@@ -86,15 +88,34 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
 
 void ImpactResiduals::move_by(Moves mesh, const Composition& composition) {
   moves_ = mesh;
+  if (mesh == Moves::coarse) {
+    return;
+  }
   BallScene ball;
   static_cast<void>(transfers(composition, anchored_at_, 0, ball));
-  executor_.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
+  run_ahead(executor_, ball);
+  for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const double speed = records_.groups[g].speed_m_per_s;
-    const BallRun there = *runs_->run(ball, speed, moving_elements());
-    const BallRun law = law_by(ball, speed, moving_elements());
+    const BallRun there = *runs_->run(ball, speed, meshes_.middle);
+    const BallRun law = law_by(ball, speed, meshes_.middle);
     for (Anchor& own : anchors_[g]) {
-      own.moving = there;
-      own.moving_law = law;
+      own.middle = there;
+      own.middle_law = law;
+    }
+  }
+}
+
+/// The impacts that forces at these numbers are made of, shared out among workers.
+void ImpactResiduals::run_ahead(const Workers& executor, const BallScene& ball) {
+  const bool coarse = moves_ == Moves::coarse;
+  const std::size_t laws = coarse ? 1 : 2;
+  executor.run(laws * records_.groups.size(), [&](std::size_t i, std::size_t /*worker*/) {
+    const double speed = records_.groups[i / laws].speed_m_per_s;
+    try {
+      static_cast<void>(
+          runs_->run(ball, speed, coarse ? meshes_.coarse : meshes_.middle, i % laws == 1));
+    } catch (const InputError&) {
+      // Refused again where it is asked for, and said there.
     }
   });
 }

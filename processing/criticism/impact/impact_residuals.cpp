@@ -59,6 +59,12 @@ double ImpactResiduals::force_per_strain_N() const {
 ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& composition,
                                                     const std::vector<double>& theta,
                                                     std::size_t worker) {
+  return foretold_by(moves_, composition, theta, worker);
+}
+
+ImpactResiduals::Foretold ImpactResiduals::foretold_by(Moves mesh, const Composition& composition,
+                                                       const std::vector<double>& theta,
+                                                       std::size_t worker) {
   Foretold out;
   const std::size_t shots = campaign_.shots.size();
   out.reading.resize(shots);
@@ -77,7 +83,7 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
       const RecordScene record = record_of(composition, theta, n);
       if (readings.low.empty() || composition.differs_by_shot()) {
         try {
-          readings = readings_of(ball, g, transfer, record.bridge_b, worker);
+          readings = readings_of(mesh, ball, g, transfer, record.bridge_b, worker);
         } catch (const InputError&) {
           out.sound = false;
           return out;
@@ -91,10 +97,10 @@ ImpactResiduals::Foretold ImpactResiduals::foretell(const Composition& compositi
 }
 
 ImpactResiduals::Readings ImpactResiduals::readings_of(
-    const BallScene& ball, std::size_t group, const std::vector<std::vector<Complex>>& transfer,
-    double bridge_b, std::size_t worker) {
-  const BallRun low = force(ball, group, false);
-  const BallRun high = force(ball, group, true);
+    Moves mesh, const BallScene& ball, std::size_t group,
+    const std::vector<std::vector<Complex>>& transfer, double bridge_b, std::size_t worker) {
+  const BallRun low = force(mesh, ball, group, false);
+  const BallRun high = force(mesh, ball, group, true);
   return {recorded(read(low, transfer, worker), bridge_b),
           recorded(read(high, transfer, worker), bridge_b), low.rebound_m_per_s,
           high.rebound_m_per_s};
@@ -182,34 +188,34 @@ void ImpactResiduals::fill_unsaid_rebounds(Foretold& foretold) const {
   }
 }
 
-Eigen::VectorXd ImpactResiduals::evaluate(const Composition& composition,
-                                          const std::vector<double>& theta, std::size_t worker) {
-  const Foretold foretold = foretell(composition, theta, worker);
-  const auto size = static_cast<Eigen::Index>(per_shot());
-  const auto shots = static_cast<Eigen::Index>(campaign_.shots.size());
+Eigen::VectorXd ImpactResiduals::white(const Foretold& foretold) const {
   if (!foretold.sound) {
-    return Eigen::VectorXd::Constant(size * shots, std::numeric_limits<double>::quiet_NaN());
+    const std::size_t all = per_shot() * campaign_.shots.size();
+    return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(all),
+                                     std::numeric_limits<double>::quiet_NaN());
   }
   return whitening_->white(foretold.residual);
 }
 
-/// Nearly all of it are the impacts, one for each speed.
+Eigen::VectorXd ImpactResiduals::evaluate(const Composition& composition,
+                                          const std::vector<double>& theta, std::size_t worker) {
+  return white(foretell(composition, theta, worker));
+}
+
+Eigen::VectorXd ImpactResiduals::evaluate_to_differ(const Composition& composition,
+                                                    const std::vector<double>& theta,
+                                                    std::size_t worker) {
+  const Moves mesh = differs_by_less() ? Moves::coarse : moves_;
+  return white(foretold_by(mesh, composition, theta, worker));
+}
+
+/// Nearly all of it are the impacts.
 Eigen::VectorXd ImpactResiduals::evaluate_on(const Workers& executor,
                                              const Composition& composition,
                                              const std::vector<double>& theta) {
   BallScene ball;
   static_cast<void>(transfers(composition, theta, 0, ball));
-  executor.run(records_.groups.size(), [&](std::size_t g, std::size_t /*worker*/) {
-    const double speed = records_.groups[g].speed_m_per_s;
-    try {
-      static_cast<void>(runs_->run(ball, speed, moving_elements()));
-      if (law_moves()) {
-        static_cast<void>(law_by(ball, speed, moving_elements()));
-      }
-    } catch (const InputError&) {
-      // Refused again below, and said there.
-    }
-  });
+  run_ahead(executor, ball);
   return evaluate(composition, theta, executor.first);
 }
 

@@ -59,8 +59,9 @@ class ImpactResiduals : public ShotResiduals {
               AnchorBy by = AnchorBy::fine);
   /// By which mesh forces change with theta from now on, until the fine ones are taken anew. By the
   /// middle one what the law's form does to them changes, too: held as it was, or by the coarse
-  /// mesh, it led fits along the law by some tens of chi2.
-  enum class Moves { coarse, middle };
+  /// mesh, it led fits along the law by some tens of chi2. Along the coarse one: what a step gains
+  /// is the middle mesh's, where it leads to the coarse one's, at an eighth of a derivative's cost.
+  enum class Moves { coarse, middle, middle_along_coarse };
   void move_by(Moves mesh, const Composition& composition);
   /// Where the fine forces were taken last.
   [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
@@ -85,6 +86,12 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t shot,
                                               std::size_t worker) override;
+  [[nodiscard]] bool differs_by_less() const override {
+    return moves_ == Moves::middle_along_coarse;
+  }
+  [[nodiscard]] Eigen::VectorXd evaluate_to_differ(const Composition& composition,
+                                                   const std::vector<double>& theta,
+                                                   std::size_t worker) override;
   [[nodiscard]] std::size_t per_shot() const override;
   /// A node that touches or leaves moves all residuals by 0.002 to 0.005 of a deviation: over a
   /// step of 0.002 that is as much as a cover's modulus does, over this one a tenth and less.
@@ -165,19 +172,20 @@ class ImpactResiduals : public ShotResiduals {
   };
   struct Anchor {
     BallRun fine;        ///< at the prepared numbers
-    BallRun moving;      ///< there, by the mesh that changes with theta, at the group's mean speed
     BallRun law;         ///< Cauchy's less Kirchhoff's
-    BallRun moving_law;  ///< the same by the mesh that changes with theta, where the law does
     BallRun mesh;        ///< fine less middle
+    BallRun coarse;      ///< at the group's mean speed
+    BallRun middle;      ///< there, where forces change by it
+    BallRun middle_law;  ///< the law by it, there
   };
 
   [[nodiscard]] RecordScene record_of(const Composition& composition,
                                       const std::vector<double>& theta, std::size_t shot) const;
-  [[nodiscard]] BallRun force(const BallScene& ball, std::size_t group, bool high);
-  [[nodiscard]] bool law_moves() const { return moves_ == Moves::middle; }
-  [[nodiscard]] std::size_t moving_elements() const {
-    return moves_ == Moves::middle ? meshes_.middle : meshes_.coarse;
-  }
+  [[nodiscard]] Foretold foretold_by(Moves mesh, const Composition& composition,
+                                     const std::vector<double>& theta, std::size_t worker);
+  [[nodiscard]] Eigen::VectorXd white(const Foretold& foretold) const;
+  [[nodiscard]] BallRun force(Moves mesh, const BallScene& ball, std::size_t group, bool high);
+  void run_ahead(const Workers& executor, const BallScene& ball);
   [[nodiscard]] BallRun law_by(const BallScene& ball, double speed_m_per_s, std::size_t elements);
   [[nodiscard]] std::vector<std::vector<Complex>> transfers(const Composition& composition,
                                                             const std::vector<double>& theta,
@@ -188,7 +196,7 @@ class ImpactResiduals : public ShotResiduals {
       std::size_t worker) const;
   [[nodiscard]] std::vector<std::vector<double>> recorded(std::vector<std::vector<double>> strain,
                                                           double bridge_b) const;
-  [[nodiscard]] Readings readings_of(const BallScene& ball, std::size_t group,
+  [[nodiscard]] Readings readings_of(Moves mesh, const BallScene& ball, std::size_t group,
                                      const std::vector<std::vector<Complex>>& transfer,
                                      double bridge_b, std::size_t worker);
   [[nodiscard]] double share_of(std::size_t shot) const;

@@ -167,13 +167,16 @@ ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<dou
   constexpr double kArrived = 2.0;  ///< of chi2: more than forces are rough by
   constexpr double kShare = 1e-2;   ///< of it: of a large misfit more is rough
   constexpr double kFarOff = 5.0;   ///< of noise: what leaves more is not what is said in the end
+  using AnchorBy = ImpactResiduals::AnchorBy;
+  using Moves = ImpactResiduals::Moves;
+  const bool roughly = settle == Settle::roughly;
   ModelFit fit;
   bool arrived = false;
   for (int pass = 0; pass < kMostPasses && !arrived; ++pass) {
-    residuals_.anchor(composition, theta);
+    residuals_.anchor(composition, theta, roughly ? AnchorBy::middle : AnchorBy::fine);
     const auto [chi2, freedom] = repeated(residuals_.evaluate_on(executor_, composition, theta));
     if (chi2 < kFarOff * freedom) {
-      residuals_.move_by(ImpactResiduals::Moves::middle, composition);
+      residuals_.move_by(roughly ? Moves::middle_along_coarse : Moves::middle, composition);
     }
     const Eigen::MatrixXd before = fit.jacobian;
     fit = fit_by_secants(composition, residuals_, executor_, theta, pass > 0 ? &before : chord,

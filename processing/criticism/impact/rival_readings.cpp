@@ -57,7 +57,7 @@ std::optional<RivalReading> best_rival_reading(ImpactStudy& study, const Model& 
     objectives[best] = objective_with(study, model, best, study.executor(), Settle::fully);
   }
   if (back != nullptr) {
-    study.residuals().anchor(back->composition, back->theta);
+    study.residuals().anchor(back->composition, back->theta, ImpactResiduals::AnchorBy::middle);
   }
   return best == now ? std::nullopt
                      : std::optional<RivalReading>(RivalReading{kNames.at(best), behind()});

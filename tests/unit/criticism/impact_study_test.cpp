@@ -418,6 +418,30 @@ TEST(ImpactResiduals, ForcesMoveToWhatTheyAreThere) {
   EXPECT_GT((by_coarse - there).norm(), 1.0);
 }
 
+/// A rough fit goes where the coarse mesh leads and stays only where the middle one gains by it.
+TEST(ImpactResiduals, ARoughFitsStepsAreJudgedByTheMiddleMeshAndLedByTheCoarseOne) {
+  using Moves = ImpactResiduals::Moves;
+  ThrownBalls balls(testing::impact_shots(two_speeds(28, 2)));
+  ImpactResiduals& residuals = balls.study.residuals();
+  const Composition composition(testing::filed_ball(), balls.campaign);
+  residuals.prepare(composition, composition.start());
+  std::vector<double> away = composition.start();
+  away[0] += 1.0;
+  const auto by = [&](Moves mesh) {
+    residuals.anchor(composition, composition.start());
+    residuals.move_by(mesh, composition);
+    const Eigen::VectorXd there = residuals.evaluate_on(Workers{}, composition, away);
+    return std::pair{there, derivatives(composition, residuals, away, there, {0}, Workers{})};
+  };
+  const auto [on_coarse, led_by_coarse] = by(Moves::coarse);
+  const auto [on_middle, led_by_middle] = by(Moves::middle);
+  const auto [judged, led] = by(Moves::middle_along_coarse);
+  EXPECT_EQ((judged - on_middle).norm(), 0.0);
+  EXPECT_GT((judged - on_coarse).norm(), 0.0);
+  EXPECT_EQ((led - led_by_coarse).norm(), 0.0);
+  EXPECT_NEAR((led - led_by_middle).norm(), 0.0, 0.1 * led_by_middle.norm());
+}
+
 /// A search may leave a fit with friction and moduli far from where they are filed, as it led there
 /// for want of what was missing. Where that does not belong, a fit to its end comes back.
 TEST(LongImpactStudy, WhereASearchLeavesAFitDoesNotDecideWhereItEnds) {
