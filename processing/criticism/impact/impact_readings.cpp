@@ -2,12 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "processing/criticism/impact/fine_grid.hpp"
 #include "processing/impact/filter.hpp"
 #include "processing/models/physics.hpp"
 
 namespace kolsky {
+
+namespace {
+
+double mean_of_first(const std::vector<double>& values, std::size_t count) {
+  const std::size_t most = std::min(count, values.size());
+  return most == 0
+             ? 0.0
+             : std::accumulate(values.begin(), values.begin() + static_cast<long>(most), 0.0) /
+                   static_cast<double>(most);
+}
+
+}  // namespace
 
 std::vector<std::vector<Complex>> ImpactResiduals::transfers(const Composition& composition,
                                                              const std::vector<double>& theta,
@@ -77,17 +90,19 @@ RecordScene ImpactResiduals::record_of(const Composition& composition,
   return scene.record;
 }
 
-/// A shot's record as gauges sensed it, less what effects add to it.
+/// A shot's record as gauges sensed it, less what effects add to it. The level before the pulse has
+/// been taken off the record, and with it what they add there.
 Eigen::VectorXd ImpactResiduals::measured(std::size_t shot, const RecordScene& record) const {
   const std::size_t samples = records_.window.samples;
   Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(records_.judged[shot].data(),
                                                           static_cast<Eigen::Index>(of_gauges()));
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     const std::vector<double>& added = record.additions[j];
+    const double level = mean_of_first(added, campaign_.shots[shot].quiet_samples);
     for (std::size_t k = 0; k < samples && !added.empty(); ++k) {
       const double place = records_.judged_s(shot, j, k) / campaign_.period_s;
       const auto i = std::min(static_cast<std::size_t>(std::lround(place)), added.size() - 1);
-      out[static_cast<Eigen::Index>(j * samples + k)] -= added[i];
+      out[static_cast<Eigen::Index>(j * samples + k)] -= added[i] - level;
     }
   }
   return out;

@@ -418,6 +418,26 @@ TEST(ImpactResiduals, ForcesMoveToWhatTheyAreThere) {
   EXPECT_GT((by_coarse - there).norm(), 1.0);
 }
 
+/// The level before the pulse is taken off a record, and what drifts has one there: half a
+/// millisecond of it was an offset that no bench has.
+TEST(ImpactResiduals, WhatDriftsIsFittedToTheNoise) {
+  const std::vector<Shot> shots = testing::impact_shots(two_speeds(44, 2));
+  const auto left_of = [&](double drift_per_s, const std::vector<std::string>& effects) {
+    Campaign campaign = read_campaign(shots);
+    for (CampaignShot& shot : campaign.shots) {
+      std::vector<double>& strain = shot.strain[0];
+      const double quiet = 0.5 * static_cast<double>(shot.quiet_samples - 1);
+      for (std::size_t k = 0; k < strain.size(); ++k) {
+        strain[k] += drift_per_s * campaign.period_s * (static_cast<double>(k) - quiet);
+      }
+    }
+    ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+    return study.fit(paper_with(effects)).misfit.chi2_reduced;
+  };
+  const double without = left_of(0.0, {});
+  EXPECT_NEAR(left_of(2e-2, {"baseline-drift:g1"}), without, 0.05 * without);
+}
+
 /// A rough fit goes where the coarse mesh leads and stays only where the middle one gains by it.
 TEST(ImpactResiduals, ARoughFitsStepsAreJudgedByTheMiddleMeshAndLedByTheCoarseOne) {
   using Moves = ImpactResiduals::Moves;
