@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,14 @@ class ImpactCertifier {
                                                    const std::vector<ImpactRefit>& refits,
                                                    const Studied& current,
                                                    std::vector<std::string>& rejected) const;
+  /// Why the best is not believed though all else certifies it; none: nothing of it is there.
+  [[nodiscard]] std::optional<std::string> unbelievable(const ImpactSearch& search,
+                                                        const std::vector<ImpactRefit>& refits,
+                                                        const Studied& current) const;
 
  private:
+  [[nodiscard]] bool stands(const ImpactSearch& search, const ImpactRefit& refit,
+                            const Studied& current) const;
   [[nodiscard]] bool certified(const ImpactSearch& search, const ImpactRefit& refit,
                                const Studied& current) const;
   [[nodiscard]] double disagreement(const Studied& studied, const std::string& id) const;

@@ -94,6 +94,7 @@ class Diagnostician {
       begin_table(search, refits);
     }
     const ImpactRefit* claimed = first_certified(search, refits, search.base());
+    unbelievable_ = certifier_.unbelievable(search, refits, search.base());
     if (claimed == nullptr && settled && diagnosis_.effects.empty() &&
         study_.allowance(current) != Allowance::kept) {
       options_.progress("fitting the nearest to a claim to their ends");
@@ -125,11 +126,13 @@ class Diagnostician {
     }
     options_.progress("testing two effects, of which one is " + rest_->id);
     const Rest nearest = *rest_;
+    const std::optional<std::string> unbelievable = unbelievable_;
     Studied beside = nearest.studied;
     ImpactSearch search(study_, beside);
     const std::size_t place = diagnosis_.effects.size();
     if (!add_one(search, beside, false)) {
       rest_ = nearest;
+      unbelievable_ = unbelievable;
       return false;
     }
     diagnosis_.effects.insert(diagnosis_.effects.begin() + static_cast<std::ptrdiff_t>(place),
@@ -336,8 +339,16 @@ class Diagnostician {
     if (scatter) {
       doubts.push_back(*scatter);
     }
+    const bool left = remains(first, current);
+    if (std::optional<std::string> rebounds =
+            left ? rebound_doubt(study_, current) : std::nullopt) {
+      doubts.push_back(*std::move(rebounds));
+    }
+    if (unbelievable_) {
+      doubts.push_back(*unbelievable_);
+    }
     const bool doubted =
-        remains(first, current) || overruled_ || scatter || (claims && !doubts.empty());
+        left || overruled_ || scatter || unbelievable_ || (claims && !doubts.empty());
     if (doubted || overruled_by_what_else_materials_do(first, current)) {
       give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {
@@ -371,7 +382,7 @@ class Diagnostician {
                              conflict_with_filed(current).log_p < kSurely * options_.log_alpha;
     const bool left =
         remains(first, current) && diagnosis_.unexplained_log_p < kSurely * kUnexplained;
-    return overruled_ || contradicts || left;
+    return overruled_ || unbelievable_ || contradicts || left;
   }
 
   /// Whether misfit repeats that nothing explains.
@@ -463,6 +474,8 @@ class Diagnostician {
   std::vector<double> first_anchor_;
   std::optional<AnchoredAt> anchor_;  ///< where the fine forces were taken for what was added last
   bool overruled_ = false;            ///< by another reading of the law
+  /// Of the last search what would be claimed if anybody believed it.
+  std::optional<std::string> unbelievable_;
   std::set<std::string> not_in_quiet_;
   std::vector<std::string> flat_;  ///< without a slope at none
   struct Rest {

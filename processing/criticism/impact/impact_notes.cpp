@@ -171,6 +171,26 @@ std::optional<std::string> scatter_doubt(ImpactStudy& study, const Studied& curr
   return std::nullopt;
 }
 
+std::optional<std::string> rebound_doubt(ImpactStudy& study, const Studied& current) {
+  const auto [squares, freedom] = study.repeated_of_rebounds(current.fit.residual);
+  if (!(log_chi2_tail(squares, freedom) < kUnexplained)) {
+    return std::nullopt;
+  }
+  const ImpactRecords& records = study.residuals().records();
+  const Eigen::VectorXd off = study.residuals().whitening().means_behind(current.fit.residual);
+  const auto size = static_cast<Eigen::Index>(study.residuals().per_shot());
+  double sum = 0.0;
+  for (std::size_t g = 0; g < records.groups.size(); ++g) {
+    sum += off[static_cast<Eigen::Index>(g + 1) * size - 1] / records.incident(g);
+  }
+  return fmt::format(
+      "measured restitutions are off by {:+.2g} in the mean from those that go with the force: "
+      "look "
+      "at how rebound speeds are measured (a gate's distance, air on the way), and at what takes "
+      "energy up besides the ball",
+      sum / freedom);
+}
+
 double law_beyond_bounds(const Studied& studied) {
   const ModelFit& fit = studied.fit;
   const std::vector<FreeNumber>& numbers = studied.composition.numbers();

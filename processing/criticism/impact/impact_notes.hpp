@@ -31,6 +31,10 @@ inline constexpr double kPressed = 2.0;
 /// from shot to shot, which their scatter would pass for.
 [[nodiscard]] std::optional<std::string> scatter_doubt(ImpactStudy& study, const Studied& current);
 
+/// By how much measured restitutions are off, where that is by themselves more than noise and what
+/// codes differ by leave.
+[[nodiscard]] std::optional<std::string> rebound_doubt(ImpactStudy& study, const Studied& current);
+
 /// Why nothing is claimed though something is certified. @param beyond  of law_beyond_bounds()
 [[nodiscard]] std::string law_pressed_note(double beyond);
 

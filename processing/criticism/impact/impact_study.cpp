@@ -277,7 +277,7 @@ double ImpactStudy::unexplained_log_p(const Eigen::VectorXd& white) const {
   const auto [chi2, freedom] = repeated(white);
   const auto [of_rebounds, rebounds] = repeated_of_rebounds(white);
   return std::min(log_chi2_tail(chi2 / kSolverDoubt, freedom),
-                  log_chi2_tail(of_rebounds / kSolverDoubt, rebounds));
+                  log_chi2_tail(of_rebounds, rebounds));
 }
 
 std::pair<double, double> ImpactStudy::repeated_of_rebounds(const Eigen::VectorXd& white) const {

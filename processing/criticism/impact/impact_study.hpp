@@ -127,7 +127,8 @@ class ImpactStudy {
   [[nodiscard]] std::pair<double, double> repeated_of_rebounds(const Eigen::VectorXd& white) const;
 
   /// ln of the chance that noise and the calculation's error, for all it is known to mimic
-  /// (kSolverDoubt), leave as much that repeats: of all or of the rebounds, whichever is less.
+  /// (kSolverDoubt), leave as much that repeats: of all or of the rebounds, whichever is less. What
+  /// restitutions of codes differ by is known, and nothing that they mimic: it is allowed for once.
   [[nodiscard]] double unexplained_log_p(const Eigen::VectorXd& white) const;
   /// Whether they may.
   [[nodiscard]] bool within_calculation(const Eigen::VectorXd& white) const;

@@ -327,6 +327,31 @@ TEST(LongImpactDiagnosis, TheBarsBendingIsNamed) {
       << "read as the section's turn, and not as the deflection's curvature";
 }
 
+/// Rebounds that a gate times wrongly move no effect of a ball, and are few among the samples.
+TEST(LongImpactDiagnosis, ReboundsThatAreFiledTooLowAreToldAsSuch) {
+  std::vector<Shot> shots = testing::impact_shots(two_speeds(11, 3));
+  for (Shot& shot : shots) {
+    const double rebound = std::stod(shot.meta["rebound_speed_m_per_s"]);
+    shot.meta["rebound_speed_m_per_s"] = std::to_string(0.98 * rebound);
+  }
+  const Diagnosis diagnosis = diagnosed(shots, filed_ball());
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "measured restitutions are off by -0.0")) << told(diagnosis);
+}
+
+/// With arrivals free a gauge's place is told by how bending runs to it, and that is as well the
+/// shape of something else: a gauge that lags was bending and 12 cm.
+TEST(LongImpactDiagnosis, AGaugeIsNotClaimedFarFromWhereItIsFiled) {
+  testing::ImpactWishes own = two_speeds(18, 3);
+  own.bending_m = 2e-4;
+  Campaign campaign = read_campaign(testing::impact_shots(own));
+  campaign.bench.gauges[0].position_m.value -= 0.12;
+  const Diagnosis diagnosis = diagnosed(campaign);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
+  EXPECT_TRUE(noted(diagnosis, "m from where it is filed: something else is there"))
+      << told(diagnosis);
+}
+
 /// How far a reading is from what its gauge is filed with is no matter of how well an impact is
 /// calculated: eight filed deviations are claimed, and two, which chance makes, are not.
 TEST(LongImpactDiagnosis, AGaugeFactorFarFromWhatIsFiledIsNamed) {

@@ -554,7 +554,7 @@ TEST(ImpactStudy, ReboundsThatAreOffAreUnexplainedHoweverManySamplesAreNot) {
   EXPECT_TRUE(sound.study.within_calculation(studied_as_it_is(sound).fit.residual));
   for (Shot& shot : shots) {
     const double rebound = std::stod(shot.meta["rebound_speed_m_per_s"]);
-    shot.meta["rebound_speed_m_per_s"] = std::to_string(1.03 * rebound);
+    shot.meta["rebound_speed_m_per_s"] = std::to_string(1.015 * rebound);
   }
   ThrownBalls off(shots);
   const Eigen::VectorXd white = studied_as_it_is(off).fit.residual;
