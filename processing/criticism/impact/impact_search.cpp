@@ -255,9 +255,8 @@ std::optional<ImpactRefit> ImpactSearch::described(std::size_t index, const Mode
   const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                          out.studied.fit.degrees_of_freedom(out.studied.composition);
   out.freedom = candidate.frees_prior ? 1.0 : std::max(1.0, std::round(freedom));
-  const double noise = std::max(1.0, out.studied.misfit.noise_scale);
-  out.gain = (base_.fit.objective() - out.studied.fit.objective()) / noise;
-  out.of_filed = (base_.fit.penalty - out.studied.fit.penalty) / noise;
+  out.lowers = base_.fit.objective() - out.studied.fit.objective();
+  out.lowers_filed = base_.fit.penalty - out.studied.fit.penalty;
   return out;
 }
 
@@ -265,9 +264,14 @@ void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
   const auto best = std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
     return a.studied.fit.objective() < b.studied.fit.objective();
   });
+  // By one measure of it: what takes up how shots scatter leaves less noise, and of a large misfit
+  // each of its own made that more than what it explains.
+  const double noise = std::max(1.0, best->studied.misfit.noise_scale);
   const auto [chi2, known] = study_.repeated(best->studied.fit.residual);
   scale_ = std::max(kSolverDoubt, chi2 / known);
   for (ImpactRefit& refit : list) {
+    refit.gain = refit.lowers / noise;
+    refit.of_filed = refit.lowers_filed / noise;
     const bool one_sided = candidate(refit).one_sided && refit.freedom < 1.5;
     const double beside_rivals = (refit.gain - refit.of_filed) / scale_ + refit.of_filed;
     refit.evidence =
@@ -332,9 +336,8 @@ std::vector<ImpactRefit> ImpactSearch::settled(std::vector<ImpactRefit> refits,
       continue;
     }
     const Studied studied = study_.settled(own.studied, Settle::roughly);
-    const double noise = std::max(1.0, studied.misfit.noise_scale);
-    own.gain = (base.fit.objective() - studied.fit.objective()) / noise;
-    own.of_filed = (base.fit.penalty - studied.fit.penalty) / noise;
+    own.lowers = base.fit.objective() - studied.fit.objective();
+    own.lowers_filed = base.fit.penalty - studied.fit.penalty;
     own.studied = studied;
     if (++count == kNearest) {
       break;
@@ -353,7 +356,7 @@ void ImpactSearch::leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list) {
   std::erase_if(list, [&](const ImpactRefit& own) {
     const std::string id = candidate(own).id();
     const bool lacks = !stands_before_pulse(own.studied, id, study_.residuals());
-    if (lacks && own.gain > kStandsBefore * kSolverDoubt) {
+    if (lacks && own.lowers > kStandsBefore * kSolverDoubt) {
       not_in_quiet_.insert(id);
     }
     return lacks;

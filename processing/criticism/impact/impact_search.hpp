@@ -17,7 +17,9 @@ struct ImpactRefit {
   std::size_t candidate = 0;
   Studied studied;
   double freedom = 1.0;
-  double gain = 0.0;      ///< of the objective, over the noise
+  double lowers = 0.0;        ///< the objective
+  double lowers_filed = 0.0;  ///< the part of it by which filed numbers come nearer
+  double gain = 0.0;          ///< of the objective, over the noise that the best refit leaves
   double of_filed = 0.0;  ///< the part of it by which filed numbers come nearer to what is filed
   double evidence = 0.0;  ///< as a square of a normal deviate, the search not counted
   double log_p = 0.0;
