@@ -11,6 +11,7 @@
 #include "processing/criticism/impact/impact_certifier.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
 #include "processing/criticism/impact/impact_search.hpp"
+#include "processing/criticism/impact/impulse_doubt.hpp"
 #include "processing/criticism/impact/next_impact.hpp"
 #include "processing/criticism/impact/rival_readings.hpp"
 #include "processing/criticism/verdict/claims.hpp"
@@ -339,6 +340,10 @@ class Diagnostician {
     if (scatter) {
       doubts.push_back(*scatter);
     }
+    const std::optional<std::string> impulses = impulse_doubt(study_, current);
+    if (impulses) {
+      doubts.push_back(*impulses);
+    }
     const bool left = remains(first, current);
     if (std::optional<std::string> rebounds =
             left ? rebound_doubt(study_, current) : std::nullopt) {
@@ -348,7 +353,7 @@ class Diagnostician {
       doubts.push_back(*unbelievable_);
     }
     const bool doubted =
-        left || overruled_ || scatter || unbelievable_ || (claims && !doubts.empty());
+        left || overruled_ || scatter || impulses || unbelievable_ || (claims && !doubts.empty());
     if (doubted || overruled_by_what_else_materials_do(first, current)) {
       give_up(diagnosis_, doubts, first.model, diagnosis_.held_out.floor);
     } else {

@@ -10,6 +10,7 @@
 #include "processing/base/error.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/impact/impact_whitening.hpp"
+#include "processing/criticism/impact/impulse_doubt.hpp"
 #include "tests/unit/criticism/thrown_balls.hpp"
 
 namespace kolsky {
@@ -436,6 +437,28 @@ TEST(ImpactResiduals, WhatDriftsIsFittedToTheNoise) {
   };
   const double without = left_of(0.0, {});
   EXPECT_NEAR(left_of(2e-2, {"baseline-drift:g1"}), without, 0.05 * without);
+}
+
+/// Whatever a ball is made of, its impulse is its change of momentum; an amplifier at its end keeps
+/// a part of it back, at the highest speed only.
+TEST(ImpulseDoubt, IsOfReadingsThatDoNotGrowWithTheForceAndOfNoBall) {
+  testing::ImpactWishes own = two_speeds(45, 5);
+  own.core_b = 0.9;
+  const std::vector<Shot> shots = testing::impact_shots(own);
+  const auto said_of = [&](double most_strain) {
+    Campaign campaign = read_campaign(shots);
+    for (CampaignShot& shot : campaign.shots) {
+      for (double& value : shot.strain[0]) {
+        value = std::min(value, most_strain);
+      }
+    }
+    ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+    return impulse_doubt(study, study.as_it_is(paper_with({})));
+  };
+  EXPECT_EQ(said_of(1.0), std::nullopt) << "a core that stiffens";
+  const std::optional<std::string> said = said_of(225e-6);
+  ASSERT_TRUE(said);
+  EXPECT_NE(said->find("change of momentum"), std::string::npos) << *said;
 }
 
 /// A rough fit goes where the coarse mesh leads and stays only where the middle one gains by it.
