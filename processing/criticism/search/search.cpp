@@ -498,6 +498,14 @@ void Search::add_relatives(const std::vector<std::pair<double, std::size_t>>& ra
       chosen.push_back(i);
     }
   }
+  // Of what every specimen does by formula it says little where moduli do its work.
+  constexpr double kSomething = 25.0;  // of evidence: noise seldom has as much
+  const bool something = !ranked.empty() && ranked.front().first > kSomething;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (something && has_formula(candidates_[i].use) && !is_chosen(i)) {
+      chosen.push_back(i);
+    }
+  }
   // Of the material, what can say nothing at first order for standing at its bound.
   const bool material = std::any_of(chosen.begin(), chosen.end(),
                                     [&](std::size_t i) { return of_material(candidates_[i]); });
