@@ -45,8 +45,9 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
                             const std::vector<std::size_t>& numbers, const Workers& executor) {
   Eigen::MatrixXd columns(at_theta.size(), static_cast<Eigen::Index>(numbers.size()));
   const Eigen::VectorXd here =
-      residuals.differs_by_less() ? residuals.evaluate_to_differ(composition, theta, executor.first)
-                                  : at_theta;
+      residuals.has_quick_differences()
+          ? residuals.evaluate_for_differences(composition, theta, executor.first)
+          : at_theta;
   executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
     std::vector<double> moved = theta;
     const FreeNumber& number = composition.numbers()[numbers[i]];
@@ -66,7 +67,7 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
           step;
     } else {
       columns.col(column) =
-          (residuals.evaluate_to_differ(composition, moved, worker) - here) / step;
+          (residuals.evaluate_for_differences(composition, moved, worker) - here) / step;
     }
   });
   return columns;

@@ -33,13 +33,13 @@ class ShotResiduals {
   [[nodiscard]] virtual Eigen::VectorXd evaluate_shot(const Composition& composition,
                                                       const std::vector<double>& theta,
                                                       std::size_t shot, std::size_t worker) = 0;
-  /// Whether something quicker differs by a number as these residuals do, as well as a rough fit's
-  /// steps need it.
-  [[nodiscard]] virtual bool differs_by_less() const { return false; }
-  /// That, where there is such.
-  [[nodiscard]] virtual Eigen::VectorXd evaluate_to_differ(const Composition& composition,
-                                                           const std::vector<double>& theta,
-                                                           std::size_t worker) {
+  /// Whether differences between nearby numbers, as well as a rough fit's steps need them, are to
+  /// be had for less than these residuals.
+  [[nodiscard]] virtual bool has_quick_differences() const { return false; }
+  /// What those are taken of; where they are not, the residuals themselves.
+  [[nodiscard]] virtual Eigen::VectorXd evaluate_for_differences(const Composition& composition,
+                                                                 const std::vector<double>& theta,
+                                                                 std::size_t worker) {
     return evaluate(composition, theta, worker);
   }
   /// By how much the residuals' squares are less for noise that is foretold but not known: no fit

@@ -202,10 +202,10 @@ Eigen::VectorXd ImpactResiduals::evaluate(const Composition& composition,
   return white(foretell(composition, theta, worker));
 }
 
-Eigen::VectorXd ImpactResiduals::evaluate_to_differ(const Composition& composition,
-                                                    const std::vector<double>& theta,
-                                                    std::size_t worker) {
-  const Moves mesh = differs_by_less() ? Moves::coarse : moves_;
+Eigen::VectorXd ImpactResiduals::evaluate_for_differences(const Composition& composition,
+                                                          const std::vector<double>& theta,
+                                                          std::size_t worker) {
+  const Moves mesh = has_quick_differences() ? Moves::coarse : moves_;
   return white(foretold_by(mesh, composition, theta, worker));
 }
 

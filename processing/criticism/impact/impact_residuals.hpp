@@ -86,12 +86,12 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] Eigen::VectorXd evaluate_shot(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t shot,
                                               std::size_t worker) override;
-  [[nodiscard]] bool differs_by_less() const override {
+  [[nodiscard]] bool has_quick_differences() const override {
     return moves_ == Moves::middle_along_coarse;
   }
-  [[nodiscard]] Eigen::VectorXd evaluate_to_differ(const Composition& composition,
-                                                   const std::vector<double>& theta,
-                                                   std::size_t worker) override;
+  [[nodiscard]] Eigen::VectorXd evaluate_for_differences(const Composition& composition,
+                                                         const std::vector<double>& theta,
+                                                         std::size_t worker) override;
   [[nodiscard]] std::size_t per_shot() const override;
   /// A node that touches or leaves moves all residuals by 0.002 to 0.005 of a deviation: over a
   /// step of 0.002 that is as much as a cover's modulus does, over this one a tenth and less.

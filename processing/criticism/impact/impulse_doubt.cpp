@@ -20,7 +20,8 @@ constexpr double kNoContact = 0.01;
 constexpr double kAlike = 0.002;
 
 /// Of a shot, the impulse read over that foretold, less 1, and less what the measured rebound makes
-/// of it.
+/// of it. Where the far end's reflection is judged, too, that is of the other sense and counts as
+/// much.
 double impulse_off(const ImpactResiduals::Foretold& foretold, std::size_t shot,
                    std::size_t of_gauges, std::size_t samples, double incident) {
   const Eigen::VectorXd& reading = foretold.reading[shot];
@@ -32,20 +33,20 @@ double impulse_off(const ImpactResiduals::Foretold& foretold, std::size_t shot,
   for (std::size_t first = 0; first < of_gauges; first += samples) {
     double offset = 0.0;
     double quiet = 0.0;
-    double contact = 0.0;
-    double off = 0.0;
+    double senses = 0.0;
     for (std::size_t k = first; k < first + samples; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       if (std::abs(reading[i]) < floor) {
         offset += left[i];
         quiet += 1.0;
       } else {
-        off += left[i];
-        contact += 1.0;
-        said += reading[i];
+        const double sense = std::copysign(1.0, reading[i]);
+        read += sense * left[i];
+        said += sense * reading[i];
+        senses += sense;
       }
     }
-    read += off - (quiet > 0.0 ? contact * offset / quiet : 0.0);
+    read -= quiet > 0.0 ? senses * offset / quiet : 0.0;
   }
   const auto rebound = static_cast<Eigen::Index>(of_gauges);
   return read / said - left[rebound] / (incident + reading[rebound]);

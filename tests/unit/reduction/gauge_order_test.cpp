@@ -63,5 +63,16 @@ TEST(GaugeOrder, OfCablesExchangedBetweenBarsFails) {
   EXPECT_EQ(check_of(reduction, "gauge_order").verdict, Verdict::fail);
 }
 
+TEST(GaugeOrder, IsAskedForWhereNothingCanBeReduced) {
+  Shot shot = four_gauges(testing::kTitanium, testing::kCover);
+  std::swap(shot.channels[0].codes, shot.channels[3].codes);
+  for (ChannelRecord& channel : shot.channels) {
+    channel.codes.resize(800);
+  }
+  const Quality quality = reduced(shot).quality;
+  ASSERT_FALSE(quality.reducible);
+  EXPECT_NE(quality.mend.find("exchanged"), std::string::npos) << quality.mend;
+}
+
 }  // namespace
 }  // namespace kolsky
