@@ -110,12 +110,12 @@ std::optional<std::string> impulse_doubt(ImpactStudy& study, const Studied& curr
       std::ranges::max_element(off.mean, {}, [&](double mean) { return std::abs(mean - off.all); });
   const auto group = static_cast<std::size_t>(furthest - off.mean.begin());
   return fmt::format(
-      "the impulse that gauges read at {:.1f} m/s is {:+.2g} % further off the ball's change of "
-      "momentum than at all speeds in the mean, where shots of one speed differ by {:.2g} %: no "
-      "ball does that; what reads the force does not grow with it (an amplifier or a converter at "
-      "its end, a bridge)",
-      residuals.records().groups[group].speed_m_per_s, 100.0 * (*furthest - off.all),
-      100.0 * std::sqrt(off.among));
+      "over the ball's change of momentum the impulse that gauges read at {:.1f} m/s is {:.2g} "
+      "% {} than at all speeds, where shots of one speed differ by {:.2g} %: no ball does that; "
+      "what reads the force does not grow with it (an amplifier or a converter at its end, a "
+      "bridge)",
+      residuals.records().groups[group].speed_m_per_s, 100.0 * std::abs(*furthest - off.all),
+      *furthest < off.all ? "less" : "more", 100.0 * std::sqrt(off.among));
 }
 
 }  // namespace kolsky
