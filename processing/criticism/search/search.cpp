@@ -103,14 +103,13 @@ Search::Search(Study& study, const Studied& base, const Model& start, const Safe
       base_(base),
       safeguards_(safeguards),
       candidates_(candidates_for(base, study.campaign())),
-      directions_(candidates_.size()) {
+      directions_(candidates_.size()),
+      afresh_(start) {
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     directions_[i] = direction_of(candidates_[i], base_, study_, worker);
   });
-  if (astray(base_.model, base_.misfit)) {
-    begun_ = start;
-    start_moduli(*begun_, study.campaign(), study.residuals());
-  }
+  start_moduli(afresh_, study.campaign(), study.residuals());
+  may_be_astray_ = astray(base_.model, base_.misfit);
   if (safeguards_.search_count) {
     trials_ = independent_trials(base_, candidates_, directions_);
   }
@@ -603,7 +602,7 @@ std::vector<double> Search::begin_large(const Candidate& candidate, const Compos
 std::optional<Eigen::MatrixXd> Search::chord_of(const Candidate& candidate,
                                                 const Direction& direction,
                                                 const Composition& composition) const {
-  if (begun_) {
+  if (may_be_astray_) {
     return std::nullopt;
   }
   const auto& numbers = composition.numbers();
@@ -630,6 +629,21 @@ std::optional<Eigen::MatrixXd> Search::chord_of(const Candidate& candidate,
   return chord;
 }
 
+/// Whether its fit begins once more from where the model's numbers started: these may have gone
+/// astray without it, and what was found of the same matter has moved them to where the two of them
+/// are not.
+bool Search::begins_afresh(const Candidate& candidate) const {
+  if (may_be_astray_) {
+    return !(far_off() && is_sudden(candidate));
+  }
+  const Stage stage = candidate.use.effect->about().stage;
+  const bool of_matter = stage == Stage::material || stage == Stage::specimen;
+  return of_matter && std::ranges::any_of(afresh_.effects, [&](const EffectUse& use) {
+           const EffectAbout& about = use.effect->about();
+           return about.stage == stage && !about.base && use.id() != candidate.id();
+         });
+}
+
 std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   const Candidate& candidate = candidates_[index];
   const Direction& direction = directions_[index];
@@ -641,9 +655,8 @@ std::optional<Refit> Search::refit(std::size_t index, std::size_t worker) {
   };
   ModelFit fit =
       fit_from(begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
-  if (begun_ && !(far_off() && is_sudden(candidate))) {
-    // Begin again from where the model's numbers started.
-    const Composition again(with(*begun_, candidate, true), study_.campaign());
+  if (begins_afresh(candidate)) {
+    const Composition again(with(afresh_, candidate, true), study_.campaign());
     better_of(fit, fit_from(carry(again, again.start(), composition)));
   }
   from_large_sizes(index, composition, worker, fit);
@@ -665,7 +678,7 @@ void Search::from_large_sizes(std::size_t index, const Composition& composition,
                               ModelFit& fit) {
   const Candidate& candidate = candidates_[index];
   const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
-  const bool bends = (even && begun_) || (is_sudden(candidate) && far_off());
+  const bool bends = (even && may_be_astray_) || (is_sudden(candidate) && far_off());
   if (!candidate.one_sided ||
       !(bends || evidence_of(directions_[index], candidate) < kWorthRefitting)) {
     return;
@@ -679,7 +692,7 @@ void Search::from_large_sizes(std::size_t index, const Composition& composition,
     return;
   }
   // Until the model's other numbers are fitted, none of its sizes says which is the right one.
-  const Composition again(with(*begun_, candidate, true), study_.campaign());
+  const Composition again(with(afresh_, candidate, true), study_.campaign());
   for (std::vector<double>& start :
        large_sizes(candidate, composition, carry(again, again.start(), composition))) {
     begin(std::move(start));

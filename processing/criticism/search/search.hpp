@@ -91,6 +91,7 @@ class Search {
 
  private:
   [[nodiscard]] bool far_off() const;
+  [[nodiscard]] bool begins_afresh(const Candidate& candidate) const;
   [[nodiscard]] ModelFit begun_from(const Composition& composition, std::vector<double> theta,
                                     const Eigen::MatrixXd* chord, std::size_t worker) const;
   void from_large_sizes(std::size_t index, const Composition& composition, std::size_t worker,
@@ -136,10 +137,11 @@ class Search {
 
   Study& study_;
   const Studied& base_;
-  std::optional<Model> begun_;  ///< where fits begin again, if the model may have gone astray
   Safeguards safeguards_;
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
+  Model afresh_;                ///< before anything was fitted: where fits begin again
+  bool may_be_astray_ = false;  ///< the model as fitted
   double trials_ = 1.0;
   std::optional<SlowNoise> slow_noise_;             ///< once it is asked for
   std::map<std::size_t, SlowChance> slow_chances_;  ///< by candidate

@@ -64,6 +64,18 @@ TEST(EndReflection, IsFittedFarFromTheRecordsWhateverItsRank) {
   EXPECT_TRUE(fitted || search.dismissed().contains("end-reflection"));
 }
 
+// What a relaxation has made of the moduli is not where they are with a dashpot beside it: begun
+// from there alone the dashpot stayed behind a fractional damping, which was named.
+TEST(SeriesDashpot, IsSoughtBesideARelaxationFromWhereTheModelBegan) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 6, .shots = 6, .noise_strain = 4e-6});
+  testing::hide(truth, testing::parse_effect("second-relaxation=7e-12"));
+  testing::hide(truth, testing::parse_effect("series-dashpot=1e-7"));
+  const std::vector<std::string> said = said_of(truth, paper_model(BenchKind::bar, false));
+  for (const char* id : {"second-relaxation", "series-dashpot"}) {
+    EXPECT_NE(std::ranges::find(said, id), said.end()) << ::testing::PrintToString(said);
+  }
+}
+
 TEST(SpecimenRelaxation, QuickerThanWhatFirstOrderBeginsWithIsInTheSet) {
   testing::Campaign truth =
       testing::draw_campaign({.seed = 5, .shots = 4, .gauges = 3, .split = true});
