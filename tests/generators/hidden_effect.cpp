@@ -103,6 +103,7 @@ const std::vector<EffectKind>& shpb_effects() {
       {"bridge-nonlinearity", "-", 0.0, 1.0, false, false},
       {"x-face-layer", "m/N", 0.0, 1e-8, false, true, true},
       {"x-permanent-strain", "-", 0.0, 0.1, false, true, true},
+      {"x-softening", "m3/J", 0.0, 3e-7, false, true, true},
       {"x-gauge-creep", "-", 0.0, 0.03, true, true, true},
       {"x-time-base", "s", 0.0, 0.3e-6, false, true, true}};
   return kinds;

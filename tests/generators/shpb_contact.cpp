@@ -67,8 +67,13 @@ MasslessSpecimen::Trial MasslessSpecimen::at(double strain) const {
       (step_s_ * step_s_);
   const double sprung = strain - fading(viscous_, chain_, stress_) -
                         specimen_.permanent_strain * std::max(0.0, largest_strain_ - strain);
-  const double spring = chain_.glassy_Pa() * (1.0 + specimen_.nonlinearity * strain);
-  trial.stress = spring * sprung / (1.0 + spring * fresh(chain_));
+  // The work depends on the stress by a step's share only: twice is enough.
+  trial.stress = stress_;
+  for (int round = 0; round < 2; ++round) {
+    const double softer = 1.0 + specimen_.softening_m3_per_J * work_by(strain, trial.stress);
+    const double spring = chain_.glassy_Pa() * (1.0 + specimen_.nonlinearity * strain) / softer;
+    trial.stress = spring * sprung / (1.0 + spring * fresh(chain_));
+  }
   const double shorter = 1.0 - strain;
   const double friction = 1.0 + specimen_.friction * specimen_.diameter_m / std::sqrt(shorter) /
                                     (3.0 * specimen_.length_m * shorter);
@@ -78,6 +83,10 @@ MasslessSpecimen::Trial MasslessSpecimen::at(double strain) const {
                          (acceleration / 8.0 + trial.strain_rate * trial.strain_rate / 16.0);
   trial.force_N = specimen_.area_m2() * (trial.stress * friction + lateral);
   return trial;
+}
+
+double MasslessSpecimen::work_by(double strain, double stress) const {
+  return work_J_per_m3_ + 0.5 * (stress_ + stress) * (strain - strain_);
 }
 
 double MasslessSpecimen::extra_shortening(double force_N) const {
@@ -94,6 +103,7 @@ void MasslessSpecimen::settle(const Trial& trial, double strain, double shorteni
                               double shortening_rate) {
   run_on(viscous_, chain_, stress_, trial.stress);
   run_on(punch_viscous_, punch_chain_, force_N_, trial.force_N);
+  work_J_per_m3_ = work_by(strain, trial.stress);
   stress_ = trial.stress;
   force_N_ = trial.force_N;
   strain_before_that_ = strain_before_;

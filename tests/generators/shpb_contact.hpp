@@ -33,6 +33,8 @@ class MasslessSpecimen : public ShpbContact {
     double strain_rate;
   };
   [[nodiscard]] Trial at(double strain) const;
+  /// Done on it per volume until a strain and a stress are reached.
+  [[nodiscard]] double work_by(double strain, double stress) const;
   [[nodiscard]] double extra_shortening(double force_N) const;
   void settle(const Trial& trial, double strain, double shortening, double shortening_rate);
 
@@ -47,6 +49,7 @@ class MasslessSpecimen : public ShpbContact {
   double shortening_ = 0.0, shortening_rate_ = 0.0;
   double strain_before_ = 0.0, strain_before_that_ = 0.0;
   double largest_strain_ = 0.0;
+  double work_J_per_m3_ = 0.0;
 };
 
 /// A specimen that waves cross: a rod of its own.

@@ -181,7 +181,8 @@ KelvinChain TrueSpecimen::chain() const {
 
 bool TrueSpecimen::asks_for_equilibrium() const {
   return nonlinearity != 0.0 || radial_inertia != 0.0 || friction != 0.0 || gap_m != 0.0 ||
-         punching != 0.0 || permanent_strain != 0.0 || face_layer_m_per_N != 0.0;
+         punching != 0.0 || permanent_strain != 0.0 || softening_m3_per_J != 0.0 ||
+         face_layer_m_per_N != 0.0;
 }
 
 void plant(ShpbWorld& world, const HiddenEffect& effect) {
@@ -194,6 +195,7 @@ void plant(ShpbWorld& world, const HiddenEffect& effect) {
       {"interface-gap", &TrueSpecimen::gap_m},
       {"punching", &TrueSpecimen::punching},
       {"x-permanent-strain", &TrueSpecimen::permanent_strain},
+      {"x-softening", &TrueSpecimen::softening_m3_per_J},
       {"x-face-layer", &TrueSpecimen::face_layer_m_per_N}};
   if (const auto found = members.find(effect.id); found != members.end()) {
     world.specimen.*(found->second) = effect.strength;
@@ -294,6 +296,7 @@ std::vector<double> key_of(const ShpbWorld& world) {
                           s.dry ? 1.0 : 0.0,
                           s.punching,
                           s.permanent_strain,
+                          s.softening_m3_per_J,
                           s.face_layer_m_per_N,
                           s.solid ? 1.0 : 0.0};
   for (const TrueShot& shot : world.base.shots) {

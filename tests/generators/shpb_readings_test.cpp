@@ -127,7 +127,8 @@ TEST(ShpbReadings, AreTheClosedFormOfALayerThatWavesCross) {
 TEST(ShpbReadings, NonlinearEffectsSettleAsTheStepFalls) {
   const std::vector<std::pair<std::string, double>> effects{
       {"specimen-nonlinearity", 2.0}, {"radial-inertia", 1.0}, {"interface-friction", 0.1},
-      {"interface-gap", 20e-6},       {"punching", 1.0},       {"x-face-layer", 1e-7}};
+      {"interface-gap", 20e-6},       {"punching", 1.0},       {"x-face-layer", 1e-7},
+      {"x-softening", 1e-6}};
   const Readings plain = shpb_readings(paper_bench());
   for (const auto& [id, strength] : effects) {
     ShpbWorld world = paper_bench();

@@ -27,6 +27,8 @@ struct TrueSpecimen {
   double punching = 0.0;  ///< s
   double permanent_strain =
       0.0;  ///< withheld: share of the spring's strain that stays when unloading
+  double softening_m3_per_J =
+      0.0;  ///< withheld: spring E1/(1 + c work done on it), as if it warmed
   double face_layer_m_per_N = 0.0;  ///< withheld: lubricant, shortening = c F/(1 + F/100 N)
   bool solid = false;  ///< a solid of revolution with its mass and friction at its faces, in place
                        ///< of what the effects' definitions make of them

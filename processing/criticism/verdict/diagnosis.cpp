@@ -23,6 +23,7 @@
 #include "processing/criticism/verdict/filed_bars.hpp"
 #include "processing/criticism/verdict/filed_conflict.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
+#include "processing/criticism/verdict/other_law.hpp"
 #include "processing/criticism/verdict/refits.hpp"
 #include "processing/criticism/verdict/slow_ties.hpp"
 #include "processing/criticism/verdict/small_rest.hpp"
@@ -530,6 +531,11 @@ class Diagnostician {
     }
     if (reasons.empty()) {
       judge_temperature(current, noise, reasons);
+    }
+    if (reasons.empty()) {
+      if (auto law = other_law_in_place_of(study_, current, diagnosis_.effects)) {
+        reasons.push_back(*std::move(law));
+      }
     }
     if (const auto unlisted = unlisted_in_place_of(
             study_, before, current, beside_the_bar(diagnosis_.effects).size(), !reasons.empty())) {

@@ -1,0 +1,63 @@
+#include "processing/criticism/verdict/other_law.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/candidates.hpp"
+#include "processing/criticism/verdict/choice.hpp"
+#include "processing/criticism/verdict/departure.hpp"
+#include "processing/criticism/verdict/refits.hpp"
+#include "processing/models/formula_strength.hpp"
+
+namespace kolsky {
+
+namespace {
+
+bool is_of_law(const EffectUse& use) {
+  return use.effect->about().stage == Stage::specimen && !has_formula(use);
+}
+
+/// What the departure that explains most gains over the noise, to first order.
+double best_departure(Study& study, const Studied& studied, double noise) {
+  const Departure departure(study, studied);
+  const Direction all = direction_of({null_use(departure), false, false}, studied, study, 0);
+  double best = 0.0;
+  for (Eigen::Index i = 0; i < all.pull.size(); ++i) {
+    const double power = all.information(i, i);
+    best = std::max(best, power > 0.0 ? all.pull[i] * all.pull[i] / power / noise : 0.0);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<std::string> other_law_in_place_of(Study& study, const Studied& current,
+                                                 const std::vector<std::string>& effects) {
+  const auto use_of = [&](const std::string& id) -> const EffectUse& {
+    return *current.model.find(id);
+  };
+  const auto law =
+      std::ranges::find_if(effects, [&](const std::string& id) { return is_of_law(use_of(id)); });
+  if (law == effects.end()) {
+    return std::nullopt;
+  }
+  const double noise = noise_of(current.misfit, study.campaign().shots.size());
+  for (const std::string& id : effects) {
+    if (is_of_law(use_of(id)) || may_be_its_formula(use_of(id))) {
+      continue;
+    }
+    const Studied left = without(study, current, id);
+    if (evidence(left, current, noise) - best_departure(study, left, noise) < kTie) {
+      return fmt::format(
+          "beside {} a specimen that departs from its law in yet another way does as well as {}, "
+          "and no effect of the library is that: it may soften as it warms, level off, or not come "
+          "back",
+          *law, id);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace kolsky
