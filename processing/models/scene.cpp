@@ -57,6 +57,11 @@ bool SpecimenScene::nonlinear() const {
 }
 
 void RecordScene::straighten(std::size_t gauge, std::vector<double>& record) const {
+  if (gauge < gains.size()) {
+    for (std::size_t n = 0; n < gains[gauge].size(); ++n) {
+      record[n] /= gains[gauge][n];
+    }
+  }
   if (gauge < maps.size()) {
     for (auto map = maps[gauge].rbegin(); map != maps[gauge].rend(); ++map) {
       undo(*map, record);

@@ -134,18 +134,21 @@ struct ShotFacts {
   double rebound_speed_sd_m_per_s = 0.0;
 };
 
-/// Memoryless maps and additions between strain and what was recorded.
+/// Memoryless maps, gains and additions between strain and what was recorded.
 struct RecordScene {
   double bridge_b = 0.0;  ///< reading = e (1 + b e + c e^2), c to first order
   double bridge_c = 0.0;
   std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
   std::vector<std::vector<RecordMap>> maps{};  ///< by gauge, in the order they act; may be shorter
 
+  std::vector<std::vector<double>> gains{};  ///< by gauge, one per sample; empty for none
+
   [[nodiscard]] bool bends(std::size_t gauge) const {
-    return bridge_b != 0.0 || bridge_c != 0.0 || (gauge < maps.size() && !maps[gauge].empty());
+    return bridge_b != 0.0 || bridge_c != 0.0 || (gauge < maps.size() && !maps[gauge].empty()) ||
+           (gauge < gains.size() && !gains[gauge].empty());
   }
-  /// Takes the maps off a gauge's record, the last first, and the bridge's: what strain was sensed,
-  /// in place.
+  /// Takes a gauge's gain off its record, the maps, the last first, and the bridge's: what strain
+  /// was sensed, in place.
   void straighten(std::size_t gauge, std::vector<double>& record) const;
 };
 

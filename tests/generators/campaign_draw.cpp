@@ -195,6 +195,12 @@ void soften(Random& random, TrueSpecimen& specimen) {
   specimen.eta2_Pa_s = relaxation_s * (specimen.E1_Pa + specimen.E2_Pa);
 }
 
+/// A solid that relaxes little, of the same spring.
+void stiffen_branch(Random& random, TrueSpecimen& specimen) {
+  specimen.E2_Pa = specimen.E1_Pa * 30.0 * std::pow(10.0, uniform(random, 0.0, 1.0));
+  specimen.eta2_Pa_s = uniform(random, 20e-6, 150e-6) * specimen.E2_Pa;
+}
+
 std::vector<TrueGauge> draw_split_gauges(Random& random, int count, double in_m, double out_m) {
   std::vector<TrueGauge> gauges;
   for (int g = 0; g < count; ++g) {
@@ -302,6 +308,9 @@ void draw_split(Random& random, Campaign& campaign) {
   split.specimen.solid = wishes.solid_specimen;
   if (wishes.soft_specimen) {
     soften(random, split.specimen);
+  }
+  if (wishes.low_loss_specimen) {
+    stiffen_branch(random, split.specimen);
   }
   world.gauges = draw_split_gauges(random, wishes.gauges, world.length_m, split.output_length_m);
   campaign.split = split;

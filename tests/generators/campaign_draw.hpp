@@ -29,7 +29,9 @@ struct CampaignWishes {
   bool split = false;  ///< a split Hopkinson bar in place of a bar
   bool elastic = false;
   bool solid_specimen = false;  ///< a solid of revolution, shortened by a twentieth at most
-  bool soft_specimen = false;   ///< a rubber, which lets hardly a tenth of a pulse through
+  bool low_loss_specimen =
+      false;                   ///< a solid whose branch is 30 to 300 times as stiff as its spring
+  bool soft_specimen = false;  ///< a rubber, which lets hardly a tenth of a pulse through
 };
 
 /// The other half of a split bar.

@@ -112,6 +112,8 @@ int main(int argc, char** argv) {
   app.add_flag("--elastic", arguments.wishes.elastic, "a metal bar");
   app.add_flag("--solid-specimen", arguments.wishes.solid_specimen,
                "axisymmetric, with its own mass and friction; of split bars");
+  app.add_flag("--low-loss-specimen", arguments.wishes.low_loss_specimen,
+               "a solid that relaxes little; of split bars");
   app.add_flag("--soft-specimen", arguments.wishes.soft_specimen, "a rubber; of split bars");
   app.add_flag("--tolerances", arguments.tolerances,
                "file deviations (_sd) and draw the true numbers within them");

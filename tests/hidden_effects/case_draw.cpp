@@ -49,6 +49,7 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
   wishes.measured_noise = plan.measured_noise;
   wishes.split = plan.split;
   wishes.soft_specimen = plan.soft;
+  wishes.low_loss_specimen = plan.low_loss;
   if (plan.quick) {
     wishes.shots = 4;
     wishes.gauges = 3;

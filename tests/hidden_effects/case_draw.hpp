@@ -15,6 +15,7 @@ struct Plan {
   int absorbed_per_bench = 1;
   int withheld_per_bench = 1;
   bool split = false;           ///< split bars
+  bool low_loss = false;        ///< with solids between them that relax little
   bool soft = false;            ///< with rubbers between them
   bool quick = false;           ///< short records on few gauges, white noise
   double least_multiple = 1.0;  ///< of its smallest identifiable size, that a single is planted at

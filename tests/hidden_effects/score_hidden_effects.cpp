@@ -288,7 +288,11 @@ int main(int argc, char** argv) {
                  "a record whose quiet beginning is used as noise: TABLE.csv:COLUMN:ROWS");
   app.add_option("--bench", settings.only_bench, "only this one, as a failed case's id has it");
   CLI::Option* split = app.add_flag("--split", settings.plan.split, "split bars in place of bars");
-  app.add_flag("--soft", settings.plan.soft, "with rubbers between them")->needs(split);
+  CLI::Option* soft =
+      app.add_flag("--soft", settings.plan.soft, "with rubbers between them")->needs(split);
+  app.add_flag("--low-loss", settings.plan.low_loss, "with solids that relax little between them")
+      ->needs(split)
+      ->excludes(soft);
   app.add_flag("--refit", settings.refit, "fit again with what is named, judge the moduli");
   app.add_flag("--further", settings.further, "make the experiments proposed to break ties");
   app.add_flag("--safeguards", settings.safeguards,

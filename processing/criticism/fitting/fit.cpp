@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "processing/criticism/fitting/fit_steps.hpp"
-#include "processing/reduction/first_pulse.hpp"
 
 namespace kolsky {
 
@@ -51,7 +50,10 @@ Eigen::MatrixXd derivatives(const Composition& composition, ShotResiduals& resid
   executor.run(numbers.size(), [&](std::size_t i, std::size_t worker) {
     std::vector<double> moved = theta;
     const FreeNumber& number = composition.numbers()[numbers[i]];
-    const double length = std::max(number.difference, residuals.least_difference());
+    // Of a number many times its scale a step that is a share of this would drown in rounding.
+    constexpr double kLeastShare = 1e-5;
+    const double length = std::max({number.difference, residuals.least_difference(),
+                                    kLeastShare * std::abs(theta[numbers[i]])});
     // Away from the bound that is next to the value.
     const double room = number.theta_of(number.upper) - moved[numbers[i]];
     const double step = room > length ? length : -length;
@@ -199,102 +201,6 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
     }
   }
   return steps.done(converged);
-}
-
-namespace {
-
-/// Half-height crossing of a gauge's first pulse [s from the first sample]; negative for none.
-double arrival_s(const CampaignShot& shot, std::size_t gauge, double period_s) {
-  const auto pulse = first_pulse(shot.strain[gauge], 1.0 / period_s);
-  return pulse ? static_cast<double>(pulse->rise) * period_s : -1.0;
-}
-
-/// Wave speed on the input bar from the first gauge to the last, 0 where it cannot be told.
-double measured_speed(const Campaign& campaign) {
-  const std::size_t first = campaign.reference;
-  std::size_t last = first;
-  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-    const Gauge& gauge = campaign.bench.gauges[j];
-    if (gauge.bar != "output" && gauge.position_m > campaign.bench.gauges[last].position_m) {
-      last = j;
-    }
-  }
-  if (last == first) {
-    return 0.0;
-  }
-  const double distance_m =
-      campaign.bench.gauges[last].position_m - campaign.bench.gauges[first].position_m;
-  std::vector<double> speeds;
-  for (const CampaignShot& shot : campaign.shots) {
-    const double a = arrival_s(shot, first, campaign.period_s);
-    const double b = arrival_s(shot, last, campaign.period_s);
-    if (a >= 0.0 && b > a) {
-      speeds.push_back(distance_m / (b - a));
-    }
-  }
-  if (speeds.empty()) {
-    return 0.0;
-  }
-  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
-                   speeds.end());
-  return speeds[speeds.size() / 2];
-}
-
-double chi2_of(const Model& model, const Campaign& campaign, WhiteResiduals& residuals,
-               std::size_t worker) {
-  const Composition composition(model, campaign);
-  return residuals.evaluate(composition, composition.start(), worker).squaredNorm();
-}
-
-/// Scales three moduli together by powers of `ratio` around where they are; keeps the best.
-void search_moduli(Model& model, const std::string& id, double ratio, int reach,
-                   const Campaign& campaign, WhiteResiduals& residuals, std::size_t worker) {
-  const EffectUse start = *model.find(id);
-  double best = std::numeric_limits<double>::infinity();
-  EffectUse kept = start;
-  for (int i = -reach; i <= reach; ++i) {
-    EffectUse* use = model.find(id);
-    for (std::size_t p = 0; p < 3; ++p) {
-      use->values[p].value = start.values[p].value * std::pow(ratio, i);
-    }
-    const double chi2 = chi2_of(model, campaign, residuals, worker);
-    if (chi2 < best) {
-      best = chi2;
-      kept = *use;
-    }
-  }
-  *model.find(id) = kept;
-}
-
-bool all_free(const EffectUse& use) {
-  return std::all_of(use.values.begin(), use.values.end(),
-                     [](const ModelValue& value) { return value.free; });
-}
-
-}  // namespace
-
-void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
-                  std::size_t worker) {
-  EffectUse* bar = model.find("three-element-bar");
-  if (bar != nullptr && all_free(*bar) && campaign.bench.kind == BenchKind::bar) {
-    const double speed = measured_speed(campaign);
-    if (speed > 0.0) {
-      const double rho = campaign.bench.input.density_kg_m3;
-      // A pulse travels between the relaxed and the instantaneous speed.
-      constexpr double kAboveMeasured = 1.08;
-      const double scale = kAboveMeasured * rho * speed * speed / bar->values[0].value;
-      if (std::abs(scale - 1.0) > 0.1) {
-        for (ModelValue& value : bar->values) {
-          value.value *= scale;
-        }
-      }
-    }
-    search_moduli(model, "three-element-bar", 1.03, 5, campaign, residuals, worker);
-  }
-  EffectUse* specimen = model.find("three-element-specimen");
-  if (specimen != nullptr && all_free(*specimen)) {
-    search_moduli(model, "three-element-specimen", 2.0, 14, campaign, residuals, worker);
-  }
 }
 
 Model fitted(const Model& model, const Composition& composition, const ModelFit& fit) {

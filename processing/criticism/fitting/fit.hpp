@@ -53,11 +53,6 @@ enum class Settle { fully, roughly };
                                           const std::vector<std::size_t>& numbers,
                                           const Workers& executor);
 
-/// Moves a model's moduli near enough to the campaign's for fit_model to converge: the bar's from
-/// the pulse's arrivals, a specimen's from a search over decades.
-void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
-                  std::size_t worker = 0);
-
 /// The model with its values and deviations from a fit. Strengths per shot or per gauge give their
 /// mean (per gauge: their root mean square).
 [[nodiscard]] Model fitted(const Model& model, const Composition& composition, const ModelFit& fit);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "processing/algebra/algebra.hpp"
@@ -31,6 +32,22 @@ void keep_inside(const Composition& composition, std::vector<double>& theta) {
     const FreeNumber& number = composition.numbers()[i];
     theta[i] = number.inside(theta[i]);
   }
+}
+
+constexpr double kRounding = 1e-12;  ///< share of a number's information
+
+/// The inverse of the information, whatever scales its numbers have. Where neither data nor priors
+/// tell numbers apart, or one from nothing, the inverse is as large as rounding leaves it.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
+  const double least = std::numeric_limits<double>::epsilon() * kRounding;
+  const Eigen::VectorXd scale =
+      information.diagonal().cwiseMax(least * information.diagonal().maxCoeff()).cwiseSqrt();
+  const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
+  const SymmetricEigen solver(inverse_scale.asDiagonal() * information *
+                              inverse_scale.asDiagonal());
+  const Eigen::MatrixXd vectors = inverse_scale.asDiagonal() * solver.eigenvectors();
+  return vectors * solver.eigenvalues().cwiseMax(0.1 * kRounding).cwiseInverse().asDiagonal() *
+         vectors.transpose();
 }
 
 bool at_bound(const FreeNumber& number, double theta, double downhill) {
@@ -124,8 +141,8 @@ Eigen::VectorXd FitSteps::move_inside(const Eigen::MatrixXd& information) const 
 FitSteps::Step FitSteps::tried(double damping) {
   const auto count = static_cast<Eigen::Index>(fit_.theta.size());
   Eigen::MatrixXd damped = information_;
-  damped.diagonal() += damping * information_.diagonal() +
-                       Eigen::VectorXd::Constant(count, 1e-12 * information_.diagonal().maxCoeff());
+  // Numbers are of any scale: what one of them lacks of another's information says nothing.
+  damped.diagonal() *= 1.0 + damping + kRounding;
   const Eigen::VectorXd move = move_inside(damped);
   std::vector<double> theta = fit_.theta;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -164,15 +181,7 @@ ModelFit FitSteps::done(bool converged) {
     fit_.covariance.resize(0, 0);
     return std::move(fit_);
   }
-  // Numbers that neither data nor prior hold are left out of the inverse.
-  SymmetricEigen solver(fit_.information);
-  Eigen::VectorXd inverse = solver.eigenvalues();
-  const double least = 1e-13 * inverse.maxCoeff();
-  for (Eigen::Index i = 0; i < count; ++i) {
-    inverse[i] = 1.0 / std::max(inverse[i], least);
-  }
-  fit_.covariance =
-      solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  fit_.covariance = covariance_of(fit_.information);
   return std::move(fit_);
 }
 

@@ -3,6 +3,7 @@
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
+#include "processing/criticism/fitting/moduli_starts.hpp"
 
 namespace kolsky {
 
@@ -40,13 +41,17 @@ Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
 
 Model Study::begun(Model model) {
   start_moduli(model, campaign_, residuals_);
-  return at_best_starts(std::move(model), campaign_,
-                        [&](const Composition& composition, bool first) {
-                          if (first) {
-                            residuals_.freeze(composition, composition.start());
-                          }
-                          return fit_model(composition, residuals_, executor_).objective();
-                        });
+  model = at_best_starts(std::move(model), campaign_, [&](const Composition& trial, bool first) {
+    if (first) {
+      residuals_.freeze(trial, trial.start());
+    }
+    return fit_model(trial, residuals_, executor_).objective();
+  });
+  // With what was added where it begins: without, the specimen's moduli may be nowhere.
+  const Composition composition(model, campaign_);
+  residuals_.freeze(composition, composition.start());
+  start_branch(model, campaign_, residuals_, executor_);
+  return model;
 }
 
 Study::Attempt Study::attempt(const Model& model) {

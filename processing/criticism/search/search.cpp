@@ -10,6 +10,7 @@
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/in_noise_of.hpp"
+#include "processing/criticism/fitting/moduli_starts.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/beside.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
@@ -108,8 +109,10 @@ Search::Search(Study& study, const Studied& base, const Model& start, const Safe
   study.executor().run(candidates_.size(), [&](std::size_t i, std::size_t worker) {
     directions_[i] = direction_of(candidates_[i], base_, study_, worker);
   });
-  start_moduli(afresh_, study.campaign(), study.residuals());
   may_be_astray_ = astray(base_.model, base_.misfit);
+  if (std::ranges::any_of(candidates_, [&](const Candidate& own) { return begins_afresh(own); })) {
+    start_moduli(afresh_, study.campaign(), study.residuals());
+  }
   if (safeguards_.search_count) {
     trials_ = independent_trials(base_, candidates_, directions_);
   }

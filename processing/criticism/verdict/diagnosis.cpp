@@ -10,6 +10,7 @@
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/held_out.hpp"
+#include "processing/criticism/fitting/moduli_starts.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
 #include "processing/criticism/search/candidate_table.hpp"

@@ -4,102 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <vector>
 
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 #include "processing/criticism/verdict/refits.hpp"
-#include "processing/models/scene.hpp"
+#include "processing/criticism/verdict/unlisted_effects.hpp"
 
 namespace kolsky {
 
 namespace {
 
-/// Between the times of amplifiers, which the library has, and a share that is as good as constant.
-constexpr double kQuickest_s = 30e-6;
-constexpr double kSlowest_s = 50e-3;
-/// Of 3000 microstrain nearly a fifth.
-constexpr double kMostCurved = 2e4;
-
-class CreepingGauge final : public Effect {
- public:
-  CreepingGauge()
-      : Effect({
-            .id = "creeping-gauge",
-            .stage = Stage::sensor,
-            .definition = "reading x (1 + c / (1 + s tau))",
-            .reference = "docs/methods/diagnosis.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
-            .parameters = {{.name = "c", .unit = "-", .lower = -1.0, .upper = 1.0, .typical = 0.01},
-                           {.name = "tau",
-                            .unit = "s",
-                            .lower = kQuickest_s,
-                            .upper = kSlowest_s,
-                            .typical = 1e-4,
-                            .starts = {100e-6, 5e-3}}},
-            .per_gauge = true,
-        }) {}
-
-  void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
-    for (std::size_t k = 0; k < scene.s.size(); ++k) {
-      scene.gauges[gauge].factor[k] *= 1.0 + values[0] / (1.0 + scene.s[k] * values[1]);
-    }
-  }
-};
-
-class CurvedReading final : public Effect {
- public:
-  CurvedReading(const char* id, bool of_one)
-      : Effect({
-            .id = id,
-            .stage = Stage::record,
-            .definition = "reading = e (1 + c e^2)",
-            .reference = "docs/methods/diagnosis.md",
-            .kinds = {BenchKind::bar, BenchKind::shpb},
-            .parameters = {{.name = "c",
-                            .unit = "-",
-                            .lower = -kMostCurved,
-                            .upper = kMostCurved,
-                            .typical = 100.0}},
-            .per_gauge = of_one,
-        }) {}
-
-  void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
-    const double c = values[0];
-    const RecordMap curve = [c](std::span<const std::complex<double>> strain,
-                                std::span<std::complex<double>> reading) {
-      std::ranges::transform(strain, reading.begin(),
-                             [c](const auto& e) { return e * (1.0 + c * e * e); });
-    };
-    scene.record.maps.resize(scene.gauges.size());
-    for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
-      if (c != 0.0 && (!about().per_gauge || j == gauge)) {
-        scene.record.maps[j].push_back(curve);
-      }
-    }
-  }
-};
-
-const Effect& creeping_gauge() {
-  static const CreepingGauge effect;
-  return effect;
-}
-
-const Effect& curved_gauge() {
-  static const CurvedReading effect("curved-gauge", true);
-  return effect;
-}
-
-const Effect& curved_readings() {
-  static const CurvedReading effect("curved-readings", false);
-  return effect;
-}
-
 const EffectUse& use_in(const Model& fitted) {
   return *std::ranges::find_if(fitted.effects, [](const EffectUse& use) {
     return use.effect == &creeping_gauge() || use.effect == &curved_gauge() ||
-           use.effect == &curved_readings();
+           use.effect == &curved_readings() || use.effect == &changing_gauge();
   });
 }
 
@@ -109,6 +29,11 @@ std::string shape_text(const EffectUse& use) {
   if (use.effect == &creeping_gauge()) {
     return fmt::format("a reading of {} that {} by {:.2g} % within {:.0f} us explains", use.gauge,
                        strength < 0.0 ? "droops" : "creeps", 100.0 * std::abs(strength),
+                       1e6 * use.values[1].value);
+  }
+  if (use.effect == &changing_gauge()) {
+    return fmt::format("a reading of {} that is {:.2g} % {} from {:.0f} us after the foot explains",
+                       use.gauge, 100.0 * std::abs(strength), strength < 0.0 ? "less" : "more",
                        1e6 * use.values[1].value);
   }
   constexpr double kAt = 1e-3;
@@ -123,6 +48,9 @@ std::string mend_text(const EffectUse& use) {
   if (use.effect == &creeping_gauge()) {
     return "look at its bond and at how its amplifier is coupled, or add it by a formula of your "
            "own (docs/methods/expressions.md, stage `sensor`: 1 + c / (1 + s*tau))";
+  }
+  if (use.effect == &changing_gauge()) {
+    return "look at its bond, its plugs and its ranges";
   }
   return fmt::format(
       "look at the range of amplifiers and digitiser, or add it by a formula of your own "
@@ -143,6 +71,25 @@ std::vector<Model> with_unlisted(const Model& model, const Bench& bench) {
     add(curved_gauge(), gauge.name);
   }
   return list;
+}
+
+/// With a gain that changes at the gauge and the time where it explains most to first order.
+Model with_changing_gauge(Study& study, const Studied& before) {
+  std::vector<EffectUse> uses;
+  for (const Gauge& gauge : study.campaign().bench.gauges) {
+    for (const double start_s : changing_gauge().about().parameters[1].starts) {
+      uses.push_back(null_use(changing_gauge(), gauge.name));
+      uses.back().values[1].value = start_s;
+      uses.back().values[1].free = uses.back().values[2].free = false;
+      uses.back().values[2].value = changing_gauge().about().parameters[2].starts.front();
+    }
+  }
+  std::vector<double> gains(uses.size());
+  study.executor().run(uses.size(), [&](std::size_t i, std::size_t worker) {
+    gains[i] = direction_of({uses[i], false, false}, before, study, worker).gain;
+  });
+  const auto most = std::ranges::max_element(gains) - gains.begin();
+  return with(before.model, {uses[static_cast<std::size_t>(most)], false, false}, true);
 }
 
 /// @param as_much  it explains as much as two effects and more do, not nearly all that is unknown
@@ -170,6 +117,13 @@ bool explains_nearly_all(const Study& study, const Studied& before, const Studie
          });
 }
 
+/// Whether it went to the end of what it may be, where that is another thing. A change may be as
+/// sudden as it likes.
+bool at_its_end(const Model& fitted) {
+  return std::ranges::any_of(numbers_at_bounds(fitted),
+                             [](const AtBound& number) { return number.parameter != "w"; });
+}
+
 }  // namespace
 
 std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& before,
@@ -179,16 +133,17 @@ std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& bef
     return std::nullopt;
   }
   std::vector<Studied> fits;
-  for (const Model& model : with_unlisted(before.model, study.campaign().bench)) {
+  std::vector<Model> models = with_unlisted(before.model, study.campaign().bench);
+  models.push_back(with_changing_gauge(study, before));
+  for (const Model& model : models) {
     fits.push_back(changed(study, before, model));
   }
   const auto best =
       std::ranges::min_element(fits, {}, [](const Studied& own) { return own.fit.objective(); });
   const bool tells = unknown ? explains_nearly_all(study, before, *best, fits)
                              : best->fit.objective() < current.fit.objective();
-  return tells && numbers_at_bounds(best->model).empty()
-             ? std::optional(text_of(best->model, !unknown))
-             : std::nullopt;
+  return tells && !at_its_end(best->model) ? std::optional(text_of(best->model, !unknown))
+                                           : std::nullopt;
 }
 
 }  // namespace kolsky

@@ -8,11 +8,8 @@
 
 namespace kolsky {
 
-/// What laboratories meet and no effect of the library is:
-///
-///     reading x (1 + c / (1 + s tau))   of one gauge: a bond that creeps, an amplifier that droops
-///     reading = e (1 + c e^2)           of one gauge or of all: an amplifier that runs out of
-///     range
+/// What laboratories meet and no effect of the library is (`unlisted_effects.hpp`): one gauge's
+/// reading that creeps, droops, bends or changes from a time on, and readings of all that bend.
 ///
 /// It is never claimed. One such thing is likelier than two effects which do no better, and worth
 /// being told of where it leaves next to nothing of what is unknown. Of two gauges a bar's own
