@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "processing/algebra/algebra.hpp"
+#include "processing/criticism/fitting/astray.hpp"
 
 namespace kolsky {
 
@@ -34,18 +35,23 @@ void keep_inside(const Composition& composition, std::vector<double>& theta) {
   }
 }
 
-constexpr double kRounding = 1e-12;  ///< share of a number's information
+constexpr double kRounding = 1e-12;  ///< share of an information
 
-/// The inverse of the information, whatever scales its numbers have. Where neither data nor priors
-/// tell numbers apart, or one from nothing, the inverse is as large as rounding leaves it.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
-  const double least = std::numeric_limits<double>::epsilon() * kRounding;
-  const Eigen::VectorXd scale =
-      information.diagonal().cwiseMax(least * information.diagonal().maxCoeff()).cwiseSqrt();
-  const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
-  const SymmetricEigen solver(inverse_scale.asDiagonal() * information *
-                              inverse_scale.asDiagonal());
-  const Eigen::MatrixXd vectors = inverse_scale.asDiagonal() * solver.eigenvectors();
+/// By which each number's information is reckoned: its own, whatever its unit makes of it. Far from
+/// the records that of what they tell most of, so that what they hardly tell of stays where it is:
+/// steps along it go where all that is missed counts as noise.
+Eigen::VectorXd own_information(const Eigen::MatrixXd& information, bool far_off) {
+  const double most = information.diagonal().maxCoeff();
+  const double least = far_off ? most : std::numeric_limits<double>::epsilon() * kRounding * most;
+  return information.diagonal().cwiseMax(least);
+}
+
+/// The inverse of the information. Where neither data nor priors tell numbers apart, or one from
+/// nothing, the inverse is as large as rounding leaves it.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, bool far_off) {
+  const Eigen::VectorXd unit = own_information(information, far_off).cwiseSqrt().cwiseInverse();
+  const SymmetricEigen solver(unit.asDiagonal() * information * unit.asDiagonal());
+  const Eigen::MatrixXd vectors = unit.asDiagonal() * solver.eigenvectors();
   return vectors * solver.eigenvalues().cwiseMax(0.1 * kRounding).cwiseInverse().asDiagonal() *
          vectors.transpose();
 }
@@ -138,11 +144,15 @@ Eigen::VectorXd FitSteps::move_inside(const Eigen::MatrixXd& information) const 
   return leaves ? least_in_box(information, downhill_, low, high) : move;
 }
 
+bool FitSteps::far_off() const {
+  return chi2_per_residual() > kFarOff;
+}
+
 FitSteps::Step FitSteps::tried(double damping) {
   const auto count = static_cast<Eigen::Index>(fit_.theta.size());
   Eigen::MatrixXd damped = information_;
-  // Numbers are of any scale: what one of them lacks of another's information says nothing.
-  damped.diagonal() *= 1.0 + damping + kRounding;
+  damped.diagonal() +=
+      damping * information_.diagonal() + kRounding * own_information(information_, far_off());
   const Eigen::VectorXd move = move_inside(damped);
   std::vector<double> theta = fit_.theta;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -181,7 +191,7 @@ ModelFit FitSteps::done(bool converged) {
     fit_.covariance.resize(0, 0);
     return std::move(fit_);
   }
-  fit_.covariance = covariance_of(fit_.information);
+  fit_.covariance = covariance_of(fit_.information, far_off());
   return std::move(fit_);
 }
 

@@ -41,6 +41,7 @@ class FitSteps {
   [[nodiscard]] double chi2_per_residual() const {
     return fit_.chi2 / static_cast<double>(fit_.residual.size());
   }
+  [[nodiscard]] bool far_off() const;
   [[nodiscard]] bool nothing_free() const { return fit_.theta.empty(); }
   /// The fit as it stands, with its covariance.
   [[nodiscard]] ModelFit done(bool converged);
