@@ -141,7 +141,7 @@ struct RecordScene {
   std::vector<std::vector<double>> additions{};  ///< by gauge, one per sample; empty for none
   std::vector<std::vector<RecordMap>> maps{};  ///< by gauge, in the order they act; may be shorter
 
-  std::vector<std::vector<double>> gains{};  ///< by gauge, one per sample; empty for none
+  std::vector<std::vector<double>> gains{};  ///< the same, on what the maps make; may be shorter
 
   [[nodiscard]] bool bends(std::size_t gauge) const {
     return bridge_b != 0.0 || bridge_c != 0.0 || (gauge < maps.size() && !maps[gauge].empty()) ||

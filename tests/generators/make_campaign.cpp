@@ -112,9 +112,11 @@ int main(int argc, char** argv) {
   app.add_flag("--elastic", arguments.wishes.elastic, "a metal bar");
   app.add_flag("--solid-specimen", arguments.wishes.solid_specimen,
                "axisymmetric, with its own mass and friction; of split bars");
+  CLI::Option* soft =
+      app.add_flag("--soft-specimen", arguments.wishes.soft_specimen, "a rubber; of split bars");
   app.add_flag("--low-loss-specimen", arguments.wishes.low_loss_specimen,
-               "a solid that relaxes little; of split bars");
-  app.add_flag("--soft-specimen", arguments.wishes.soft_specimen, "a rubber; of split bars");
+               "a solid that relaxes little; of split bars")
+      ->excludes(soft);
   app.add_flag("--tolerances", arguments.tolerances,
                "file deviations (_sd) and draw the true numbers within them");
   app.add_option("--form", arguments.form)->check(CLI::IsMember({"tables", "captures", "both"}));

@@ -36,14 +36,16 @@ void keep_inside(const Composition& composition, std::vector<double>& theta) {
 }
 
 constexpr double kRounding = 1e-12;  ///< share of an information
+/// Less than that of the most makes rounding of a number's derivatives.
+constexpr double kHardlyAny = 1e-8;
 
 /// By which each number's information is reckoned: its own, whatever its unit makes of it. Far from
 /// the records that of what they tell most of, so that what they hardly tell of stays where it is:
 /// steps along it go where all that is missed counts as noise.
 Eigen::VectorXd own_information(const Eigen::MatrixXd& information, bool far_off) {
   const double most = information.diagonal().maxCoeff();
-  const double least = far_off ? most : std::numeric_limits<double>::epsilon() * kRounding * most;
-  return information.diagonal().cwiseMax(least);
+  const double least = far_off ? most : kHardlyAny * most;
+  return information.diagonal().cwiseMax(std::max(least, std::numeric_limits<double>::min()));
 }
 
 /// The inverse of the information. Where neither data nor priors tell numbers apart, or one from

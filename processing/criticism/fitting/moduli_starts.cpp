@@ -15,7 +15,8 @@ namespace kolsky {
 
 namespace {
 
-const std::string kSpecimen = "three-element-specimen";
+constexpr const char* kBar = "three-element-bar";
+constexpr const char* kSpecimen = "three-element-specimen";
 
 /// Half-height crossing of a gauge's first pulse [s from the first sample]; negative for none.
 double arrival_s(const CampaignShot& shot, std::size_t gauge, double period_s) {
@@ -99,7 +100,7 @@ constexpr std::array kBranchTimes_s{30e-6, 100e-6};
 
 void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
                   std::size_t worker) {
-  EffectUse* bar = model.find("three-element-bar");
+  EffectUse* bar = model.find(kBar);
   if (bar != nullptr && all_free(*bar) && campaign.bench.kind == BenchKind::bar) {
     const double speed = measured_speed(campaign);
     if (speed > 0.0) {
@@ -113,7 +114,7 @@ void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residu
         }
       }
     }
-    search_moduli(model, "three-element-bar", 1.03, 5, campaign, residuals, worker);
+    search_moduli(model, kBar, 1.03, 5, campaign, residuals, worker);
   }
   EffectUse* specimen = model.find(kSpecimen);
   if (specimen != nullptr && all_free(*specimen)) {
@@ -128,6 +129,8 @@ void start_branch(Model& model, const Campaign& campaign, WhiteResiduals& residu
     return;
   }
   const EffectUse start = *given;
+  const Composition begun(model, campaign);
+  residuals.freeze(begun, begun.start());
   const auto fitted_from_here = [&] {
     const Composition composition(model, campaign);
     const ModelFit fit = fit_model(composition, residuals, executor);
@@ -145,8 +148,9 @@ void start_branch(Model& model, const Campaign& campaign, WhiteResiduals& residu
     trial.values[1].value = kStiffBranch * start.values[0].value;
     trial.values[2].value = time_s * trial.values[1].value;
     auto [objective, specimen] = fitted_from_here();
-    constexpr double kBetter = 1.0;
-    if (objective < least - kBetter) {
+    constexpr double kBetter = 1.0;  // of chi2, over what is left per residual
+    const double misfit = std::max(1.0, objective / static_cast<double>(residuals.size()));
+    if (!std::isfinite(least) || objective < least - kBetter * misfit) {
       least = objective;
       best = std::move(specimen);
     }

@@ -13,8 +13,7 @@ void start_moduli(Model& model, const Campaign& campaign, WhiteResiduals& residu
                   std::size_t worker = 0);
 
 /// Where nobody has fitted a specimen yet, moves its moduli to where a fit ends that begins with a
-/// branch which does little, if that is better than from where they are.
-/// @param residuals  in noise that is frozen
+/// branch which does little, if that is better than from where they are. Freezes the noise.
 void start_branch(Model& model, const Campaign& campaign, WhiteResiduals& residuals,
                   const Workers& executor);
 

@@ -48,8 +48,6 @@ Model Study::begun(Model model) {
     return fit_model(trial, residuals_, executor_).objective();
   });
   // With what was added where it begins: without, the specimen's moduli may be nowhere.
-  const Composition composition(model, campaign_);
-  residuals_.freeze(composition, composition.start());
   start_branch(model, campaign_, residuals_, executor_);
   return model;
 }

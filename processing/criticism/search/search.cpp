@@ -110,7 +110,8 @@ Search::Search(Study& study, const Studied& base, const Model& start, const Safe
     directions_[i] = direction_of(candidates_[i], base_, study_, worker);
   });
   may_be_astray_ = astray(base_.model, base_.misfit);
-  if (std::ranges::any_of(candidates_, [&](const Candidate& own) { return begins_afresh(own); })) {
+  if (may_be_astray_ ||
+      std::ranges::any_of(candidates_, [&](const Candidate& own) { return begins_afresh(own); })) {
     start_moduli(afresh_, study.campaign(), study.residuals());
   }
   if (safeguards_.search_count) {
@@ -633,8 +634,8 @@ std::optional<Eigen::MatrixXd> Search::chord_of(const Candidate& candidate,
 }
 
 /// Whether its fit begins once more from where the model's numbers started: these may have gone
-/// astray without it, and what was found of the same matter has moved them to where the two of them
-/// are not.
+/// astray without it, and what the model holds of the same matter has moved them to where the two
+/// of them are not.
 bool Search::begins_afresh(const Candidate& candidate) const {
   if (may_be_astray_) {
     return !(far_off() && is_sudden(candidate));

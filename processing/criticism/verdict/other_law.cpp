@@ -26,7 +26,11 @@ double best_departure(Study& study, const Studied& studied, double noise) {
   double best = 0.0;
   for (Eigen::Index i = 0; i < all.pull.size(); ++i) {
     const double power = all.information(i, i);
-    best = std::max(best, power > 0.0 ? all.pull[i] * all.pull[i] / power / noise : 0.0);
+    // What the model takes up all of is left with rounding.
+    constexpr double kResolved = 1e-4;
+    if (power > kResolved * all.unprojected(i, i)) {
+      best = std::max(best, all.pull[i] * all.pull[i] / power / noise);
+    }
   }
   return best;
 }
@@ -43,17 +47,18 @@ std::optional<std::string> other_law_in_place_of(Study& study, const Studied& cu
   if (law == effects.end()) {
     return std::nullopt;
   }
-  const double noise = noise_of(current.misfit, study.campaign().shots.size());
+  // In the noise that is frozen now, as what it is held against.
+  const Studied here = changed(study, current, current.model);
+  const double noise = noise_of(here.misfit, study.campaign().shots.size());
   for (const std::string& id : effects) {
     if (is_of_law(use_of(id)) || may_be_its_formula(use_of(id))) {
       continue;
     }
-    const Studied left = without(study, current, id);
-    if (evidence(left, current, noise) - best_departure(study, left, noise) < kTie) {
+    const Studied left = without(study, here, id);
+    if (evidence(left, here, noise) - best_departure(study, left, noise) < kTie) {
       return fmt::format(
-          "beside {} a specimen that departs from its law in yet another way does as well as {}, "
-          "and no effect of the library is that: it may soften as it warms, level off, or not come "
-          "back",
+          "beside {} a specimen that departs from its law does as well as {}, and no effect of the "
+          "library is that: it may soften as it warms, level off, or not come back",
           *law, id);
     }
   }

@@ -120,8 +120,10 @@ bool explains_nearly_all(const Study& study, const Studied& before, const Studie
 /// Whether it went to the end of what it may be, where that is another thing. A change may be as
 /// sudden as it likes.
 bool at_its_end(const Model& fitted) {
-  return std::ranges::any_of(numbers_at_bounds(fitted),
-                             [](const AtBound& number) { return number.parameter != "w"; });
+  const std::string own = use_in(fitted).id();
+  return std::ranges::any_of(numbers_at_bounds(fitted), [&](const AtBound& number) {
+    return number.effect != own || number.parameter != "w" || number.most;
+  });
 }
 
 }  // namespace

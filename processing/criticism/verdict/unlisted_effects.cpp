@@ -99,9 +99,8 @@ class ChangingGauge final : public Effect {
                             .lower = 1e-6,
                             .upper = 10e-6,
                             .typical = 5e-6,
-                            .starts = {10e-6}}},
+                            .starts = {5e-6}}},
             .per_gauge = true,
-            .shot_facts = true,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {

@@ -35,6 +35,7 @@ TEST_P(LittleLoss, IsFoundFromWhereModelsBegin) {
   EXPECT_LT(studied.misfit.chi2_reduced, 1.1);
   const EffectUse& found = *studied.model.find("three-element-specimen");
   const std::array true_values{specimen.E1_Pa, specimen.E2_Pa, specimen.eta2_Pa_s};
+  EXPECT_LT(found.values[0].sd, 0.01 * specimen.E1_Pa);
   for (std::size_t p = 0; p < true_values.size(); ++p) {
     const ModelValue& own = found.values[p];
     EXPECT_LT(std::abs(own.value - true_values[p]), 3.0 * own.sd)

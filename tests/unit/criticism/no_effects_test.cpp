@@ -244,9 +244,9 @@ TEST(CurvedReadings, AreToldOfWhereTheyLeaveNothing) {
   EXPECT_NEAR(told, 2.0, 0.2);
 }
 
-// A range that switches while the pulse passes, 4 % from 150 us on: of another such bar a gauge
-// factor beside a filter of that gauge did nearly as well, and both were named.
-TEST(ChangingGauge, IsNoPairThatDoesNoBetter) {
+// A range that switches while the pulse passes, 4 % from 150 us on. (Of another such bar a gauge
+// factor beside a filter of that gauge did nearly as well, and both were named.)
+TEST(ChangingGauge, IsToldWithItsSizeAndTime) {
   constexpr double kMore = 0.04;
   constexpr double kFrom_s = 150e-6;
   Campaign campaign = read_campaign(testing::shots_of(
