@@ -39,19 +39,18 @@ constexpr double kRounding = 1e-12;  ///< share of an information
 /// Less than that of the most makes rounding of a number's derivatives.
 constexpr double kHardlyAny = 1e-8;
 
-/// By which each number's information is reckoned: its own, whatever its unit makes of it. Far from
-/// the records that of what they tell most of, so that what they hardly tell of stays where it is:
-/// steps along it go where all that is missed counts as noise.
-Eigen::VectorXd own_information(const Eigen::MatrixXd& information, bool far_off) {
+/// By which each number's information is reckoned: its own, whatever its unit makes of it; or that
+/// of what the records tell most of.
+Eigen::VectorXd own_information(const Eigen::MatrixXd& information, bool alike) {
   const double most = information.diagonal().maxCoeff();
-  const double least = far_off ? most : kHardlyAny * most;
+  const double least = alike ? most : kHardlyAny * most;
   return information.diagonal().cwiseMax(std::max(least, std::numeric_limits<double>::min()));
 }
 
 /// The inverse of the information. Where neither data nor priors tell numbers apart, or one from
 /// nothing, the inverse is as large as rounding leaves it.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, bool far_off) {
-  const Eigen::VectorXd unit = own_information(information, far_off).cwiseSqrt().cwiseInverse();
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, bool alike) {
+  const Eigen::VectorXd unit = own_information(information, alike).cwiseSqrt().cwiseInverse();
   const SymmetricEigen solver(unit.asDiagonal() * information * unit.asDiagonal());
   const Eigen::MatrixXd vectors = unit.asDiagonal() * solver.eigenvectors();
   return vectors * solver.eigenvalues().cwiseMax(0.1 * kRounding).cwiseInverse().asDiagonal() *
@@ -146,15 +145,15 @@ Eigen::VectorXd FitSteps::move_inside(const Eigen::MatrixXd& information) const 
   return leaves ? least_in_box(information, downhill_, low, high) : move;
 }
 
-bool FitSteps::far_off() const {
-  return chi2_per_residual() > kFarOff;
+bool FitSteps::holds_weak() const {
+  return chi2_per_residual() > kFarOff || residuals_.least_difference() > 0.0;
 }
 
 FitSteps::Step FitSteps::tried(double damping) {
   const auto count = static_cast<Eigen::Index>(fit_.theta.size());
   Eigen::MatrixXd damped = information_;
   damped.diagonal() +=
-      damping * information_.diagonal() + kRounding * own_information(information_, far_off());
+      damping * information_.diagonal() + kRounding * own_information(information_, holds_weak());
   const Eigen::VectorXd move = move_inside(damped);
   std::vector<double> theta = fit_.theta;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -193,7 +192,7 @@ ModelFit FitSteps::done(bool converged) {
     fit_.covariance.resize(0, 0);
     return std::move(fit_);
   }
-  fit_.covariance = covariance_of(fit_.information, far_off());
+  fit_.covariance = covariance_of(fit_.information, holds_weak());
   return std::move(fit_);
 }
 

@@ -41,7 +41,9 @@ class FitSteps {
   [[nodiscard]] double chi2_per_residual() const {
     return fit_.chi2 / static_cast<double>(fit_.residual.size());
   }
-  [[nodiscard]] bool far_off() const;
+  /// Whether what is hardly told of stays where it is: far from the records steps along it go where
+  /// all that is missed counts as noise, and of rough residuals only their roughness tells of it.
+  [[nodiscard]] bool holds_weak() const;
   [[nodiscard]] bool nothing_free() const { return fit_.theta.empty(); }
   /// The fit as it stands, with its covariance.
   [[nodiscard]] ModelFit done(bool converged);
