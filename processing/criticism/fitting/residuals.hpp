@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "processing/criticism/fitting/composition.hpp"
+#include "processing/criticism/fitting/gauge_shares.hpp"
 #include "processing/criticism/fitting/shot_residuals.hpp"
 #include "processing/criticism/fitting/specimen_response.hpp"
 #include "processing/criticism/noise/gauge_noise.hpp"
 #include "processing/criticism/records/campaign.hpp"
 #include "processing/criticism/records/judged_band.hpp"
 #include "processing/models/transfers.hpp"
-#include "processing/waves/transform.hpp"
 
 namespace kolsky {
 
@@ -137,7 +137,9 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] std::vector<std::vector<double>> deviations(std::span<const double> white) const;
   /// Whitened residuals of one shot at a bin, times this, are the spectrum of all gauges'
   /// deviations there: gauges x others.
-  [[nodiscard]] const Eigen::MatrixXcd& spread(std::size_t bin) const { return spread_[bin]; }
+  [[nodiscard]] const Eigen::MatrixXcd& spread(std::size_t bin) const {
+    return shares_.spread(bin);
+  }
   /// The judged window of one gauge's record, filtered and decimated alike.
   [[nodiscard]] const std::vector<double>& judged_record(std::size_t shot,
                                                          std::size_t gauge) const {
@@ -164,6 +166,9 @@ class WhiteResiduals : public ShotResiduals {
 
     [[nodiscard]] Complex mean_at(std::size_t k) const { return mean.empty() ? 1.0 : mean[k]; }
   };
+
+  // How waves travel and carry noise (residuals.cpp).
+  [[nodiscard]] const Spectrum& path() const;
   [[nodiscard]] Ratios ratios_of(const Scene& scene) const;
   void know_waves(Workspace& work, const Composition& composition,
                   std::vector<AppliedEffect> effects, std::size_t shot) const;
@@ -172,28 +177,28 @@ class WhiteResiduals : public ShotResiduals {
   void know_noise(Workspace& work, const Composition& composition,
                   const std::vector<AppliedEffect>& effects) const;
   void carry_noise(Workspace& work, const Ratios& ratios) const;
-  /// @return shares of what is foretold there that is leaked, summed over the other gauges
-  double put_whitener(const CarriedBin& carried, std::size_t bin, Eigen::MatrixXcd& cross,
-                      Eigen::MatrixXcd& whitener) const;
-  const std::vector<Complex>& departure_of(Workspace& work, Spectrum source,
-                                           std::size_t shot) const;
+
+  // Residuals of shots (residuals.cpp).
+  void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
+                     std::size_t shot) const;
+  const Spectrum& departure_of(Workspace& work, Spectrum source, std::size_t shot) const;
   void find_residuals(Workspace& work, const Composition& composition,
                       const std::vector<double>& theta, std::size_t shot) const;
+  void subtract(Workspace& work, const std::vector<Spectrum>& records) const;
   void evaluate_shots(const Composition& composition, const std::vector<double>& theta,
                       std::size_t first, std::size_t end, std::size_t worker, double* out);
   void whiten_shot(Workspace& work, double*& next) const;
   void whiten_shots(const Composition& composition, const std::vector<double>& theta,
                     std::size_t first, std::size_t end, std::size_t worker, double* out);
-  void prepare_spectra();
-  [[nodiscard]] std::vector<double> judged_part(Workspace& work, const Spectrum& damped) const;
+
+  // What residuals say of the gauges (residual_noise.cpp).
   void measure_signal();
-  void transform_record(Workspace& work, std::span<const double> record, Spectrum& out) const;
-  void smooth(Workspace& work, std::vector<double>& record) const;
-  void shape_records(Workspace& work, const std::vector<AppliedEffect>& effects,
-                     std::size_t shot) const;
+  [[nodiscard]] std::span<const double> white_of(std::size_t shot,
+                                                 const Eigen::VectorXd& white) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
-  void put_own_noise(Workspace& work, std::size_t shot, std::size_t gauge,
-                     std::span<const double> shares = {}) const;
+  [[nodiscard]] std::span<const double> own_noise(Workspace& work, std::size_t shot,
+                                                  std::size_t gauge,
+                                                  std::span<const double> shares = {}) const;
   void know_source_noise(Workspace& work);
   [[nodiscard]] std::vector<double> shares_of_noise() const;
   void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
@@ -201,23 +206,16 @@ class WhiteResiduals : public ShotResiduals {
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
                                         const std::vector<std::vector<Spectrum>>& noise,
                                         const std::vector<Spectrum>& sources) const;
-  void plain_spectrum(Workspace& work, const Spectrum& damped, Spectrum& out) const;
 
   const Campaign& campaign_;
   JudgedBand band_;
   GaugeNoise noise_;
   std::vector<std::size_t> others_;
-  std::vector<Complex> damped_path_;
-  std::vector<Complex> plain_path_;
-  std::vector<double> filter_;          ///< at the judged bins
-  std::vector<Complex> damped_filter_;  ///< at the carried bins
-  /// The same, so much later that what it smears before a response's first sample is there too.
-  std::vector<Complex> filter_of_response_;
-  std::vector<std::vector<Spectrum>> spectra_;  ///< damped, filtered, by shot and gauge
+  std::vector<std::vector<Spectrum>> spectra_;  ///< at the carried bins, by shot and gauge
   ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
-  std::vector<Eigen::MatrixXcd> spread_;  ///< whitened residual to deviations of all gauges
-  Eigen::VectorXd frozen_;                ///< whitened residuals as frozen; none before
-  std::vector<Spectrum> source_noise_;    ///< by shot, as frozen, damped and filtered
+  GaugeShares shares_;
+  Eigen::VectorXd frozen_;              ///< whitened residuals as frozen; none before
+  std::vector<Spectrum> source_noise_;  ///< by shot, as frozen, at the carried bins
   std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;

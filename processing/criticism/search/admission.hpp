@@ -1,0 +1,22 @@
+#pragma once
+
+#include "processing/criticism/search/refit.hpp"
+#include "processing/criticism/search/search_ground.hpp"
+#include "processing/criticism/search/slow_chances.hpp"
+
+namespace kolsky {
+
+/// What fits better for counting more as noise fits nothing: where a gauge sees hardly a signal,
+/// its factor runs away, and the noise carried to it is all that is compared.
+[[nodiscard]] bool fits_the_signal(const Refit& refit, const Studied& base);
+
+/// Whether a refit is an explanation at all: it fits the signal, by a strength that stands out and
+/// that its formula allows, and is no limit of another effect.
+[[nodiscard]] bool explains(const Refit& refit, const SearchGround& ground);
+
+/// Whether strengths that every shot has of its own are more than chance: by their products, or
+/// beyond what slow noise does, which is noted in the refit. Of other effects, that they have none.
+[[nodiscard]] bool confirmed_as_own_strengths(Refit& refit, const SearchGround& ground,
+                                              SlowChances& slow);
+
+}  // namespace kolsky

@@ -1,0 +1,174 @@
+#include "processing/criticism/search/shortlist.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "processing/criticism/search/candidate_kinds.hpp"
+#include "processing/criticism/search/own_strengths.hpp"
+#include "processing/models/formula_strength.hpp"
+
+namespace kolsky {
+
+namespace {
+
+/// Evidence and candidate.
+using Ranked = std::pair<double, std::size_t>;
+
+/// The best variant of each effect, the best first.
+std::vector<Ranked> best_variants(const SearchGround& ground) {
+  // So much more must a harmonic explain than the mains' own frequency, which hums most: in a
+  // record much shorter than a period all frequencies look alike, with amplitudes in inverse
+  // proportion.
+  constexpr double kHarmonic = 9.0;
+  std::map<std::string, Ranked> best;
+  for (std::size_t i = 0; i < ground.candidates.size(); ++i) {
+    const double evidence = ground.evidence_of(i);
+    const EffectUse& use = ground.candidates[i].use;
+    auto& own = best[use.id() + (use.per_shot ? " per shot" : "") + (use.alike ? " alike" : "")];
+    if (evidence > own.first + (is_harmonic(use) ? kHarmonic : 0.0)) {
+      own = {evidence, i};
+    }
+  }
+  std::vector<Ranked> ranked;
+  for (const auto& [id, own] : best) {
+    if (own.first > 0.0) {
+      ranked.push_back(own);
+    }
+  }
+  std::sort(ranked.rbegin(), ranked.rend());
+  return ranked;
+}
+
+class Shortlist {
+ public:
+  explicit Shortlist(const SearchGround& ground)
+      : ground_(ground), ranked_(best_variants(ground)) {}
+
+  /// First-order ties can separate at finite size, the more so the larger the misfit.
+  void add_near_the_best() {
+    constexpr std::size_t kMostRefits = 14;
+    constexpr std::size_t kAlwaysRefits = 8;  // however far behind the first at first order
+    for (const auto& [evidence, i] : ranked_) {
+      const double best = ranked_.front().first;
+      const double margin = std::max(25.0, 0.6 * best);
+      // Far from the records, first order says little of what fits best.
+      const bool near =
+          evidence > best - margin ||
+          ((ground_.far_off() || chosen_.size() < kAlwaysRefits) && evidence > kWorthRefitting);
+      if (chosen_.size() < kMostRefits && near) {
+        add(i);
+      }
+    }
+  }
+
+  /// What shots have of their own gains little by noise that was learned from their differences: of
+  /// each such addition, one variant that slow noise does not do.
+  void add_beyond_slow_noise(SlowChances& slow) {
+    std::set<std::string> seen;
+    for (const std::size_t i : chosen_) {
+      if (may_be_slow_noise(ground_.candidates[i])) {
+        seen.insert(ground_.candidates[i].id());
+      }
+    }
+    add_where([&](std::size_t i) {
+      const Candidate& own = ground_.candidates[i];
+      return may_be_slow_noise(own) && seen.insert(own.id()).second &&
+             slow_noise_excluded(slow.of(i).least(), Claim::fresh);
+    });
+  }
+
+  /// At the gauge of the best a delay, a filter and a length.
+  void add_at_the_same_gauge() {
+    for (const auto& [evidence, i] : ranked_) {
+      if (at_one_gauge(ground_.candidates[i], ground_.candidates[ranked_.front().second])) {
+        add(i);
+      }
+    }
+  }
+
+  /// Of a hum the mains' other frequency: a record that is short beside both knows neither.
+  void add_other_mains() {
+    const std::vector<std::size_t> sought = chosen_;
+    for (const std::size_t hum : sought) {
+      add_where([&](std::size_t i) {
+        return is_other_mains(ground_.candidates[i], ground_.candidates[hum]);
+      });
+    }
+  }
+
+  /// Of what is there or not, first order takes a share, and of what begins suddenly it tells no
+  /// variant from another: far from the records that says nothing.
+  void add_what_is_there_or_not() {
+    if (!ground_.far_off()) {
+      return;
+    }
+    add_where([&](std::size_t i) {
+      return is_switch(ground_.candidates[i]) || is_sudden(ground_.candidates[i]);
+    });
+  }
+
+  /// Of what every specimen does by formula first order says little where moduli do its work.
+  void add_formulas() {
+    constexpr double kSomething = 25.0;  // of evidence: noise seldom has as much
+    if (ranked_.empty() || ranked_.front().first <= kSomething) {
+      return;
+    }
+    add_where([&](std::size_t i) { return has_formula(ground_.candidates[i].use); });
+  }
+
+  /// Of the material, what can say nothing at first order for standing at its bound.
+  void add_bounded_materials() {
+    if (std::ranges::none_of(chosen_,
+                             [&](std::size_t i) { return of_material(ground_.candidates[i]); })) {
+      return;
+    }
+    add_where([&](std::size_t i) {
+      const Candidate& own = ground_.candidates[i];
+      return of_material(own) && own.one_sided && own.use.effect->about().parameters.size() == 1 &&
+             !own.use.per_shot;
+    });
+  }
+
+  [[nodiscard]] const std::vector<std::size_t>& chosen() const { return chosen_; }
+
+ private:
+  void add(std::size_t candidate) {
+    if (std::ranges::find(chosen_, candidate) == chosen_.end()) {
+      chosen_.push_back(candidate);
+    }
+  }
+
+  template <typename Condition>
+  void add_where(const Condition& condition) {
+    for (std::size_t i = 0; i < ground_.candidates.size(); ++i) {
+      if (condition(i)) {
+        add(i);
+      }
+    }
+  }
+
+  const SearchGround& ground_;
+  std::vector<Ranked> ranked_;
+  std::vector<std::size_t> chosen_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> worth_refitting(const SearchGround& ground, SlowChances* slow) {
+  Shortlist list(ground);
+  list.add_near_the_best();
+  if (slow != nullptr) {
+    list.add_beyond_slow_noise(*slow);
+  }
+  list.add_at_the_same_gauge();
+  list.add_other_mains();
+  list.add_what_is_there_or_not();
+  list.add_formulas();
+  list.add_bounded_materials();
+  return list.chosen();
+}
+
+}  // namespace kolsky
