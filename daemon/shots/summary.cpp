@@ -28,13 +28,16 @@ Reduction reduce_as_filed(Reducer& reducer, const Shot& shot) {
 }
 
 Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot) {
+  Reduction reduction;
   try {
     return reduce_as_filed(reducer, shot);
   } catch (const InputError& error) {
-    Reduction reduction;
     reduction.quality.reason = error.what();
-    return reduction;
+  } catch (const std::exception& error) {
+    reduction.quality.reason =
+        std::string("the reduction failed, which it should not: ") + error.what();
   }
+  return reduction;
 }
 
 CatalogueEntry summarise(const Shot& shot, const Reduction& reduction, const std::string& capture) {

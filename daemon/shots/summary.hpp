@@ -13,7 +13,8 @@ namespace kolsky {
 [[nodiscard]] Reduction reduce_as_filed(Reducer& reducer, const Shot& shot);
 
 /// Reduces likewise what can be reduced. A shot of a bench that has nothing to reduce (a bar to
-/// characterise) gives no histories, and the reason.
+/// characterise) gives no histories, and the reason; so does one on which the reduction fails
+/// unforeseen, since the shots to come need the thread that reduces.
 [[nodiscard]] Reduction reduce_or_say_why(Reducer& reducer, const Shot& shot);
 
 /// A shot's row in the catalogue. @param capture  file name inside store/shots

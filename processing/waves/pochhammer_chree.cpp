@@ -1,7 +1,7 @@
 #include "processing/waves/pochhammer_chree.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "processing/waves/frequency_equation.hpp"
 
@@ -9,7 +9,8 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kThin = 0.5;
+constexpr double kThin = 0.5;  ///< |gamma0 a|, up to which the root is foretold from nothing
+constexpr double kStep = 0.05;
 constexpr double kFarthest = 12.0;
 
 /// Follows the root along a path of z, by a parabola through what is known of it.
@@ -27,6 +28,14 @@ class RootFollower {
     mean_ = equation_.mean_over_surface(z, root_.ratio);
     slope_ = 0.5 * (1.0 + z * root_.slope / root_.ratio);
     return kept(elementary);
+  }
+
+  /// Goes to where a path begins, straight from where the bar is thin.
+  void lead_to(Complex elementary, double radius_m) {
+    const double reach = std::abs(elementary) * radius_m;
+    for (double on_way = kThin; on_way < std::min(reach, kFarthest); on_way += kStep) {
+      mode_at(elementary * (on_way / reach), radius_m);
+    }
   }
 
   /// The last ratio, further out.
@@ -70,8 +79,8 @@ std::vector<BarMode> PochhammerChree::along(const std::vector<Complex>& path) co
   for (const Complex s : path) {
     const Complex elementary = s * std::sqrt(density_kg_m3_ * compliance_->at(s));
     const double reach = std::abs(elementary) * radius_m_;
-    if (modes.empty() && reach > kThin) {
-      throw std::invalid_argument("the path of s must start where the bar is thin");
+    if (modes.empty()) {
+      follower.lead_to(elementary, radius_m_);
     }
     modes.push_back(reach <= kFarthest && s != 0.0 ? follower.mode_at(elementary, radius_m_)
                                                    : follower.kept(elementary));

@@ -30,11 +30,10 @@ class PochhammerChree {
   PochhammerChree(double density_kg_m3, double poisson_ratio, double radius_m,
                   const Compliance& compliance);
 
-  /// The mode along a path of s that starts where the bar is thin beside the wavelength, |gamma a|
-  /// < 0.5, and moves in steps small enough that each root is near what the ones before it
-  /// foretell. Beyond |gamma0 a| = 12, where surface waves have long taken over, the last ratio to
-  /// gamma0 is kept.
-  /// @throws std::invalid_argument if the path starts too far out
+  /// The mode along a path of s that moves in steps small enough that each root is near what the
+  /// ones before it foretell. It may start anywhere: the root is followed there from where the bar
+  /// is thin beside the wavelength. Beyond |gamma0 a| = 12, where surface waves have long taken
+  /// over, the last ratio to gamma0 is kept.
   [[nodiscard]] std::vector<BarMode> along(const std::vector<Complex>& path) const;
 
  private:

@@ -79,10 +79,31 @@ TEST(PochhammerChree, ThePathDoesNotMatter) {
   }
 }
 
-TEST(PochhammerChree, APathThatStartsFarOutIsRefused) {
+TEST(PochhammerChree, APathMayStartWhereTheBarIsThick) {
   const ElasticSolid unit(1.0);
   const PochhammerChree bar(1.0, 0.3, 1.0, unit);
-  EXPECT_THROW((void)bar.along({{0.0, 2.0}}), std::invalid_argument);
+  for (const Complex start : {Complex(0.0, 2.0), Complex(1.2, 0.0), Complex(1.0, 3.0)}) {
+    std::vector<Complex> from_thin;
+    for (int step = 1; step <= 100; ++step) {
+      from_thin.push_back(start * (0.01 * step));
+    }
+    const BarMode there = bar.along(from_thin).back();
+    const BarMode at_once = bar.along({start}).front();
+    EXPECT_NEAR(std::abs(at_once.gamma - there.gamma), 0.0, 1e-9 * std::abs(there.gamma));
+    EXPECT_NEAR(std::abs(at_once.mean_over_surface - there.mean_over_surface), 0.0, 1e-9);
+    EXPECT_NEAR(std::abs(at_once.slope - there.slope), 0.0, 1e-7);
+  }
+}
+
+TEST(PochhammerChree, APathThatStartsBeyondWhatIsFollowedHasTheLastRatio) {
+  const ElasticSolid unit(1.0);
+  const PochhammerChree bar(1.0, 0.3, 1.0, unit);
+  const auto ratio_at = [&](double omega) {
+    return bar.along({Complex(0.0, omega)}).front().gamma.imag() / omega;
+  };
+  EXPECT_NEAR(ratio_at(20.0), ratio_at(11.95), 1e-4);
+  const double rayleigh = 0.9274 * std::sqrt(0.5 / 1.3);  // of sqrt(E / density), nu 0.3
+  EXPECT_NEAR(1.0 / ratio_at(20.0), rayleigh, 0.01 * rayleigh);
 }
 
 }  // namespace
