@@ -21,9 +21,10 @@ bool run_in_real_time(RealTime priority) noexcept {
   return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;
 }
 
-void run_as_usual() noexcept {
+bool run_as_usual() noexcept {
   const sched_param parameters{};
-  sched_setscheduler(0, SCHED_OTHER, &parameters);
+  // Who may not set priorities may give one up, but not take the reset off again.
+  return sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &parameters) == 0;
 }
 
 void run_ahead_of_usual() noexcept {

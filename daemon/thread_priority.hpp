@@ -13,7 +13,8 @@ void name_thread(const char* name) noexcept;
 /// Asks for real-time scheduling of the calling thread; threads that it makes run as usual.
 /// @return whether it was permitted
 bool run_in_real_time(RealTime priority) noexcept;
-void run_as_usual() noexcept;
+/// @return whether it does now
+bool run_as_usual() noexcept;
 /// Ahead of what runs as usual, where that is permitted, and behind the kernel's own work.
 void run_ahead_of_usual() noexcept;
 

@@ -126,8 +126,7 @@ void Acquirer::go_real_time() {
 
 void Acquirer::stay_polite() {
   if (real_time_.load(std::memory_order_relaxed) && !idle_check_.rests()) {
-    run_as_usual();
-    real_time_.store(false);
+    real_time_.store(!run_as_usual());
   }
 }
 
@@ -140,6 +139,17 @@ void Acquirer::take_plan() {
   if (next != nullptr) {
     std::swap(watch_, *next);
     retired_watch_.store(next, std::memory_order_release);  // freed by another thread
+    learn_anew();
+  }
+}
+
+void Acquirer::learn_anew() {
+  for (AtomicLevel& level : levels_) {
+    level.learned.store(false, std::memory_order_relaxed);
+  }
+  watch_.trigger.reset();
+  for (ChannelLevel& channel : quiet_) {
+    channel.forget();
   }
 }
 
@@ -189,13 +199,7 @@ void Acquirer::begin_capture(const Block& block) {
   streaming_ = true;
   capture_start_ = block.first_tick - (headless ? block.missing_before.samples : 0);
   capture_marked_ = false;
-  for (AtomicLevel& level : levels_) {
-    level.learned.store(false, std::memory_order_relaxed);
-  }
-  watch_.trigger.reset();
-  for (ChannelLevel& channel : quiet_) {
-    channel.forget();
-  }
+  learn_anew();
 }
 
 void Acquirer::watch(const Block& block) {
@@ -349,8 +353,9 @@ void Acquirer::interrupt_windows() {
 }
 
 void Acquirer::hand_over(const Window& window) {
-  handed_first_[handed_ % handed_first_.size()] = window.first_tick;
-  ++handed_;
+  const std::uint32_t handed = handed_.load(std::memory_order_relaxed);
+  handed_first_[handed % handed_first_.size()] = window.first_tick;
+  handed_.store(handed + 1, std::memory_order_release);
   AcquisitionEvent event;
   event.kind = AcquisitionEvent::Kind::window;
   event.tick = window.end_tick;
@@ -410,7 +415,7 @@ bool Acquirer::must_wait(Tick end_tick) const noexcept {
     return true;
   }
   const std::uint32_t released = released_.load(std::memory_order_acquire);
-  if (released == handed_) {
+  if (released == handed_.load(std::memory_order_relaxed)) {
     return false;
   }
   const Tick needed = handed_first_[released % handed_first_.size()];
@@ -422,7 +427,11 @@ void Acquirer::handle_disconnect() {
     return;
   }
   connected_.store(false);
-  interrupt_windows();
+  if (stream_.ends) {
+    close_capture();  // a replay waits for its next capture, and has played this one to its end
+  } else {
+    interrupt_windows();
+  }
   tell(AcquisitionEvent::Kind::disconnected);
   std::int64_t pause_ms = kFirstPause_ms;
   bool told_changed = false;

@@ -84,6 +84,8 @@ class Acquirer {
   [[nodiscard]] bool ended() const noexcept { return ended_.load(); }
   /// A window is open: triggered and not yet full.
   [[nodiscard]] bool capturing() const noexcept { return open_count_.load() > 0; }
+  /// A window waits for the recorder: its shot is not cut yet.
+  [[nodiscard]] bool recording() const noexcept { return handed_.load() != released_.load(); }
   /// Whether the thread runs at a real-time priority (asked for, not always permitted).
   [[nodiscard]] bool real_time() const noexcept { return real_time_.load(); }
 
@@ -108,6 +110,7 @@ class Acquirer {
   void go_real_time();
   void stay_polite();
   void take_plan();
+  void learn_anew();
   void take(const Block& block);
   void note_missing(const Block& block);
   void begin_capture(const Block& block);
@@ -159,8 +162,8 @@ class Acquirer {
   std::array<Window, kOpenWindows> open_{};
   std::size_t opened_ = 0;
   std::array<Tick, AcquisitionQueue::capacity()> handed_first_{};
-  std::uint32_t handed_ = 0;
 
+  std::atomic<std::uint32_t> handed_{0};
   std::atomic<std::uint32_t> released_{0};
   std::atomic<Watch*> next_watch_{nullptr};
   std::atomic<Watch*> retired_watch_{nullptr};

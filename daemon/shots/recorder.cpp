@@ -127,8 +127,7 @@ void ShotRecorder::run() {
     progress_.fetch_add(1);
     busy_.store(false);
     if (real_time && !idle_check.rests()) {
-      run_as_usual();
-      real_time = false;
+      real_time = !run_as_usual();
     }
   }
 }

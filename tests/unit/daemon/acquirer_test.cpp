@@ -209,6 +209,17 @@ TEST_F(AcquirerTest, ClosesTheWindowWhenTheDeviceGoesAndReachesItAgain) {
   EXPECT_TRUE(acquirer_->connected());
 }
 
+TEST_F(AcquirerTest, LeavesACaptureWholeWhoseSuccessorHasGone) {
+  digitiser_.add_pulse(5000);
+  digitiser_.deliver(5632);
+  digitiser_.add({.status = ReadStatus::disconnected});
+  digitiser_.end_after_script();
+  const auto told = run();
+  ASSERT_EQ(kinds(told), (std::vector{Kind::window, Kind::disconnected, Kind::reconnected,
+                                      Kind::end_of_capture}));
+  EXPECT_EQ(told[0].window.end, WindowEnd::capture_end);
+}
+
 TEST_F(AcquirerTest, DoesNotTakeADeviceThatCameBackWithAnotherScale) {
   digitiser_.deliver(1024);
   digitiser_.add({.status = ReadStatus::disconnected});
@@ -386,6 +397,22 @@ TEST_F(AcquirerTest, TakesAnotherPlanWhileItRuns) {
   const auto told = finish();
   ASSERT_EQ(kinds(told), std::vector{Kind::window});
   EXPECT_EQ(told[0].window.end_tick - told[0].window.first_tick, 30);
+}
+
+TEST_F(AcquirerTest, LearnsAnewForAnotherTriggerChannel) {
+  digitiser_.deliver(8192);
+  begin();
+  wait_for_script();
+  std::this_thread::sleep_for(milliseconds(20));
+  EXPECT_TRUE(acquirer_->level(0).learned);
+  EXPECT_TRUE(acquirer_->level(1).learned);
+  plan_.trigger_channel = 1;
+  acquirer_->change_plan(plan_);
+  digitiser_.append_live(64);
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_FALSE(acquirer_->level(0).learned);
+  EXPECT_FALSE(acquirer_->level(1).learned);
+  finish();
 }
 
 TEST_F(AcquirerTest, GivesUpItsPriorityToAStreamThatLeavesNoRest) {
