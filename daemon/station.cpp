@@ -130,13 +130,12 @@ Station::Station(DaemonConfig config)
       publisher_(publisher_options(config_.endpoints)),
       journal_(store_, recovered(store_, publisher_.boot_id()),
                static_cast<std::uint64_t>(config_.journal_limit_bytes)),
-      digitiser_(
-          open_digitiser(config_.digitiser.uri, digitiser_options(config_, apparatus_.bench))),
+      digitiser_(open_digitiser(config_.digitiser.uri, options_for_digitiser())),
       stream_(digitiser_->info()),
       settings_(make_settings(config_, apparatus_, stream_)),
       ring_(make_ring(config_, stream_)),
       acquirer_(*digitiser_, ring_, events_, plan(config_, apparatus_.trigger_channel)),
-      archivist_(store_, journal_, [this](const std::string& text) { fault(text); }),
+      archivist_(store_, journal_, [this](const std::string& text) { fault("store", text); }),
       critic_(publisher_),
       diagnoses_(publisher_, archivist_, store_),
       recorder_({.ring = ring_,
@@ -185,6 +184,12 @@ std::shared_ptr<const ShotSettings> Station::settings() const {
   return settings_;
 }
 
+DigitiserOptions Station::options_for_digitiser() {
+  DigitiserOptions options = digitiser_options(config_, apparatus_.bench);
+  options.tell = [this](const std::string& text) { fault("replay", text); };
+  return options;
+}
+
 AcquisitionPlan Station::plan(const DaemonConfig& config, std::size_t trigger_channel) const {
   return {.trigger_channel = trigger_channel,
           .trigger = trigger_options(config.trigger, stream_.rate.Hz()),
@@ -200,6 +205,13 @@ void Station::reload() {
     throw InputError(config.bench.string() + ": sampling_frequency_Hz",
                      "cannot change while the daemon runs", "restart kolskyd to take it");
   }
+  if (stream_.ends && digitiser_options(config, apparatus.bench).gauges !=
+                          digitiser_options(config_, apparatus_.bench).gauges) {
+    // A replay takes its captures' channels by these names.
+    throw InputError(config.bench.string() + ": gauges",
+                     "cannot change their names or order during a replay",
+                     "restart kolskyd to take them");
+  }
   auto settings = make_settings(config, apparatus, stream_);
   auto model = read_active_model(config, apparatus.bench);
   recorder_.change(settings);
@@ -212,10 +224,10 @@ void Station::reload() {
   settings_ = std::move(settings);
 }
 
-void Station::fault(const std::string& text) {
+void Station::fault(const char* kind, const std::string& text) {
   log::error(text);
   v1::Fault message;
-  message.set_kind("store");
+  message.set_kind(kind);
   message.set_text(text);
   publisher_.publish_fault(message);
 }

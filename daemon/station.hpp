@@ -63,8 +63,9 @@ class Station {
   void reload();
 
  private:
+  [[nodiscard]] DigitiserOptions options_for_digitiser();
   [[nodiscard]] AcquisitionPlan plan(const DaemonConfig& config, std::size_t trigger_channel) const;
-  void fault(const std::string& text);
+  void fault(const char* kind, const std::string& text);
 
   const EndpointConfig endpoints_;
   DaemonConfig config_;  ///< with `apparatus_`, of whoever starts and reloads: one thread at a time

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +24,11 @@ struct DigitiserOptions {
   std::size_t block_samples = 0;  ///< 0: what arrives in about a millisecond, see default_block
   std::string device;             ///< IIO device name; empty: the first with enough input channels
   double replay_speed = 0.0;      ///< factor on the real rate; 0: as fast as possible
+  /// For how long a replay waits for a capture that has gone: a file server may be away for a
+  /// moment.
+  std::chrono::milliseconds replay_patience{10'000};
+  /// Told what a replay meets while it runs; by the reading thread.
+  std::function<void(const std::string& text)> tell = [](const std::string&) {};
 };
 
 /// Samples that arrive in about a millisecond, a power of two: short against what a shot's result

@@ -65,6 +65,8 @@ StreamInfo describe(const std::string& uri, const ReplaySource& source,
 ReplayDigitiser::ReplayDigitiser(const std::string& uri, const std::filesystem::path& path,
                                  const DigitiserOptions& options)
     : speed_(checked_speed(uri, options.replay_speed)),
+      patience_(options.replay_patience),
+      tell_(options.tell),
       source_(open_source(uri, path, options)),
       info_(describe(uri, source_, options)),
       codes_(info_.channels.size(),
@@ -85,7 +87,8 @@ bool ReplayDigitiser::open_next_capture() {
     return false;
   }
   Shot next = source_.load(next_capture_);
-  capture_start_ += shot_ ? static_cast<Tick>(shot_->samples()) : 0;
+  capture_start_ = source_.captures()[next_capture_].first_tick;
+  unreadable_since_ns_.reset();
   missing_ = {};
   if (next_capture_ > 0) {
     missing_.kind = Missing::Kind::unknown;
@@ -143,7 +146,8 @@ ReadStatus ReplayDigitiser::read(Block& block) {
       if (!open_next_capture()) {
         return ReadStatus::end_of_capture;
       }
-    } catch (const InputError&) {
+    } catch (const InputError& error) {
+      wait_for_capture(error.what());
       return ReadStatus::disconnected;
     }
   }
@@ -226,9 +230,28 @@ bool ReplayDigitiser::reconnect() {
   }
   try {
     return !capture_done() || open_next_capture();
-  } catch (const InputError&) {
+  } catch (const InputError& error) {
+    return pass_over_after_long(error.what());
+  }
+}
+
+void ReplayDigitiser::wait_for_capture(const std::string& why) {
+  if (!unreadable_since_ns_) {
+    unreadable_since_ns_ = now_ns();
+    tell_(why + " (it is tried again for " + std::to_string(patience_.count()) + " ms)");
+  }
+}
+
+/// @return whether the replay goes on without it
+bool ReplayDigitiser::pass_over_after_long(const std::string& why) {
+  wait_for_capture(why);
+  if (now_ns() - *unreadable_since_ns_ < std::chrono::nanoseconds(patience_).count()) {
     return false;
   }
+  tell_(why + " (it is passed over)");
+  unreadable_since_ns_.reset();
+  ++next_capture_;
+  return true;
 }
 
 void ReplayDigitiser::fire() {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -22,7 +24,7 @@ namespace kolsky {
 ///
 /// `read` waits for its time and opens the next capture where one ends, which reads a file and
 /// allocates; it does neither within a capture. A capture that can then not be read is a
-/// disconnected device, and `reconnect` tries it again.
+/// disconnected device; `reconnect` tries it again, and passes over it after `replay_patience`.
 class ReplayDigitiser final : public Digitiser {
  public:
   /// @throws InputError with the URI as its place
@@ -38,6 +40,8 @@ class ReplayDigitiser final : public Digitiser {
 
  private:
   bool open_next_capture();
+  void wait_for_capture(const std::string& why);
+  [[nodiscard]] bool pass_over_after_long(const std::string& why);
   [[nodiscard]] bool capture_done() const noexcept;
   void skip_gaps();
   [[nodiscard]] std::size_t run_end() const noexcept;
@@ -46,6 +50,8 @@ class ReplayDigitiser final : public Digitiser {
   void copy_codes(std::size_t channel, std::size_t samples);
 
   double speed_;
+  std::chrono::milliseconds patience_;
+  std::function<void(const std::string&)> tell_;
   ReplaySource source_;
   StreamInfo info_;
   std::vector<std::vector<std::byte>> codes_;
@@ -60,6 +66,7 @@ class ReplayDigitiser final : public Digitiser {
   bool marked_ = false;
   Missing missing_;
   std::int64_t start_ns_ = 0;
+  std::optional<std::int64_t> unreadable_since_ns_;  ///< the next capture
 
   std::mutex mutex_;  ///< guards `cancelled_` against the wait
   std::condition_variable cancel_called_;

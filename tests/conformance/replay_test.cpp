@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <thread>
 
 #include "drivers/digitiser/open.hpp"
 #include "drivers/files/captures/capture.hpp"
@@ -93,6 +94,35 @@ TEST_F(Replay, PlaysAFolderByNameAndSaysWhereEachCaptureBegins) {
   }
   EXPECT_EQ(seen[3].codes.front(), pattern_code(1, 250));
   EXPECT_EQ(seen[5].codes.back(), pattern_code(1, 9079));
+}
+
+TEST_F(Replay, ACaptureThatHasGoneIsWaitedForThenPassedOver) {
+  store(pattern_shot(0, 250), "a.h5");
+  store(pattern_shot(250, 150), "b.h5");
+  store(pattern_shot(9000, 80), "c.h5");
+  std::vector<std::string> told;
+  DigitiserOptions options;
+  options.replay_patience = std::chrono::milliseconds(30);
+  options.tell = [&](const std::string& text) { told.push_back(text); };
+  const auto digitiser = play(options);
+  std::filesystem::remove(folder_.path() / "b.h5");
+  Tick end = 0;
+  const auto follow = [&](const Block& block) {
+    end = block.first_tick + static_cast<Tick>(block.samples);
+    return true;
+  };
+  EXPECT_EQ(read_while(*digitiser, follow), ReadStatus::disconnected);
+  EXPECT_EQ(end, 250);
+  EXPECT_FALSE(digitiser->reconnect());
+  std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  EXPECT_TRUE(digitiser->reconnect());
+  const std::vector<Seen> seen = play_all(*digitiser);
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0].first_tick, 400);  // where the list of captures has it
+  EXPECT_EQ(seen[0].codes.back(), pattern_code(1, 9079));
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_NE(told[0].find("b.h5"), std::string::npos);
+  EXPECT_NE(told[1].find("passed over"), std::string::npos);
 }
 
 TEST_F(Replay, ASubFolderAndOtherFilesAreNotPlayed) {
