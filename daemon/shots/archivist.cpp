@@ -18,6 +18,7 @@ namespace kolsky {
 namespace {
 
 constexpr std::chrono::seconds kPatience{20};
+constexpr std::chrono::milliseconds kLook{50};
 constexpr std::size_t kMostKeptCodes = std::size_t{1} << 24U;  // 64 MiB
 
 bool is_capture_name(const std::filesystem::path& path) {
@@ -35,6 +36,7 @@ Archivist::~Archivist() {
 }
 
 void Archivist::start() {
+  tried_ = std::chrono::steady_clock::now();
   submit([this] { complete_catalogue(); });
   thread_ = std::thread([this] { run(); });
 }
@@ -53,9 +55,9 @@ void Archivist::stop() {
 void Archivist::store(std::shared_ptr<const Shot> shot, CatalogueEntry entry) {
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return jobs_.size() < kMostWaiting; });
+    changed_.wait(lock, [&] { return shots_to_store_.size() < kMostWaiting; });
     ++handed_over_;
-    jobs_.emplace_back(
+    shots_to_store_.emplace_back(
         [this, shot = std::move(shot), entry = std::move(entry)] { store_now(shot, entry); });
   }
   changed_.notify_all();
@@ -73,17 +75,14 @@ void Archivist::run() {
   name_thread("kolsky-archive");
   std::unique_lock lock(mutex_);
   for (;;) {
-    if (!wait_for_job(lock)) {
-      jobs_.emplace_back([this] { file_unfiled(); });
-    }
-    if (jobs_.empty()) {
+    wait_for_job(lock);
+    const Job job = take_job();
+    if (!job) {
       break;
     }
-    const Job job = std::move(jobs_.front());
-    jobs_.pop_front();
     busy_ = true;
     lock.unlock();
-    job();
+    do_job(job);
     progress_.fetch_add(1);
     lock.lock();
     busy_ = false;
@@ -93,18 +92,49 @@ void Archivist::run() {
   file_unfiled();
 }
 
-bool Archivist::wait_for_job(std::unique_lock<std::mutex>& lock) {
-  const auto ready = [&] { return stop_ || !jobs_.empty(); };
-  if (unfiled_.empty()) {
-    changed_.wait(lock, ready);
-    return true;
+Archivist::Job Archivist::take_job() {
+  std::deque<Job>& from = shots_to_store_.empty() ? jobs_ : shots_to_store_;
+  if (from.empty()) {
+    return {};
   }
-  return changed_.wait_for(lock, retry_, ready);
+  Job job = std::move(from.front());
+  from.pop_front();
+  return job;
+}
+
+/// A disk that fails in the midst of tidying up must not take the thread with it, on which every
+/// later shot depends.
+void Archivist::do_job(const Job& job) {
+  try {
+    job();
+  } catch (const std::exception& error) {
+    fault_(fmt::format("the store: {}", error.what()));
+  }
+}
+
+/// Whoever keeps asking must not keep what is left over from its turn.
+void Archivist::wait_for_job(std::unique_lock<std::mutex>& lock) {
+  const auto ready = [&] { return stop_ || !jobs_.empty() || !shots_to_store_.empty(); };
+  if (unfiled_.empty() && catalogue_complete_) {
+    tried_ = std::chrono::steady_clock::now();
+    changed_.wait(lock, ready);
+    return;
+  }
+  changed_.wait_until(lock, tried_ + retry_, ready);
+  if (const auto now = std::chrono::steady_clock::now(); !stop_ && now >= tried_ + retry_) {
+    tried_ = now;
+    jobs_.emplace_back([this] { try_again(); });
+  }
 }
 
 bool Archivist::idle() const {
   const std::lock_guard lock(mutex_);
-  return jobs_.empty() && !busy_;
+  return jobs_.empty() && shots_to_store_.empty() && !busy_;
+}
+
+bool Archivist::ends() const {
+  const std::lock_guard lock(mutex_);
+  return stop_;
 }
 
 void Archivist::await_expected() {
@@ -120,8 +150,14 @@ auto Archivist::ask(Ask question) -> decltype(question()) {
   auto answer = task->get_future();
   await_expected();
   submit([task] { (*task)(); });
-  if (answer.wait_for(kPatience) != std::future_status::ready) {
-    throw InputError("store", "busy with other shots", "ask again");
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (answer.wait_for(kLook) != std::future_status::ready) {
+    if (ends()) {
+      throw InputError("store", "kolskyd is ending", "ask again once it runs");
+    }
+    if (std::chrono::steady_clock::now() > until) {
+      throw InputError("store", "busy with other shots", "ask again");
+    }
   }
   return answer.get();
 }
@@ -201,6 +237,13 @@ void Archivist::keep(const std::shared_ptr<const Shot>& shot, CatalogueEntry ent
   }
   kept_codes_ += journaled ? 0 : codes;
   unfiled_[shot->id] = {std::move(entry), journaled ? nullptr : shot, std::move(reason)};
+}
+
+void Archivist::try_again() {
+  if (!catalogue_complete_) {
+    complete_catalogue();
+  }
+  file_unfiled();
 }
 
 void Archivist::file_unfiled() {
@@ -283,28 +326,31 @@ void Archivist::complete_catalogue() {
         known.insert(entry.capture);
       }
     }
-    std::size_t entered = 0;
-    std::size_t damaged = 0;
+    std::size_t unknown = 0;
     for (const auto& file : std::filesystem::directory_iterator(store_.shots())) {
       if (is_capture_name(file.path()) && !known.contains(file.path().filename().string())) {
-        ++(enter(file.path()) ? entered : damaged);
+        submit([this, capture = file.path()] { enter(capture); });
+        ++unknown;
       }
     }
-    if (entered + damaged != 0) {
-      log::info(fmt::format("catalogue: entered {} captures it did not know{}", entered,
-                            damaged == 0 ? "" : fmt::format(" and {} damaged ones", damaged)));
+    if (unknown != 0) {
+      log::info(fmt::format("catalogue: entering {} captures that it does not know", unknown));
+      submit([] { log::info("catalogue: complete"); });
     }
+    catalogue_complete_ = true;
   } catch (const std::exception& error) {
-    fault_(fmt::format("the catalogue could not be completed: {}", error.what()));
+    note_incomplete(error.what());
   }
 }
 
-bool Archivist::enter(const std::filesystem::path& capture) {
+void Archivist::enter(const std::filesystem::path& capture) {
+  if (ends()) {
+    return;
+  }
   try {
     const Shot shot = read_capture(capture);
     catalogue().put(
         summarise(shot, reduce_or_say_why(reducer_, shot), capture.filename().string()));
-    return true;
   } catch (const InputError& error) {
     fault_(error.what());
     CatalogueEntry entry;
@@ -313,8 +359,19 @@ bool Archivist::enter(const std::filesystem::path& capture) {
     entry.capture = capture.filename().string();
     entry.reason = "its capture cannot be used: " + error.problem();
     catalogue().put(entry);
-    return false;
+  } catch (const std::exception& error) {
+    note_incomplete(error.what());
   }
+}
+
+void Archivist::note_incomplete(const std::string& why) {
+  catalogue_complete_ = false;
+  const std::string text =
+      fmt::format("the catalogue could not be completed: {}; it is tried again", why);
+  if (text != incomplete_because_) {
+    fault_(text);
+  }
+  incomplete_because_ = text;
 }
 
 void Archivist::note_missing(CatalogueEntry entry) {

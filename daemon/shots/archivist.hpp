@@ -43,9 +43,11 @@ class Archivist {
   Archivist(const Archivist&) = delete;
   Archivist& operator=(const Archivist&) = delete;
 
-  /// Begins; captures that the catalogue does not know are judged and entered first.
+  /// Begins; captures that the catalogue does not know are judged and entered before anything that
+  /// is asked is answered, though after shots that come meanwhile.
   void start();
-  /// Stores all that was handed over, then ends.
+  /// Stores all that was handed over, then ends. Captures that the catalogue does not know yet are
+  /// left to the next start.
   void stop();
 
   /// One shot is about to be published and will be handed over: what is asked from now on is
@@ -81,8 +83,12 @@ class Archivist {
   };
 
   void run();
-  /// @return whether there is a job to do, or the end; else it is time to try the unfiled again
-  bool wait_for_job(std::unique_lock<std::mutex>& lock);
+  /// Until there is one, what is left over to be tried again among them, or the end.
+  void wait_for_job(std::unique_lock<std::mutex>& lock);
+  /// The next one: shots go first. Empty at the end. @pre the mutex is held
+  Job take_job();
+  void do_job(const Job& job);
+  [[nodiscard]] bool ends() const;
   void submit(Job job);
   void await_expected();
   template <typename Ask>
@@ -90,6 +96,8 @@ class Archivist {
   void store_now(const std::shared_ptr<const Shot>& shot, CatalogueEntry entry);
   /// Keeps what could not be filed for another attempt.
   void keep(const std::shared_ptr<const Shot>& shot, CatalogueEntry entry, std::string reason);
+  /// What could not be done before.
+  void try_again();
   void file_unfiled();
   void file_from_memory();
   void file_from_journals();
@@ -98,10 +106,12 @@ class Archivist {
   /// Ends a journal that is long enough, and removes those that have done their work.
   void tend_journals();
   void prune(const std::filesystem::path& journal);
+  /// Has every capture entered that the catalogue does not know, each as a job of its own.
   void complete_catalogue();
-  /// @return whether it is a sound capture; a damaged one is listed as such
-  bool enter(const std::filesystem::path& capture);
+  /// A damaged one is listed as such.
+  void enter(const std::filesystem::path& capture);
   void note_missing(CatalogueEntry entry);
+  void note_incomplete(const std::string& why);
   Catalogue& catalogue();
 
   StoreLayout store_;
@@ -110,12 +120,16 @@ class Archivist {
   std::unique_ptr<Catalogue> catalogue_;
   Reducer reducer_;
   std::chrono::milliseconds retry_;
-  std::map<std::string, Unfiled> unfiled_;  ///< by shot; the archivist's thread alone
-  std::size_t kept_codes_ = 0;              ///< in the shots of `unfiled_`
+  std::chrono::steady_clock::time_point tried_;  ///< what is left over, if anything is
+  std::map<std::string, Unfiled> unfiled_;       ///< by shot; the archivist's thread alone
+  std::size_t kept_codes_ = 0;                   ///< in the shots of `unfiled_`
+  bool catalogue_complete_ = false;              ///< but for entries under way
+  std::string incomplete_because_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Job> jobs_;
+  std::deque<Job> shots_to_store_;
+  std::deque<Job> jobs_;  ///< all others
   bool busy_ = false;
   std::uint64_t handed_over_ = 0;
   bool stop_ = false;

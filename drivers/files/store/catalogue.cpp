@@ -16,7 +16,8 @@ namespace {
 constexpr int kVersion = 2;
 constexpr int kBusy_ms = 2000;
 
-/// The file cannot be gone on with: not a database, damaged, or of another version.
+/// The file cannot be gone on with: not a database, damaged, or of another version or program. Not
+/// so one that is locked, or on a disk that fails: what is in it may be sound.
 class Unusable : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -28,7 +29,7 @@ void check(sqlite3* database, int result) {
   }
   const std::string message =
       database == nullptr ? sqlite3_errstr(result) : sqlite3_errmsg(database);
-  if (result == SQLITE_CORRUPT || result == SQLITE_NOTADB) {
+  if (result == SQLITE_CORRUPT || result == SQLITE_NOTADB || result == SQLITE_ERROR) {
     throw Unusable(message);
   }
   throw std::runtime_error("catalogue: " + message);
@@ -102,6 +103,20 @@ CatalogueEntry entry_of(const Statement& row) {
 }  // namespace
 
 struct Catalogue::Database {
+  /// @throws Unusable  @throws InputError where the file cannot be reached
+  static std::unique_ptr<Database> open(const std::filesystem::path& path) {
+    try {
+      return std::make_unique<Database>(path);
+    } catch (const Unusable&) {
+      throw;
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      throw InputError(path.string(), std::string("cannot be used now (") + error.what() + ")",
+                       "end what else has it open, and look at the disk");
+    }
+  }
+
   explicit Database(const std::filesystem::path& path) {
     const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX;
     const int result = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
@@ -142,7 +157,6 @@ struct Catalogue::Database {
 
   sqlite3* handle = nullptr;
   std::mutex mutex;
-  bool is_new = false;
 
  private:
   void prepare() {
@@ -161,7 +175,6 @@ struct Catalogue::Database {
   }
 
   void make() {
-    is_new = true;
     run("BEGIN IMMEDIATE;"
         "CREATE TABLE shots (id TEXT PRIMARY KEY, utc_ns INTEGER NOT NULL, capture TEXT NOT NULL,"
         " verdict TEXT NOT NULL, reducible INTEGER NOT NULL, reason TEXT NOT NULL,"
@@ -202,38 +215,17 @@ std::optional<std::vector<CatalogueEntry>> read_catalogue(const std::filesystem:
 
 Catalogue::Catalogue(const std::filesystem::path& path) {
   try {
-    database_ = std::make_unique<Database>(path);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error&) {
+    database_ = Database::open(path);
+  } catch (const Unusable&) {
     for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
       std::error_code ignored;
       std::filesystem::remove(path.string() + suffix, ignored);
     }
-    database_ = std::make_unique<Database>(path);
+    database_ = Database::open(path);
   }
 }
 
 Catalogue::~Catalogue() = default;
-
-bool Catalogue::is_new() const {
-  return database_->is_new;
-}
-
-void Catalogue::replace_all(const std::vector<CatalogueEntry>& entries) {
-  const std::scoped_lock lock(database_->mutex);
-  database_->run("BEGIN IMMEDIATE");
-  try {
-    database_->run("DELETE FROM shots");
-    for (const CatalogueEntry& entry : entries) {
-      database_->put(entry);
-    }
-    database_->run("COMMIT");
-  } catch (...) {
-    sqlite3_exec(database_->handle, "ROLLBACK", nullptr, nullptr, nullptr);
-    throw;
-  }
-}
 
 void Catalogue::put(const CatalogueEntry& entry) {
   const std::scoped_lock lock(database_->mutex);

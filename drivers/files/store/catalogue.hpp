@@ -34,17 +34,11 @@ class Catalogue {
  public:
   /// Opens it, or makes it. A file that is no catalogue of this version, or a broken one, is
   /// replaced.
-  /// @throws InputError if the folder cannot be written
+  /// @throws InputError if the folder cannot be written, or somebody else holds the file
   explicit Catalogue(const std::filesystem::path& path);
   ~Catalogue();
   Catalogue(const Catalogue&) = delete;
   Catalogue& operator=(const Catalogue&) = delete;
-
-  /// Whether opening found no catalogue to go on with: fill it from the captures, with
-  /// `replace_all`.
-  [[nodiscard]] bool is_new() const;
-  /// Makes these the only entries, all at once.
-  void replace_all(const std::vector<CatalogueEntry>& entries);
 
   /// Adds an entry, or replaces the one with its id. From any thread, as the rest.
   /// @throws std::runtime_error where the database refuses (a full disk)

@@ -1,6 +1,7 @@
 #include "daemon/shots/archivist.hpp"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <fstream>
@@ -29,7 +30,7 @@ class ArchivistTest : public ::testing::Test {
  protected:
   ArchivistTest() { store_.create(); }
 
-  void begin(std::chrono::milliseconds retry = std::chrono::hours(1)) {
+  void begin_only(std::chrono::milliseconds retry) {
     archivist_.reset();
     journal_.emplace(store_, ++boots_, 1U << 30U);
     archivist_ = std::make_unique<Archivist>(
@@ -40,7 +41,11 @@ class ArchivistTest : public ::testing::Test {
         },
         retry);
     archivist_->start();
-    (void)archivist_->newest(0);  // the catalogue is complete
+  }
+  /// With a catalogue that is complete.
+  void begin(std::chrono::milliseconds retry = std::chrono::hours(1)) {
+    begin_only(retry);
+    (void)archivist_->newest(0);
   }
   void store(std::uint32_t seed, bool journaled = true) {
     const auto shot = std::make_shared<Shot>(make_shot(seed));
@@ -135,6 +140,46 @@ TEST_F(ArchivistTest, HoldsNoDescriptorsForShotsThatFindNoRoom) {
   }
   store(6);
   EXPECT_EQ(listed().size(), 6U);
+}
+
+TEST_F(ArchivistTest, EntersWhatTheCatalogueDoesNotKnowOneCaptureAtATime) {
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    write_capture(make_shot(seed), store_.capture_of("shot-" + std::to_string(seed)));
+  }
+  begin();
+  EXPECT_EQ(listed(), (std::vector<std::string>{"shot-1", "shot-2", "shot-3"}));
+  // The list of what is unknown, each of them, the word that all is there, and the two questions:
+  // a watchdog sees every one.
+  EXPECT_GE(archivist_->progress(), 6U);
+}
+
+TEST_F(ArchivistTest, CompletesTheCatalogueOnceNobodyElseHoldsIt) {
+  begin();
+  archivist_->stop();
+  write_capture(make_shot(1), store_.capture_of("shot-1"));
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(store_.catalogue().c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN EXCLUSIVE", nullptr, nullptr, nullptr), SQLITE_OK);
+  begin_only(std::chrono::milliseconds(20));
+  expect_refused([&] { (void)archivist_->newest(0); }, {"catalogue", "locked"});
+  ASSERT_EQ(sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(other);
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (listed().empty() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(listed(), std::vector<std::string>{"shot-1"});
+  const std::lock_guard lock(mutex_);
+  ASSERT_EQ(faults_.size(), 1U) << "told once, not at each attempt";
+  EXPECT_NE(faults_[0].find("tried again"), std::string::npos);
+}
+
+TEST_F(ArchivistTest, AnswersNothingOnceItEnds) {
+  begin();
+  archivist_->stop();
+  const auto before = std::chrono::steady_clock::now();
+  expect_refused([&] { (void)archivist_->newest(0); }, {"ending"});
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(5));
 }
 
 TEST_F(ArchivistTest, ListsADamagedCaptureAndSaysSo) {

@@ -44,13 +44,11 @@ TEST(Catalogue, KeepsEntriesFromOneOpeningToTheNext) {
   const ScratchFolder folder;
   {
     Catalogue catalogue(folder / "c.sqlite");
-    EXPECT_TRUE(catalogue.is_new());
     for (const int i : {2, 1, 3}) {
       catalogue.put(entry(i));
     }
   }
   const Catalogue catalogue(folder / "c.sqlite");
-  EXPECT_FALSE(catalogue.is_new());
   const auto all = catalogue.newest();
   ASSERT_EQ(all.size(), 3U);
   expect_equal(all[0], entry(3));
@@ -71,15 +69,6 @@ TEST(Catalogue, PutReplacesTheEntryOfAnId) {
   catalogue.put(judged);
   ASSERT_EQ(catalogue.newest().size(), 1U);
   EXPECT_EQ(catalogue.newest()[0].verdict, "pass");
-}
-
-TEST(Catalogue, ReplaceAllLeavesNothingElse) {
-  const ScratchFolder folder;
-  Catalogue catalogue(folder / "c.sqlite");
-  catalogue.put(entry(1));
-  catalogue.replace_all({entry(5), entry(6)});
-  ASSERT_EQ(catalogue.newest().size(), 2U);
-  EXPECT_FALSE(catalogue.find("shot-1").has_value());
 }
 
 TEST(Catalogue, ThreadsMayShareIt) {
@@ -107,7 +96,6 @@ class BrokenCatalogue : public ::testing::Test {
   }
   void expect_replaced() const {
     Catalogue catalogue(path_);
-    EXPECT_TRUE(catalogue.is_new());
     EXPECT_TRUE(catalogue.newest().empty());
     catalogue.put(entry(1));
     EXPECT_EQ(catalogue.newest().size(), 1U);
@@ -157,6 +145,19 @@ TEST_F(BrokenCatalogue, AnotherProgramsTablesAreReplaced) {
       SQLITE_OK);
   sqlite3_close(database);
   expect_replaced();
+}
+
+TEST(Catalogue, IsNotReplacedWhereSomebodyElseHoldsIt) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder / "c.sqlite";
+  Catalogue(path).put(entry(1));
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN EXCLUSIVE", nullptr, nullptr, nullptr), SQLITE_OK);
+  expect_refused([&] { const Catalogue catalogue(path); }, {"c.sqlite", "locked", "end what else"});
+  ASSERT_EQ(sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(other);
+  EXPECT_EQ(Catalogue(path).newest().size(), 1U);
 }
 
 TEST(NoCatalogue, AFolderThatIsNotThereIsRefused) {
