@@ -242,8 +242,13 @@ void Controller::wait_for_trigger() const {
 }
 
 void Controller::reload() {
-  if (station_.acquirer().armed() || station_.acquirer().capturing()) {
+  const Acquirer& acquirer = station_.acquirer();
+  if (acquirer.armed() || acquirer.capturing()) {
     throw InputError("reload", "the daemon is armed", "disarm first");
+  }
+  if (acquirer.recording()) {
+    // It was taken with the bench as it was.
+    throw InputError("reload", "a shot is being recorded", "ask again in a moment");
   }
   station_.reload();
   log::info("configuration reloaded");

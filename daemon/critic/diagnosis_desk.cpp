@@ -88,6 +88,7 @@ void DiagnosisDesk::stop() {
     stopped_ = true;
     cancel_.store(true);
   }
+  const std::lock_guard begins(begin_mutex_);
   if (thread_.joinable()) {
     thread_.join();
   }
@@ -99,6 +100,7 @@ void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Di
     throw InputError("diagnose", "no model is active",
                      "name one in the configuration: [model] file, then reload");
   }
+  const std::lock_guard begins(begin_mutex_);
   {
     const std::lock_guard lock(mutex_);
     if (stopped_) {

@@ -59,6 +59,7 @@ class DiagnosisDesk {
   Publisher& publisher_;
   Archivist& archivist_;
   StoreLayout store_;
+  std::mutex begin_mutex_;  ///< of whoever begins or joins `thread_`; before `mutex_`
   mutable std::mutex mutex_;
   std::unique_ptr<v1::Diagnosis> last_;
   std::uint64_t count_ = 0;

@@ -1,6 +1,7 @@
 #include "daemon/live/monitor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "daemon/live/previewer.hpp"
 #include "daemon/live/sd_notify.hpp"
@@ -25,8 +26,6 @@ Monitor::Monitor(Station& station, Controller& controller, bool auto_arm)
     : station_(station),
       controller_(controller),
       auto_arm_(auto_arm),
-      previewer_(std::make_unique<Previewer>(station.ring(), station.publisher(),
-                                             station.settings()->blank)),
       watchdog_interval_(watchdog_interval_us() / 2) {
   threads_.add("acquisition", kReadPatience, [&acquirer = station.acquirer()] {
     return ThreadWatch::Pulse{acquirer.counters().progress, !acquirer.ended()};
@@ -65,7 +64,7 @@ void Monitor::run() {
 }
 
 void Monitor::turn(std::chrono::steady_clock::time_point now) {
-  previewer_->publish_new();
+  preview();
   if (auto_arm_) {
     arm_by_itself();
   }
@@ -78,6 +77,15 @@ void Monitor::turn(std::chrono::steady_clock::time_point now) {
     controller_.publish_status();
   }
   watch_threads(now);
+}
+
+void Monitor::preview() {
+  if (auto settings = station_.settings(); settings != previewed_) {
+    previewer_ =
+        std::make_unique<Previewer>(station_.ring(), station_.publisher(), settings->blank);
+    previewed_ = std::move(settings);
+  }
+  previewer_->publish_new();
 }
 
 void Monitor::arm_by_itself() {

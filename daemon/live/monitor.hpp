@@ -31,6 +31,7 @@ class Monitor {
  private:
   void run();
   void turn(std::chrono::steady_clock::time_point now);
+  void preview();
   void arm_by_itself();
   void watch_threads(std::chrono::steady_clock::time_point now);
 
@@ -38,6 +39,7 @@ class Monitor {
   Controller& controller_;
   bool auto_arm_;
   std::string last_refusal_;
+  std::shared_ptr<const ShotSettings> previewed_;  ///< the channels as they are called now
   std::unique_ptr<Previewer> previewer_;
   ThreadWatch threads_;
   std::string stuck_;

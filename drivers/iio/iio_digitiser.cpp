@@ -44,6 +44,7 @@ IioDigitiser::IioDigitiser(std::string uri, DigitiserOptions options)
       options_(std::move(options)),
       prepared_(open_session(false)),
       info_(prepared_->info()),
+      simulated_(info_.simulated),
       watchdog_(kLongestRefill, [this] { cancel_refill(); }) {}
 
 IioDigitiser::~IioDigitiser() = default;
@@ -80,6 +81,7 @@ void IioDigitiser::start() {
 
 void IioDigitiser::adopt(Session session) {
   info_ = session->info();
+  simulated_ = info_.simulated;
   codes_.assign(info_.channels.size(),
                 std::vector<std::byte>(info_.max_block_samples * sample_bytes(info_.format)));
   if (!session->counter()) {
@@ -137,7 +139,7 @@ bool IioDigitiser::reconnect() {
 }
 
 void IioDigitiser::fire() {
-  if (!info_.simulated) {
+  if (!simulated_) {
     throw InputError(uri_, "is no simulated digitiser, so nothing can be fired",
                      "use force-trigger, or fire the gun by hand");
   }

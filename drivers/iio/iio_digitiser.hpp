@@ -58,6 +58,7 @@ class IioDigitiser final : public Digitiser {
   std::atomic<bool> cancelled_{false};
   Session prepared_;  ///< opened, not started
   StreamInfo info_;
+  std::atomic<bool> simulated_;  ///< of `info_`, for threads that do not read
 
   std::mutex session_mutex_;  ///< the reading thread changes `session_`, the watchdog and cancel
                               ///< look at it

@@ -93,9 +93,11 @@ void Journal::write_shot(const Shot& shot) {
 
 void Journal::make_durable() {
   // Linux tells a file's write error once: it may have told it to `fill_ahead`.
-  if (::fdatasync(file_) != 0 || failed_) {
+  const bool told_before = failed_;
+  const int error = ::fdatasync(file_) == 0 ? 0 : errno;
+  if (error != 0 || told_before) {
     failed_ = true;
-    throw failure(path_, "a record cannot be made durable", errno);
+    throw failure(path_, "a record cannot be made durable", error != 0 ? error : EIO);
   }
 }
 
