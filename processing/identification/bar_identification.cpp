@@ -404,12 +404,46 @@ std::vector<SolidKind> solids_to_try(const BarIdentificationOptions& options,
   return solids;
 }
 
-/// Fills in the fits of three elements and of the solid that is asked for or has the evidence.
+double best_evidence(const BarFit& three_element, const Explanations::Solids& solids) {
+  double best = three_element.log_evidence;
+  for (const BarFit* fit : solids.others) {
+    best = fit != nullptr ? std::max(best, fit->log_evidence) : best;
+  }
+  return best;
+}
+
+/// An end that returns a share nobody knows takes up what three elements lack of a bar that has
+/// more: another end with another family of solids may be all there is.
+struct EndWithSolids {
+  const BarFit* three_element = nullptr;
+  Explanations::Solids solids;
+};
+EndWithSolids settle_end(const BarIdentificationOptions& options, const BarData& data,
+                         const BarFit& chosen, const std::vector<SolidKind>& kinds,
+                         Explanations& explanations) {
+  EndWithSolids settled{&chosen, explanations.solids(chosen, kinds)};
+  if (kinds.empty() || options.far_end || data.two_passes() ||
+      chosen.far_end != FarEndReturn::partial) {
+    return settled;
+  }
+  const Best whole = best_of(explanations.at(Open(options, data).with_waves(chosen.theory)));
+  if (whole.fit == nullptr) {
+    return settled;
+  }
+  EndWithSolids other{whole.fit, explanations.solids(*whole.fit, kinds)};
+  const bool does_as_well = best_evidence(*whole.fit, other.solids) + kPartialAhead >
+                            best_evidence(chosen, settled.solids);
+  return does_as_well ? std::move(other) : std::move(settled);
+}
+
+/// Fills in the fits of three elements, of the solid that is asked for or has the evidence, and of
+/// that which has it whatever is asked for.
 void choose_solid(const BarIdentificationOptions& options, const BarData& data,
-                  const BarFit& three_element, Explanations& explanations,
-                  BarIdentification& result) {
-  const std::vector<SolidKind> kinds = solids_to_try(options, three_element);
-  Explanations::Solids solids = explanations.solids(three_element, kinds);
+                  const BarFit& at_first, Explanations& explanations, BarIdentification& result) {
+  const std::vector<SolidKind> kinds = solids_to_try(options, at_first);
+  EndWithSolids settled = settle_end(options, data, at_first, kinds, explanations);
+  const BarFit& three_element = *settled.three_element;
+  Explanations::Solids& solids = settled.solids;
   result.three_element = solids.three_element;
   result.fit = solids.three_element;
   result.solid.asked = options.solid.has_value();
@@ -421,6 +455,7 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
                      ? *asked
                      : fit_bar(data, {three_element.theory, *options.solid, three_element.far_end});
   }
+  result.likeliest = result.fit;
   if (!(options.compare_solids || !options.solid) || result.three_element.lossless ||
       !loss_shows(three_element)) {
     return;
@@ -440,10 +475,15 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
     const auto place = std::find(over_solids.begin(), over_solids.end(), best.fit);
     *place = explanations.finished(theory_of(*best.fit));
     if (*place != nullptr) {
-      result.fit = **place;
+      result.fit = result.likeliest = **place;
       break;
     }
     best = best_of(over_solids);
+  }
+  if (options.solid && best.fit != nullptr &&
+      best.fit->log_evidence > result.fit.log_evidence + kClearlyAhead) {
+    const BarFit* likeliest = explanations.finished(theory_of(*best.fit));
+    result.likeliest = likeliest != nullptr ? *likeliest : result.fit;
   }
   result.solid.told_apart = best.choice.told_apart;
   result.solid.ahead = best.choice.ahead;
@@ -470,7 +510,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   const BarFit* three_element = choose_three_elements(options, data, explanations, result);
   choose_solid(options, data, *three_element, explanations, result);
   if (result.three_element.lossless) {
-    for (BarFit* fit : {&result.three_element, &result.fit}) {
+    for (BarFit* fit : {&result.three_element, &result.fit, &result.likeliest}) {
       for (std::size_t i = 1; fit->lossless && i < fit->parameters.size(); ++i) {
         fit->parameters[i].sd = fit->parameters[i].value;
       }
@@ -490,9 +530,9 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   result.over_shots = over_shots(result.three_element);
   workers.run(2, [&](std::size_t index, std::size_t /*worker*/) {
     if (index == 0) {
-      result.spectrum = likely_spectrum(data, result.fit);
+      result.spectrum = likely_spectrum(data, result.likeliest);
     } else {
-      result.straight_lines = straight_line_spectrum(data, result.fit);
+      result.straight_lines = straight_line_spectrum(data, result.likeliest);
     }
   });
   result.paper = three_elements_through(result.straight_lines, kPaperBand_Hz);
@@ -502,7 +542,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   take_temperatures(shots, result);
   warn_of_fit(result, result.warnings);
   warn_of_choices(result, result.warnings);
-  warn_of_bench(data, result.three_element, result.warnings);
+  warn_of_bench(data, result.likeliest, result.warnings);
   warn_of_gain(result.spectrum, result.warnings);
   return result;
 }

@@ -38,6 +38,9 @@ struct Choice {
 struct BarIdentification {
   BarFit fit;            ///< of the solid that was asked for, or that the evidence chose
   BarFit three_element;  ///< under the same wave theory and far end
+  /// Of the solid that the evidence chose, whichever was asked for, where it is clearly ahead: by
+  /// this one the spectrum goes, which a solid that does not fit would lead astray.
+  BarFit likeliest;
   Choice wave_theory, far_end, solid;
   bool two_passes =
       false;  ///< one gauge stood for two (see split_passes); the far end counts as free

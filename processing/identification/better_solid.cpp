@@ -8,8 +8,6 @@ namespace kolsky {
 
 namespace {
 
-constexpr double kClearlyAhead = 10.0;
-
 /// Whether the records show no branch, and leave room for none that would matter.
 bool is_elastic(const BarFit& fit) {
   constexpr double kNoBranch = 1e-3;  // of the compliance

@@ -16,6 +16,9 @@ namespace kolsky {
 [[nodiscard]] Material material_to_file(const BarIdentification& result, const Bar& bar,
                                         std::string source);
 
+/// By so much in log evidence another family has to be ahead to be named.
+inline constexpr double kClearlyAhead = 10.0;
+
 /// A family of solids that the records prefer to the one that is to be filed.
 struct BetterSolid {
   SolidKind solid = SolidKind::three_element;
@@ -23,7 +26,7 @@ struct BetterSolid {
   double chi2_reduced = 0.0;  ///< what it leaves
 };
 
-/// The one furthest ahead under the same waves and far end; none by less than a log evidence of 10.
+/// The one furthest ahead under the same waves and far end; none by less than `kClearlyAhead`.
 [[nodiscard]] std::optional<BetterSolid> better_solid(const BarIdentification& result);
 
 /// What it costs to go on with the one that is to be filed, in one sentence.

@@ -63,20 +63,9 @@ class TheoryChoice {
     if (three_element_ == nullptr) {
       starts_ = first_starts();
     }
-    const WaveTheory first = options_.bars.value_or(WaveTheory::elementary);
-    for (const SpecimenWaves kind : kinds_) {
-      attempt({first, kind});
-    }
+    attempt_all(options_.bars.value_or(WaveTheory::elementary), kinds_);
     if (!options_.bars) {
-      const Fitted simple = best();
-      attempt({WaveTheory::exact, simple.theory.specimen});
-      if (best().theory.bars == WaveTheory::exact) {
-        for (const SpecimenWaves kind : kinds_) {
-          if (kind != simple.theory.specimen) {
-            attempt({WaveTheory::exact, kind});
-          }
-        }
-      }
+      attempt_exact_bars();
     }
     return best();
   }
@@ -149,6 +138,27 @@ class TheoryChoice {
       throw *refusal;
     }
     return *least;
+  }
+
+  /// Where elementary waves in the bars lead nowhere, lateral inertia may be why.
+  void attempt_exact_bars() {
+    if (fits_.empty()) {
+      attempt_all(WaveTheory::exact, kinds_);
+      return;
+    }
+    const SpecimenWaves simple = best().theory.specimen;
+    attempt({WaveTheory::exact, simple});
+    if (best().theory.bars == WaveTheory::exact) {
+      std::vector<SpecimenWaves> others = kinds_;
+      std::erase(others, simple);
+      attempt_all(WaveTheory::exact, others);
+    }
+  }
+
+  void attempt_all(WaveTheory bars, const std::vector<SpecimenWaves>& kinds) {
+    for (const SpecimenWaves kind : kinds) {
+      attempt({bars, kind});
+    }
   }
 
   void attempt(const ShpbTheory& theory) {
