@@ -13,6 +13,7 @@
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/criticism/records/ball_gate.hpp"
+#include "processing/criticism/records/faint_pulse.hpp"
 #include "processing/criticism/records/lost_samples.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/ball/ball_flight.hpp"
@@ -281,7 +282,13 @@ void require_gauges(const Bench& bench) {
 }  // namespace
 
 bool holds_pulse(const Shot& shot, std::size_t gauge) {
-  return first_pulse(readings_of(shot.channels[gauge]), shot.rate.Hz()).has_value();
+  const std::vector<double> record = readings_of(shot.channels[gauge]);
+  if (first_pulse(record, shot.rate.Hz())) {
+    return true;
+  }
+  const std::size_t reference = reference_of(shot.bench);
+  const auto first = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
+  return gauge != reference && first && stands_out_on_average(record, first->quiet);
 }
 
 std::string bad_data(const Shot& shot) {

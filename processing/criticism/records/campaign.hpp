@@ -30,7 +30,8 @@ struct Campaign {
   [[nodiscard]] std::size_t gauges() const { return bench.gauges.size(); }
 };
 
-/// Whether a gauge's record has a pulse that stands out of its noise.
+/// Whether a gauge's record has a pulse that stands out of its noise: sample by sample at the first
+/// gauge, where it has to be found, on average at the others.
 [[nodiscard]] bool holds_pulse(const Shot& shot, std::size_t gauge);
 
 /// Why a shot cannot be compared with anything, in one line; empty for one that can. Holes,

@@ -524,6 +524,9 @@ class Diagnostician {
         reasons.push_back(in_words(number));
       }
     }
+    if (is_worse_where_held_out()) {
+      reasons.push_back("what was found makes shots that were held out misfit more");
+    }
     if (leaves_much_of_one_shot()) {
       reasons.push_back(left_of_one_shot_text("what was found", diagnosis_.held_out.after));
     }
@@ -543,6 +546,12 @@ class Diagnostician {
       reasons.push_back(*unlisted);
     }
     return reasons;
+  }
+
+  /// What shots that were held out are farther from with it explains nothing.
+  [[nodiscard]] bool is_worse_where_held_out() const {
+    return !diagnosis_.effects.empty() && options_.safeguards.held_out &&
+           diagnosis_.held_out.after > diagnosis_.held_out.before;
   }
 
   /// No other shot tells what a claim leaves from noise. Of one shot, then, that must be no more
@@ -589,9 +598,29 @@ class Diagnostician {
     const double behind = other.fit.objective() - current.fit.objective();
     const double explained = before.fit.objective() - current.fit.objective();
     const bool doubted = !reasons.empty() && !diagnosis_.effects.empty();
-    if (behind < (doubted ? kNearly * explained : -kBetter * noise)) {
+    if (auto one = one_modulus_in_place_of_an_effect(current, noise)) {
+      reasons.push_back(*std::move(one));
+    } else if (behind < (doubted ? kNearly * explained : -kBetter * noise)) {
       reasons.push_back(other_bars_text(before.model, other.model, behind < 0.0));
     }
+  }
+
+  /// Where all shots are so alike that what is claimed to change the bars' moduli from shot to shot
+  /// is another modulus in all of them.
+  std::optional<std::string> one_modulus_in_place_of_an_effect(const Studied& current,
+                                                               double noise) {
+    for (const std::string& id : diagnosis_.effects) {
+      if (!is_one_modulus(id, study_.campaign().shots)) {
+        continue;
+      }
+      const Model left = model_without(current, id);
+      const std::optional<Model> any = with_bars_of_any_moduli(left, study_.campaign().bench);
+      const Studied other = changed(study_, current, any.value_or(left));
+      if (any && other.fit.objective() < current.fit.objective() + kTie * noise) {
+        return other_bars_text(left, other.model, false) + one_modulus_text(id);
+      }
+    }
+    return std::nullopt;
   }
 
   /// Where nothing comes back and nothing is claimed, by the noise of the quiet parts.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace kolsky {
@@ -84,6 +85,26 @@ std::string other_bars_text(const Model& model, const Model& fitted, bool more) 
          (identified ? "identify the bars again, at the shots' temperature"
                      : "measure their wave speed (`kolsky calibrate`); a modulus or density that "
                        "is filed without a deviation counts as exact");
+}
+
+bool is_one_modulus(const std::string& effect, const std::vector<CampaignShot>& shots) {
+  constexpr double kAlike = 0.1;
+  const bool by_temperature = effect == "temperature";
+  if (!by_temperature && effect != "amplitude-dependence") {
+    return false;
+  }
+  std::vector<double> amounts;
+  for (const CampaignShot& shot : shots) {
+    amounts.push_back(by_temperature ? shot.facts.warmer_by_K.value_or(0.0)
+                                     : shot.facts.peak_strain);
+  }
+  const auto [least, most] = std::ranges::minmax(amounts);
+  return most - least < kAlike * std::max(std::abs(least), std::abs(most));
+}
+
+std::string one_modulus_text(const std::string& effect) {
+  return "; that is all that " + effect + " is here, as all shots have nearly the same " +
+         (effect == "temperature" ? "temperature" : "amplitude: shoot at others, too");
 }
 
 std::string no_temperature_text() {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "processing/criticism/fitting/study.hpp"
 
@@ -16,6 +17,13 @@ namespace kolsky {
 /// How far the moduli of such a fit lie from those of the model, in a sentence.
 /// @param more  they explain more than what they are held against, not nearly as much
 [[nodiscard]] std::string other_bars_text(const Model& model, const Model& fitted, bool more);
+
+/// Whether an effect that changes the bars' moduli from shot to shot, by each shot's amplitude or
+/// temperature, changes them alike in all of these, to a tenth: then it is another modulus.
+[[nodiscard]] bool is_one_modulus(const std::string& effect,
+                                  const std::vector<CampaignShot>& shots);
+/// What to do then, in a sentence that follows on other_bars_text().
+[[nodiscard]] std::string one_modulus_text(const std::string& effect);
 
 /// What to do where temperature is claimed beside what bars of other moduli do as well.
 [[nodiscard]] std::string no_temperature_text();

@@ -112,6 +112,45 @@ TEST(FiledBars, AsFiledAreAdequate) {
   }
 }
 
+/// All shots as the first, from one share of its amplitude to another.
+void spread_amplitudes(testing::Campaign& campaign, double from, double to) {
+  std::vector<testing::TrueShot>& shots = campaign.world.shots;
+  const testing::TrueShot first = shots.front();
+  for (std::size_t n = 0; n < shots.size(); ++n) {
+    const double way = static_cast<double>(n) / static_cast<double>(shots.size() - 1);
+    const double share = from + way * (to - from);
+    shots[n].source = first.source;
+    for (double& bell : shots[n].source) {
+      bell *= share;
+    }
+    shots[n].peak_strain = share * first.peak_strain;
+  }
+}
+
+// Where all shots have nearly one amplitude, a modulus that is off in all of them is as much as one
+// that depends on amplitude: it was named so.
+TEST(FiledBars, OfAnotherModulusAreNoAmplitudeDependenceOfShotsThatAreAlike) {
+  for (std::uint64_t seed = 843; seed < 846; ++seed) {
+    testing::Campaign truth = with_modulus_off(seed, 0.005, 0.0);
+    spread_amplitudes(truth, 1.0, 0.97);
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::shpb, true));
+    EXPECT_EQ(name_of(diagnosis.verdict), "unknown") << seed;
+    EXPECT_TRUE(says(diagnosis, "bars of other moduli than filed")) << seed;
+  }
+}
+
+TEST(FiledBars, ThatDependOnAmplitudeAreFoundWhereShotsDiffer) {
+  for (std::uint64_t seed = 843; seed < 846; ++seed) {
+    testing::Campaign truth = metal_split_bar(seed);
+    spread_amplitudes(truth, 1.0, 0.3);
+    testing::plant(truth.world, testing::parse_effect("amplitude-dependence=8"));
+    const Diagnosis diagnosis =
+        diagnosed(testing::shots_of(truth), paper_model(BenchKind::shpb, true));
+    EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"amplitude-dependence"}) << seed;
+  }
+}
+
 /// Bars whose temperature is off by 0.3 K from shot to shot, and a bench that says by how much it
 /// may be.
 std::vector<Shot> shots_of_unsteady_bar(std::uint64_t seed, double filed_sd_K) {
