@@ -68,17 +68,34 @@ std::size_t longest_travel(const Shot& shot, const ShpbBar& input, const ShpbBar
   return static_cast<std::size_t>(std::ceil(travel_s * shot.rate.Hz()));
 }
 
+/// That damp waves within a radius by no more than half of what exact waves may be.
+std::size_t least_for_exact_waves(const Shot& shot, const ShpbBar& input, const ShpbBar& output) {
+  constexpr double kDamped = 18.42;  // - ln of what a transform leaves at its end
+  constexpr double kRatios = 0.5;    // of Poisson's ratio
+  constexpr double kLeast = 0.08;
+  const auto least_s = [&](const Bar& bar, const ShpbBar& waves) {
+    return kDamped * waves.front_time_s(bar.dispersion_radius_m()) /
+           std::max(kRatios * bar.poisson_ratio, kLeast);
+  };
+  const double longest_s =
+      std::max(least_s(shot.bench.input, input), least_s(*shot.bench.output, output));
+  return static_cast<std::size_t>(std::ceil(longest_s * shot.rate.Hz()));
+}
+
 ShpbPlanKey ShpbPlanKey::of(const Shot& shot, const ShpbBar& input, const ShpbBar& output,
                             WaveTheory theory) {
   const double slowest =
       slowest_over_front(theory) * static_cast<double>(longest_travel(shot, input, output));
-  return {shot.samples(), shot.rate, rounded_up(static_cast<std::size_t>(slowest)),
-          rounded_up(pulse_room(shot, input))};
+  const std::size_t delay = rounded_up(static_cast<std::size_t>(slowest));
+  const std::size_t least =
+      theory == WaveTheory::exact ? rounded_up(least_for_exact_waves(shot, input, output)) : 0;
+  return {shot.samples(), shot.rate, delay, rounded_up(pulse_room(shot, input)),
+          std::max(shot.samples() + delay, least)};
 }
 
 ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
     : key(k),
-      transform(quick_transform_length(k.samples + k.delay), k.rate.period_s()),
+      transform(quick_transform_length(k.transformed), k.rate.period_s()),
       band(transform, k.longest_pulse),
       path(transform.bins()),
       input_strain(k.samples),

@@ -40,6 +40,9 @@ struct ShpbPlanKey {
   /// end, where the transform's damping makes it larger than everything else.
   std::size_t delay;
   std::size_t longest_pulse;
+  /// Of the transform: the records' own, or more where exact waves of thick bars would be damped
+  /// too much within so short a time (see PochhammerChree).
+  std::size_t transformed;
   bool operator==(const ShpbPlanKey&) const = default;
 
   /// Of a shot on these bars; rounded up, so that benches that differ a little share their plans.

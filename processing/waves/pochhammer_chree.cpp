@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/base/error.hpp"
+#include "processing/base/range.hpp"
 #include "processing/waves/frequency_equation.hpp"
 
 namespace kolsky {
 
 namespace {
 
-constexpr double kThin = 0.5;  ///< |gamma0 a|, up to which the root is foretold from nothing
-constexpr double kStep = 0.05;
+/// Of the real part of gamma0 a, in Poisson's ratios: where the first mode is itself.
+constexpr double kMostDamped = 0.9;
+/// Below which hardly any ratio moves a wave.
+constexpr double kLeastLimit = 0.15;
 constexpr double kFarthest = 12.0;
 
 /// Follows the root along a path of z, by a parabola through what is known of it.
@@ -28,14 +32,6 @@ class RootFollower {
     mean_ = equation_.mean_over_surface(z, root_.ratio);
     slope_ = 0.5 * (1.0 + z * root_.slope / root_.ratio);
     return kept(elementary);
-  }
-
-  /// Goes to where a path begins, straight from where the bar is thin.
-  void lead_to(Complex elementary, double radius_m) {
-    const double reach = std::abs(elementary) * radius_m;
-    for (double on_way = kThin; on_way < std::min(reach, kFarthest); on_way += kStep) {
-      mode_at(elementary * (on_way / reach), radius_m);
-    }
   }
 
   /// The last ratio, further out.
@@ -80,12 +76,22 @@ std::vector<BarMode> PochhammerChree::along(const std::vector<Complex>& path) co
     const Complex elementary = s * std::sqrt(density_kg_m3_ * compliance_->at(s));
     const double reach = std::abs(elementary) * radius_m_;
     if (modes.empty()) {
-      follower.lead_to(elementary, radius_m_);
+      require_little_damping(elementary.real() * radius_m_);
     }
     modes.push_back(reach <= kFarthest && s != 0.0 ? follower.mode_at(elementary, radius_m_)
                                                    : follower.kept(elementary));
   }
   return modes;
+}
+
+void PochhammerChree::require_little_damping(double through_radius) const {
+  const double limit = std::max(kMostDamped * poisson_ratio_, kLeastLimit);
+  if (through_radius > limit) {
+    throw InputError("record",
+                     "is too short for exact waves in a bar of " + in_words(2e3 * radius_m_, "mm"),
+                     "record " + in_words(through_radius / limit, "times") +
+                         " as long, or take elementary or Love's waves (--dispersion)");
+  }
 }
 
 }  // namespace kolsky

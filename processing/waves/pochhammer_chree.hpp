@@ -31,12 +31,18 @@ class PochhammerChree {
                   const Compliance& compliance);
 
   /// The mode along a path of s that moves in steps small enough that each root is near what the
-  /// ones before it foretell. It may start anywhere: the root is followed there from where the bar
-  /// is thin beside the wavelength. Beyond |gamma0 a| = 12, where surface waves have long taken
-  /// over, the last ratio to gamma0 is kept.
+  /// ones before it foretell. Beyond |gamma0 a| = 12, where surface waves have long taken over, the
+  /// last ratio to gamma0 is kept.
+  ///
+  /// The first mode meets another where the real part of gamma0 a is about Poisson's ratio (and the
+  /// imaginary part 1.8): to the right of that it is not the same mode any more, and sends waves
+  /// ahead of themselves. A path that starts there is of a record that is too short for its bar.
+  /// @throws InputError with how much longer a record has to be
   [[nodiscard]] std::vector<BarMode> along(const std::vector<Complex>& path) const;
 
  private:
+  void require_little_damping(double through_radius) const;
+
   double density_kg_m3_;
   double poisson_ratio_;
   double radius_m_;

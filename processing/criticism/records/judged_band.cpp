@@ -89,18 +89,34 @@ double limit_by_noise_Hz(const Campaign& campaign) {
   return *middle;
 }
 
+/// Of an elastic wave through one radius of the bench's thicker bar, or where no modulus is filed
+/// at this speed.
+double time_through_radius_s(const Bench& bench, double unknown_speed_m_per_s) {
+  const auto of_bar = [&](const Bar& bar) {
+    const double speed_m_per_s = bar.youngs_modulus_Pa
+                                     ? std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3)
+                                     : unknown_speed_m_per_s;
+    return bar.dispersion_radius_m() / speed_m_per_s;
+  };
+  const double input_s = of_bar(bench.input);
+  return bench.output ? std::max(input_s, of_bar(*bench.output)) : input_s;
+}
+
 /// Surface gauges see little of waves as short as the bar is thick.
 double limit_by_bars_Hz(const Bench& bench) {
   constexpr double kBlind = 0.25;
-  constexpr double kSlow_m_per_s = 2200.0;  // PMMA, where no modulus is filed
-  const auto limit_Hz = [&](const Bar& bar) {
-    const double speed = bar.youngs_modulus_Pa
-                             ? std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3)
-                             : kSlow_m_per_s;
-    return kBlind * speed / bar.dispersion_radius_m();
-  };
-  const double input_Hz = limit_Hz(bench.input);
-  return bench.output ? std::min(input_Hz, limit_Hz(*bench.output)) : input_Hz;
+  constexpr double kPmma_m_per_s = 2200.0;
+  return kBlind / time_through_radius_s(bench, kPmma_m_per_s);
+}
+
+/// Exact waves are known where they are damped little on their way through a radius (see
+/// PochhammerChree): what is shorter is transformed as if it were so long.
+std::size_t least_samples(const Campaign& campaign) {
+  constexpr double kMostDamped = 0.08;
+  constexpr double kSlow_m_per_s = 1500.0;
+  const double least_s =
+      -std::log(kWrapDamping) * time_through_radius_s(campaign.bench, kSlow_m_per_s) / kMostDamped;
+  return static_cast<std::size_t>(std::ceil(least_s / campaign.period_s));
 }
 
 /// Even, of factors for which transforms have kernels of their own: 994 samples take six times as
@@ -171,7 +187,8 @@ JudgedBand judged_band(const Campaign& campaign, double asked_Hz) {
     throw InputError("band limit", "leaves no frequency to judge",
                      "give a wider band or a longer record");
   }
-  band.transformed = transform_length(longest(campaign) + 2 * band.lead);
+  band.transformed =
+      transform_length(std::max(longest(campaign) + 2 * band.lead, least_samples(campaign)));
   const double carried_Hz = rate_Hz / static_cast<double>(band.transformed);
   band.bins_carried =
       std::min(band.transformed / d / 2 + 1,

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "processing/base/error.hpp"
 #include "tests/generators/campaign.hpp"
 
@@ -48,6 +50,23 @@ std::size_t end_of(const JudgedBand& band) {
 TEST(JudgedBand, GoesNoFurtherThanTheRecords) {
   const Campaign campaign = two_shots();
   EXPECT_THROW((void)judged_band(campaign, 0.6 / campaign.period_s), InputError);
+}
+
+// Of 1 ms in a bar of 40 mm exact waves foretold three times the pulse: a transform as short as the
+// record damps them by a seventh within a radius, where the first mode is hardly itself any more.
+TEST(JudgedBand, IsTransformedForLongEnoughThatExactWavesOfThickBarsAreDampedLittle) {
+  Campaign campaign = two_shots();
+  cut_off(campaign, campaign.shots.front().strain.front().size() - 1000);
+  const auto damped_within_radius = [&](double diameter_m) {
+    campaign.bench.input.diameter_m.value = diameter_m;
+    const JudgedBand band = judged_band(campaign, kBand_Hz);
+    const double transformed_s = static_cast<double>(band.transformed) * campaign.period_s;
+    constexpr double kPmma_m_per_s = 2200.0;
+    return -std::log(kWrapDamping) / transformed_s * diameter_m / 2.0 / kPmma_m_per_s;
+  };
+  for (const double diameter_m : {0.01, 0.02, 0.04, 0.1}) {
+    EXPECT_LT(damped_within_radius(diameter_m), 0.1) << diameter_m;
+  }
 }
 
 // A transform of a length with a large prime factor takes six times as long.
