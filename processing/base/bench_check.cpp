@@ -197,7 +197,7 @@ void check_gauge_name(const std::string& place, const std::string& name) {
   }
 }
 
-void check_position(const std::string& place, const Gauge& gauge, const Bar& bar) {
+void check_position(const std::string& place, const Gauge& gauge, const Bar& bar, bool split) {
   const std::string where = gauge.bar == "output" ? "the specimen's end" : "the impacted end";
   const Range on_the_bar{0.0, bar.length_m, "m", "give metres from the end of the bar"};
   if (!(gauge.position_m >= on_the_bar.least && gauge.position_m <= on_the_bar.most)) {
@@ -207,6 +207,12 @@ void check_position(const std::string& place, const Gauge& gauge, const Bar& bar
         "give metres from " + where + ": 300 mm is 0.3");
   }
   require_in_range(place + ".position_m", gauge.position_m, on_the_bar);
+  const double face_m = gauge.bar == "output" ? 0.0 : bar.length_m.value;
+  if (split && gauge.position_m == face_m) {
+    throw InputError(place + ".position_m",
+                     "is at the specimen's face, where waves to and fro are one",
+                     "give metres from " + where + ": 300 mm is 0.3");
+  }
   require_tolerance(place + ".position_m", gauge.position_m, 0.1 * bar.length_m);
 }
 
@@ -219,7 +225,7 @@ void check_gauge(const std::string& place, const Gauge& gauge, const Bench& benc
     throw InputError(place + ".bar", "is \"output\", and this bench has no output bar",
                      "give \"input\"");
   }
-  check_position(place, gauge, bench.bar_of(gauge));
+  check_position(place, gauge, bench.bar_of(gauge), bench.output.has_value());
   check_number(place + ".length_m", gauge.length_m, kGaugeLength);
   require_in_range(place + ".delay_s", gauge.delay_s, kDelay);
   require_tolerance(place + ".delay_s", gauge.delay_s, kMostDelaySd_s);

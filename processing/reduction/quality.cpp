@@ -15,6 +15,7 @@ namespace kolsky {
 namespace {
 
 constexpr double kEnergyLimit = 0.05;
+constexpr double kLateralLimit = 0.05;
 constexpr double kBandLossLimit = 0.02;
 constexpr double kSignalToNoiseLimit_dB = 30.0;
 constexpr double kSignalToNoiseFloor_dB = 15.0;
@@ -366,6 +367,22 @@ Check band(const QualityInputs& in, const Reduction& r) {
   return check;
 }
 
+/// What elementary waves leave out. The exact ones take as long to reduce by.
+Check wave_theory(const QualityInputs& in) {
+  Check check{.name = "wave_theory",
+              .value = in.moved_by_lateral_inertia,
+              .limit = kLateralLimit,
+              .unit = "1",
+              .verdict = Verdict::warn,
+              .text = {}};
+  check.text = formatted(
+      "elementary waves leave out the bars' lateral inertia, which moves %.1f %% of this pulse on "
+      "its way from the gauge to the specimen (limit %.0f %%): fronts ring, and peaks are too "
+      "high; reduce with --dispersion exact",
+      100 * check.value, 100 * kLateralLimit);
+  return check;
+}
+
 /// An arrival that was given against what the record shows.
 Check arrival(double late_s, double way_s) {
   Check check{
@@ -506,6 +523,9 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
                               assumed ? untested(energy, Verdict::pass) : energy,
                               band(inputs, reduction),
                               quiet_start(reduction)};
+  if (inputs.moved_by_lateral_inertia > kLateralLimit) {
+    reduction.quality.checks.push_back(wave_theory(inputs));
+  }
   if (inputs.arrival_late_s) {
     reduction.quality.checks.push_back(arrival(*inputs.arrival_late_s, inputs.way_to_specimen_s));
   }

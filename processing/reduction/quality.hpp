@@ -83,6 +83,9 @@ struct QualityInputs {
   std::optional<double> arrival_late_s{};
   double way_to_specimen_s = 0.0;  ///< of a front, from the gauge that sees the push
   double band_loss = 0.0;  ///< share of the incident pulse's energy that the band limit took
+  /// Of elementary waves: how much of the incident pulse (rms over rms) lateral inertia would have
+  /// moved on its way to the specimen.
+  double moved_by_lateral_inertia = 0.0;
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the

@@ -254,6 +254,9 @@ class Pass {
     const std::span<Complex> incident = in_band(t_.incident);
     t_.transform.forward(incident_strain(), incident);
     t_.band.apply_half(reduction_.band_limit_Hz, incident);
+    if (options_.theory == WaveTheory::elementary) {
+      moved_by_lateral_inertia_ = moved_by_lateral_inertia(incident);
+    }
     bars_.kernels.push_from_incident(incident);
     const double known =
         static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
@@ -263,6 +266,24 @@ class Pass {
     judge_push(push.first(push_end_));
     let_push_go_on(push, options_.push_goes_on * push_left_Pa_);
     incident_from_push(push, incident);
+  }
+
+  /// Share of a pulse, rms over rms, that lateral inertia moves on its way to the specimen: by the
+  /// phase that Love's bar adds, k = (w/c) sqrt(1 + (nu a w/c)^2 / 2).
+  [[nodiscard]] double moved_by_lateral_inertia(std::span<const Complex> pulse) const {
+    const Bar& bar = shot_.bench.input;
+    const double nu_a_m = bar.poisson_ratio.value * bar.diameter_m.value / 2.0;
+    double moved = 0.0;
+    double all = 0.0;
+    for (std::size_t k = 0; k < pulse.size(); ++k) {
+      const double wavenumber_per_m = t_.transform.s(k).imag() / wave_speed_m_per_s();
+      const double love = std::sqrt(1.0 + std::pow(nu_a_m * wavenumber_per_m, 2) / 2.0);
+      const double turn = wavenumber_per_m * (love - 1.0) * in_.gauge_to_specimen_m;
+      const double power = std::norm(pulse[k]);
+      moved += power * std::norm(std::polar(1.0, turn) - 1.0);
+      all += power;
+    }
+    return all > 0.0 ? std::sqrt(moved / all) : 0.0;
   }
 
   /// Behind what is known of it: for as long again as it is known, which is beyond the loading.
@@ -591,6 +612,7 @@ class Pass {
       q.specimen_mass_kg = *specimen.density_kg_m3 * specimen.area_m2() * specimen.length_m;
     }
     q.band_loss = band_loss_;
+    q.moved_by_lateral_inertia = moved_by_lateral_inertia_;
     q.arrival_late_s = arrival_late_s_;
     q.way_to_specimen_s = bars_.input.front_time_s(in_.gauge_to_specimen_m);
     if (faces_) {
@@ -655,6 +677,7 @@ class Pass {
   std::optional<double> strain_per_push_;
   bool strain_rate_known_ = false;
   double band_loss_ = 0.0;
+  double moved_by_lateral_inertia_ = 0.0;
   double strain_before_ = 0.0;
   double missing_s_ = 0.0;
   std::vector<double> front_rate_per_s_;

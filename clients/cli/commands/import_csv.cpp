@@ -37,6 +37,11 @@ std::map<std::string, std::string> meta_of(const std::vector<std::string>& pairs
   return meta;
 }
 
+std::string meta_or_empty(const Shot& shot, const char* key) {
+  const auto found = shot.meta.find(key);
+  return found != shot.meta.end() ? found->second : std::string();
+}
+
 std::vector<std::string> channel_names(const Shot& shot) {
   std::vector<std::string> names;
   for (const ChannelRecord& channel : shot.channels) {
@@ -60,13 +65,22 @@ int run(const Settings& settings, Context& context) {
                                       {"samples", static_cast<std::uint64_t>(shot.samples())},
                                       {"channels", channels},
                                       {"sampling_frequency_Hz", shot.rate.Hz()},
-                                      {"duration_s", length_s}})
+                                      {"duration_s", length_s},
+                                      {kColumnsInOrder, meta_or_empty(shot, kColumnsInOrder)},
+                                      {kIgnoredColumns, meta_or_empty(shot, kIgnoredColumns)}})
                 << "\n";
     return kDone;
   }
   context.out << fmt::format("{}: {} samples of {} at {}, {}\n", settings.output, shot.samples(),
                              joined(channels), with_unit(shot.rate.Hz(), "Hz"),
                              with_unit(length_s, "s"));
+  if (const std::string columns = meta_or_empty(shot, kColumnsInOrder); !columns.empty()) {
+    context.out << fmt::format("no column is called like a gauge: {} are taken for {}, in order\n",
+                               columns, joined(channels));
+  }
+  if (const std::string columns = meta_or_empty(shot, kIgnoredColumns); !columns.empty()) {
+    context.out << fmt::format("left out, for no gauge is called so: {}\n", columns);
+  }
   if (const auto off = shot.meta.find(kInterpolatedFrom); off != shot.meta.end()) {
     context.out << fmt::format(
         "the table's times are up to {:.2g} of a sample off even ones: values are interpolated\n",

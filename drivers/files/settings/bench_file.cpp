@@ -126,12 +126,15 @@ void refuse_bridge_keys_alone(const TomlTable& table, bool strain) {
   if (strain) {
     return;
   }
-  for (const char* const key : {"gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
+  for (const std::string key : {"gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
                                 "gauge_resistance_ohm", "lead_resistance_ohm", "lead_wires",
                                 "gauges_in_series", "shunt_resistance_ohm", "shunt_reading_V"}) {
-    if (table.has(key)) {
-      throw table.error(key, "is given, and no bridge",
-                        "add bridge = \"quarter\", \"half\", \"half-poisson\" or \"full-poisson\"");
+    for (const std::string& own : {key, key + "_sd"}) {
+      if (table.has(own)) {
+        throw table.error(
+            own, "is given, and no bridge",
+            "add bridge = \"quarter\", \"half\", \"half-poisson\" or \"full-poisson\"");
+      }
     }
   }
 }
@@ -161,6 +164,10 @@ Gauge read_gauge(const TomlTable& table) {
   gauge.bar = table.text("bar");
   gauge.position_m = table.measured("position_m");
   gauge.unit = table.text("unit");
+  if (gauge.unit != "strain" && gauge.unit != "V") {
+    // Before the keys beside it, which go by the unit.
+    throw table.error("unit", "is \"" + gauge.unit + "\"", "give \"strain\" or \"V\"");
+  }
   gauge.length_m = table.optional_measured("length_m");
   gauge.delay_s = read_delay(table);
   gauge.strain_per_V = table.optional_measured("strain_per_V");

@@ -253,8 +253,23 @@ void file_ignored(const std::vector<Channel>& channels, const std::vector<Channe
     }
   }
   if (!ignored.empty()) {
-    shot.meta["ignored_columns"] = listed(ignored);
+    shot.meta[kIgnoredColumns] = listed(ignored);
   }
+}
+
+void file_columns_in_order(const std::vector<Channel>& chosen,
+                           const std::vector<BenchChannel>& gauges, Shot& shot) {
+  const bool named = std::ranges::any_of(gauges, [&](const BenchChannel& gauge) {
+    return !channels_called(chosen, gauge.name).empty();
+  });
+  if (named) {
+    return;
+  }
+  std::vector<std::string> headers;
+  for (const Channel& channel : chosen) {
+    headers.push_back(channel.column->header);
+  }
+  shot.meta[kColumnsInOrder] = listed(headers);
 }
 
 // Ids name files, so they keep to what every file system takes.
@@ -299,6 +314,7 @@ Shot import_tables(const TableImport& request) {
   const EvenTimes even = even_times(tables.front(), bench.bench.sampling_frequency_Hz);
   file_interpolated(tables, even, shot);
   file_ignored(channels, chosen, shot);
+  file_columns_in_order(chosen, wanted, shot);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const double full_scale = i < bench.bench.gauges.size()
                                   ? full_scale_of(bench.bench.gauges[i], bench.bench)

@@ -11,6 +11,11 @@
 
 namespace kolsky {
 
+/// Meta of a record whose table has more columns than the bench gauges: which were left out.
+inline constexpr const char* kIgnoredColumns = "ignored_columns";
+/// Meta of a record no column of which is called like a gauge: those that were taken in the order
+/// in which they come.
+inline constexpr const char* kColumnsInOrder = "columns_in_order";
 /// Meta of a record whose table was not even in time: how far, in samples.
 inline constexpr const char* kInterpolatedFrom = "interpolated_from_samples_off";
 
@@ -35,9 +40,10 @@ struct TableImport {
 /// come to lie more than 5 % of a step off the bench's, values are interpolated to even times and
 /// meta gains `interpolated_from_samples_off` (the farthest). Meta gains `measured_rate_Hz`,
 /// `first_sample_s` (time of sample 0), `source_file`, `source_sha256` (per file, in order) and, if
-/// any, `ignored_columns`. Values are kept as 32-bit codes with a power of two as scale, so that
-/// rounding stays below 5e-10 of the full scale; where the column is in other units (mV,
-/// microstrain) its header says so and it is converted.
+/// any, `ignored_columns`, and `columns_in_order` where no name tells which is which. Values are
+/// kept as 32-bit codes with a power of two as scale, so that rounding stays below 5e-10 of the
+/// full scale; where the column is in other units (mV, microstrain) its header says so and it is
+/// converted.
 /// @throws InputError: file, line and column, mend. The rate 1 % off the bench's and a step 5 % off
 /// are
 ///   refused.

@@ -113,7 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"nothing", [](Bench& b) { b.input.density_kg_m3.value = 25.0; }},
         Change{"bars.input.density_kg_m3", [](Bench& b) { b.input.density_kg_m3.value = 19.3; }},
         Change{"nothing", [](Bench& b) { b.gauges[0].position_m.value = 0.0; }},
-        Change{"nothing", [](Bench& b) { b.gauges[0].position_m.value = 0.7; }},
+        Change{"nothing",
+               [](Bench& b) { b.gauges[0].position_m.value = std::nextafter(0.7, 0.0); }},
         Change{"gauges[0].position_m",
                [](Bench& b) { b.gauges[0].position_m.value = std::nextafter(0.7, 1.0); }},
         Change{"nothing",
@@ -132,16 +133,19 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Parts, BenchRefusals,
-    ::testing::Values(Change{"specimen", [](Bench& b) { b.specimen.reset(); }},
-                      Change{"bars.output", [](Bench& b) { b.output.reset(); }},
-                      Change{"ball", [](Bench& b) { b.ball = Ball{}; }},
-                      Change{"gauges", [](Bench& b) { b.gauges.clear(); }},
-                      Change{"gauges", [](Bench& b) { b.gauges.pop_back(); }},
-                      Change{"gauges[1].name", [](Bench& b) { b.gauges[1].name = "g1"; }},
-                      Change{"gauges[1].bar", [](Bench& b) { b.gauges[1].bar = "middle"; }},
-                      Change{"gauges[1].unit", [](Bench& b) { b.gauges[1].unit = "V"; }},
-                      Change{"bars.input.side_m",
-                             [](Bench& b) { b.input.section = Section::square; }}));
+    ::testing::Values(
+        Change{"specimen", [](Bench& b) { b.specimen.reset(); }},
+        Change{"bars.output", [](Bench& b) { b.output.reset(); }},
+        Change{"ball", [](Bench& b) { b.ball = Ball{}; }},
+        Change{"gauges", [](Bench& b) { b.gauges.clear(); }},
+        Change{"gauges", [](Bench& b) { b.gauges.pop_back(); }},
+        Change{"gauges[1].name", [](Bench& b) { b.gauges[1].name = "g1"; }},
+        Change{"gauges[1].bar", [](Bench& b) { b.gauges[1].bar = "middle"; }},
+        Change{"gauges[1].unit", [](Bench& b) { b.gauges[1].unit = "V"; }},
+        Change{"gauges[0].position_m",
+               [](Bench& b) { b.gauges[0].position_m.value = b.input.length_m; }},
+        Change{"gauges[1].position_m", [](Bench& b) { b.gauges[1].position_m.value = 0.0; }},
+        Change{"bars.input.side_m", [](Bench& b) { b.input.section = Section::square; }}));
 
 }  // namespace
 }  // namespace kolsky

@@ -220,6 +220,13 @@ TEST(TableForms, ColumnsLeftOutAreNamed) {
   const Shot shot =
       TableBench(1).import({{"a.csv", "time_s,force,g1,end (V)\n0,7,1e-3,1\n1e-6,8,2e-3,1\n"}});
   EXPECT_EQ(shot.meta.at("ignored_columns"), "force, end (V)");
+  EXPECT_FALSE(shot.meta.contains("columns_in_order"));
+}
+
+TEST(TableForms, ColumnsThatAreTakenInTheirOrderAreNamed) {
+  const Shot shot = TableBench(2).import({{"a.csv", "time_s,left,right\n0,1e-3,0\n1e-6,2e-3,0\n"}});
+  EXPECT_EQ(shot.meta.at("columns_in_order"), "left, right");
+  EXPECT_FALSE(shot.meta.contains("ignored_columns"));
 }
 
 // A gauge's own name wins over a unit that could be read out of it.
