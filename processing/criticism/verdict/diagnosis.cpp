@@ -1,5 +1,7 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -117,6 +119,7 @@ class Diagnostician {
       current = study_.refit(first);
     }
     set_dwarfed_aside(current);
+    set_what_a_law_leaves_aside(first, current);
     make_alike(current);
     tie_with_drifts(study_, current, diagnosis_);
     tie_with_hum(study_, current, diagnosis_);
@@ -317,6 +320,29 @@ class Diagnostician {
       const auto at = std::ranges::find(diagnosis_.effects, *id);
       drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), "rejected",
            without(study_, current, *id), current);
+    }
+  }
+
+  /// What a specimen departs from a claimed law by, and is next to nothing of what that explains,
+  /// is what the law's formula leaves: no second claim, and nothing against the first.
+  void set_what_a_law_leaves_aside(const Studied& first, Studied& current) {
+    if (!options_.safeguards.unknown || diagnosis_.effects.size() != 2) {
+      return;
+    }
+    auto other = other_law_in_place_of(study_, current, diagnosis_.effects);
+    if (!other) {
+      return;
+    }
+    const double explained = first.fit.objective() - current.fit.objective();
+    const double by_claim = other->without.fit.objective() - current.fit.objective();
+    if (by_claim < kAllowedRest * explained) {
+      diagnosis_.notes.push_back(
+          fmt::format("{} would explain {:.1g} % of what {} does: by so much a specimen may depart "
+                      "from that law",
+                      other->claim, 100.0 * by_claim / explained, other->law));
+      const auto at = std::ranges::find(diagnosis_.effects, other->claim);
+      drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), "rejected",
+           std::move(other->without), current);
     }
   }
 
@@ -537,8 +563,8 @@ class Diagnostician {
       judge_temperature(current, noise, reasons);
     }
     if (reasons.empty()) {
-      if (auto law = other_law_in_place_of(study_, current, diagnosis_.effects)) {
-        reasons.push_back(*std::move(law));
+      if (const auto law = other_law_in_place_of(study_, current, diagnosis_.effects)) {
+        reasons.push_back(other_law_text(*law));
       }
     }
     if (const auto unlisted = unlisted_in_place_of(

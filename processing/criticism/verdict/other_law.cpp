@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
@@ -37,8 +38,8 @@ double best_departure(Study& study, const Studied& studied, double noise) {
 
 }  // namespace
 
-std::optional<std::string> other_law_in_place_of(Study& study, const Studied& current,
-                                                 const std::vector<std::string>& effects) {
+std::optional<OtherLaw> other_law_in_place_of(Study& study, const Studied& current,
+                                              const std::vector<std::string>& effects) {
   const auto use_of = [&](const std::string& id) -> const EffectUse& {
     return *current.model.find(id);
   };
@@ -54,15 +55,19 @@ std::optional<std::string> other_law_in_place_of(Study& study, const Studied& cu
     if (is_of_law(use_of(id)) || may_be_its_formula(use_of(id))) {
       continue;
     }
-    const Studied left = without(study, here, id);
+    Studied left = without(study, here, id);
     if (evidence(left, here, noise) - best_departure(study, left, noise) < kTie) {
-      return fmt::format(
-          "beside {} a specimen that departs from its law does as well as {}, and no effect of the "
-          "library is that: it may soften as it warms, level off, or not come back",
-          *law, id);
+      return OtherLaw{*law, id, std::move(left)};
     }
   }
   return std::nullopt;
+}
+
+std::string other_law_text(const OtherLaw& other) {
+  return fmt::format(
+      "beside {} a specimen that departs from its law does as well as {}, and no effect of the "
+      "library is that: it may soften as it warms, level off, or not come back",
+      other.law, other.claim);
 }
 
 }  // namespace kolsky
