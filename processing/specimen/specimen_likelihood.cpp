@@ -10,6 +10,7 @@
 #include "processing/identification/noise_spectrum.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/requested.hpp"
+#include "processing/specimen/slow_noise_factor.hpp"
 #include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
@@ -222,8 +223,13 @@ void SpecimenLikelihood::prepare_noise() {
     }
     const NoiseSpectrum noise(quiet);
     std::vector<double> power(bins_);
+    std::vector<double> steady(bins_);
     for (std::size_t k = 0; k < bins_; ++k) {
-      power[k] = noise.power(static_cast<double>(k + 1) / static_cast<double>(plain_->length()));
+      const double cycles = static_cast<double>(k + 1) / static_cast<double>(plain_->length());
+      power[k] = steady[k] = noise.power(cycles);
+      for (const NoiseSpectrum::SlowPart& part : noise.slow_parts()) {
+        steady[k] = std::max(0.0, steady[k] - part.power(cycles));
+      }
     }
     if (power.front() <= 0.0) {
       throw InputError("gauge " + bench_.gauges[stations_[j].channels.front()].name,
@@ -231,7 +237,46 @@ void SpecimenLikelihood::prepare_noise() {
                        "give the records as they were digitised");
     }
     noise_.push_back(std::move(power));
+    steady_.push_back(std::move(steady));
+    slow_.push_back(noise.slow_parts());
   }
+  for (std::size_t j = 1; j < stations_.size(); ++j) {
+    own_noise_.push_back(of_own_noise(j));
+  }
+}
+
+/// Samples of noise that are taken together: nothing within the band changes over them.
+std::size_t SpecimenLikelihood::noise_group() const {
+  return std::max<std::size_t>(
+      1, static_cast<std::size_t>(0.5 / (kFilteredFrom * filter_limit_Hz_ * period_s_)));
+}
+
+/// Of a station's residuals, by its own noise within the judged window.
+Eigen::MatrixXd SpecimenLikelihood::of_own_noise(std::size_t station) const {
+  const auto size = static_cast<Eigen::Index>(2 * bins_);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  if (!slow_[station].empty()) {
+    const std::size_t group = noise_group();
+    Eigen::MatrixXd response(size, static_cast<Eigen::Index>(judged_ / group));
+    for (Eigen::Index k = 0; k < size / 2; ++k) {
+      const double angle = -2.0 * std::numbers::pi * static_cast<double>((k + 1) * group) /
+                           static_cast<double>(plain_->length());
+      for (Eigen::Index i = 0; i < response.cols(); ++i) {
+        const Complex seen = std::polar(static_cast<double>(group), angle * static_cast<double>(i));
+        response(2 * k, i) = seen.real();
+        response(2 * k + 1, i) = seen.imag();
+      }
+    }
+    for (const NoiseSpectrum::SlowPart& part : slow_[station]) {
+      covariance.selfadjointView<Eigen::Lower>().rankUpdate(
+          by_slow_noise(response, part, static_cast<double>(group)));
+    }
+  }
+  for (Eigen::Index k = 0; k < size; ++k) {
+    covariance(k, k) +=
+        steady_[station][static_cast<std::size_t>(k / 2)] * static_cast<double>(judged_) / 2.0;
+  }
+  return covariance;
 }
 
 void SpecimenLikelihood::judged_part(const Spectrum& of_first, const Spectrum* own,
@@ -268,9 +313,8 @@ void SpecimenLikelihood::residuals(const ShpbTheory& theory, const Compliance& s
   }
 }
 
-/// What unit white noise of the first station, baseline taken off, does to the residuals of
-/// another: residuals of that station x noise samples, the noise in groups of so many samples that
-/// nothing within the band changes over one.
+/// What a unit of the first station's noise, baseline taken off, does to the residuals of another:
+/// residuals of that station x groups of noise samples, of one sample of a group.
 Eigen::MatrixXd SpecimenLikelihood::noise_response(const Spectrum& transfer) {
   std::fill(work_spectrum_.begin(), work_spectrum_.end(), 0.0);
   const double lead_s = static_cast<double>(lead_) * period_s_;
@@ -279,8 +323,7 @@ Eigen::MatrixXd SpecimenLikelihood::noise_response(const Spectrum& transfer) {
   }
   transform_->inverse(work_spectrum_, work_);  // the kernel; time zero at `lead_`
   const std::size_t samples = std::min(shortest(records_), begin_ + judged_ + lead_);
-  const std::size_t group = std::max<std::size_t>(
-      1, static_cast<std::size_t>(0.5 / (kFilteredFrom * filter_limit_Hz_ * period_s_)));
+  const std::size_t group = noise_group();
   const std::size_t groups = (samples + group - 1) / group;
   Eigen::MatrixXd response(static_cast<Eigen::Index>(2 * bins_), static_cast<Eigen::Index>(groups));
   // Noise sample n reaches judged samples m in [begin, begin + judged) through kernel[m - n].
@@ -320,11 +363,23 @@ Eigen::MatrixXd SpecimenLikelihood::noise_response(const Spectrum& transfer) {
       response(row, static_cast<Eigen::Index>(i)) -= of_quiet_mean.real();
       response(row + 1, static_cast<Eigen::Index>(i)) -= of_quiet_mean.imag();
     }
-    const double scale = std::sqrt(noise_[0][k] * static_cast<double>(group));
-    response.row(row) *= scale;
-    response.row(row + 1) *= scale;
   }
   return response;
+}
+
+void SpecimenLikelihood::add_first_stations_noise(const Eigen::MatrixXd& response,
+                                                  Eigen::MatrixXd& covariance) const {
+  const auto group = static_cast<double>(noise_group());
+  for (const NoiseSpectrum::SlowPart& part : slow_[0]) {
+    covariance.selfadjointView<Eigen::Lower>().rankUpdate(
+        by_slow_noise(response * group, part, group));
+  }
+  Eigen::VectorXd scale(response.rows());
+  for (Eigen::Index row = 0; row < response.rows(); ++row) {
+    const auto bin = static_cast<std::size_t>(row % static_cast<Eigen::Index>(2 * bins_)) / 2;
+    scale[row] = std::sqrt(steady_[0][bin] * group);
+  }
+  covariance.selfadjointView<Eigen::Lower>().rankUpdate(scale.asDiagonal() * response);
 }
 
 Eigen::MatrixXd SpecimenLikelihood::covariance_root(const ShpbTheory& theory,
@@ -343,15 +398,10 @@ Eigen::MatrixXd SpecimenLikelihood::covariance_root(const ShpbTheory& theory,
     response.middleRows(j * per_station, per_station) = of_station;
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(response.rows(), response.rows());
-  covariance.selfadjointView<Eigen::Lower>().rankUpdate(response);
+  add_first_stations_noise(response, covariance);
   for (Eigen::Index j = 0; j < others; ++j) {
-    for (std::size_t k = 0; k < bins_; ++k) {
-      const double own =
-          noise_[static_cast<std::size_t>(j + 1)][k] * static_cast<double>(judged_) / 2.0;
-      const auto at = j * per_station + static_cast<Eigen::Index>(2 * k);
-      covariance(at, at) += own;
-      covariance(at + 1, at + 1) += own;
-    }
+    covariance.block(j * per_station, j * per_station, per_station, per_station) +=
+        own_noise_[static_cast<std::size_t>(j)];
   }
   return covariance.selfadjointView<Eigen::Lower>().llt().matrixL();
 }

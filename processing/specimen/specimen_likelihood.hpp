@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "processing/identification/noise_spectrum.hpp"
 #include "processing/specimen/shpb_model.hpp"
 #include "processing/waves/transform.hpp"
 
@@ -26,7 +27,9 @@ struct SpecimenWindow {
 /// causal, computed on a damped line, so that a window that ends while waves ring costs nothing;
 /// under the model r is noise alone. It is judged at the plain Fourier frequencies of the window.
 /// Its covariance there is that of noise through exactly this operation: H_j / H_0 rings for a
-/// soft specimen and elastic bars, and the noise of the quiet samples is in the baseline.
+/// soft specimen and elastic bars, and the noise of the quiet samples is in the baseline. Slow
+/// noise hangs together over the record: its parts go through the operation as they are, what is
+/// left of each frequency's power as if it were white.
 ///
 /// Holds work space: one thread at a time.
 class SpecimenLikelihood {
@@ -93,6 +96,9 @@ class SpecimenLikelihood {
   void prepare_spectra();
   void prepare_noise();
   [[nodiscard]] Eigen::MatrixXd noise_response(const Spectrum& transfer);
+  [[nodiscard]] std::size_t noise_group() const;
+  [[nodiscard]] Eigen::MatrixXd of_own_noise(std::size_t station) const;
+  void add_first_stations_noise(const Eigen::MatrixXd& response, Eigen::MatrixXd& covariance) const;
 
   Bench bench_;
   BarPrior bars_;
@@ -109,11 +115,14 @@ class SpecimenLikelihood {
   std::size_t judged_ = 0;  ///< samples
   std::size_t bins_ = 0;    ///< judged frequencies, from the first above zero
   std::optional<DampedTransform> transform_;
-  std::optional<DampedTransform> plain_;  ///< of what is judged, on the imaginary axis
-  std::vector<Complex> path_;             ///< damped, as far as the filter leaves anything
-  std::vector<Complex> filter_damped_;    ///< on `path_`
-  std::vector<double> filter_;            ///< at the judged frequencies
-  std::vector<std::vector<double>> noise_;
+  std::optional<DampedTransform> plain_;     ///< of what is judged, on the imaginary axis
+  std::vector<Complex> path_;                ///< damped, as far as the filter leaves anything
+  std::vector<Complex> filter_damped_;       ///< on `path_`
+  std::vector<double> filter_;               ///< at the judged frequencies
+  std::vector<std::vector<double>> noise_;   ///< by station and judged frequency, per sample
+  std::vector<std::vector<double>> steady_;  ///< what of it is not in the slow parts
+  std::vector<std::vector<NoiseSpectrum::SlowPart>> slow_;  ///< by station
+  std::vector<Eigen::MatrixXd> own_noise_;      ///< by other station: covariance of its residuals
   std::vector<std::vector<Spectrum>> spectra_;  ///< filtered, by shot and station
   ShpbModel model_;
   std::vector<Spectrum> transfers_;

@@ -1,5 +1,7 @@
 #include "tests/generators/specimen_repeats.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <random>
 
 #include "tests/generators/elastic_shpb.hpp"
@@ -14,8 +16,27 @@ constexpr double kRange = 0.005;
 }  // namespace
 
 SpecimenRepeats::SpecimenRepeats(const LinearShpb& model, const Filed& filed, std::size_t shots,
-                                 double noise_rms)
-    : model_(model), filed_(filed), shots_(shots), noise_rms_(noise_rms), records_(model.solve()) {}
+                                 double noise_rms, NoiseColour colour)
+    : model_(model),
+      filed_(filed),
+      shots_(shots),
+      noise_rms_(noise_rms),
+      colour_(colour),
+      records_(model.solve()) {}
+
+Shot SpecimenRepeats::shot_of(const Bench& bench, unsigned seed) const {
+  if (colour_ == NoiseColour::white) {
+    return digitise(bench, records_, noise_rms_, kBits, kRange, seed);
+  }
+  std::mt19937_64 random(seed);
+  std::vector<std::vector<double>> records = records_;
+  for (std::vector<double>& record : records) {
+    const std::vector<double> drawn =
+        noise(colour_, noise_rms_, 1.0 / bench.sampling_frequency_Hz, record.size(), random);
+    std::ranges::transform(record, drawn, record.begin(), std::plus{});
+  }
+  return digitise(bench, records, 0.0, kBits, kRange, seed);
+}
 
 SpecimenFit SpecimenRepeats::fit(unsigned repeat, const SpecimenFitOptions& options) const {
   std::mt19937 random(repeat * 7919U + 1U);
@@ -40,7 +61,7 @@ SpecimenFit SpecimenRepeats::fit(unsigned repeat, const SpecimenFitOptions& opti
   std::vector<Shot> shots;
   for (unsigned i = 0; i < shots_; ++i) {
     const auto seed = static_cast<unsigned>(random());
-    shots.push_back(digitise(bench, records_, noise_rms_, kBits, kRange, seed));
+    shots.push_back(shot_of(bench, seed));
   }
   return fit_specimen(shots, BarPrior(bars), options);
 }

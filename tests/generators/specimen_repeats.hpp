@@ -4,6 +4,7 @@
 
 #include "processing/specimen/specimen_fit.hpp"
 #include "tests/generators/linear_shpb.hpp"
+#include "tests/generators/noise.hpp"
 
 namespace kolsky::testing {
 
@@ -18,7 +19,8 @@ class SpecimenRepeats {
     std::array<double, 3> bars_sd = {5e-5, 1e-3, 1e-3};  ///< E1, E2, eta2, relative
   };
 
-  SpecimenRepeats(const LinearShpb& model, const Filed& filed, std::size_t shots, double noise_rms);
+  SpecimenRepeats(const LinearShpb& model, const Filed& filed, std::size_t shots, double noise_rms,
+                  NoiseColour colour = NoiseColour::white);
 
   /// Fits the repeat of this number.
   [[nodiscard]] SpecimenFit fit(unsigned repeat, const SpecimenFitOptions& options) const;
@@ -27,10 +29,13 @@ class SpecimenRepeats {
   [[nodiscard]] std::array<double, 3> deviations(const SpecimenFit& fit) const;
 
  private:
+  [[nodiscard]] Shot shot_of(const Bench& bench, unsigned seed) const;
+
   LinearShpb model_;
   Filed filed_;
   std::size_t shots_;
   double noise_rms_;
+  NoiseColour colour_;
   std::vector<std::vector<double>> records_;
 };
 
