@@ -107,8 +107,6 @@ void SampleRing::claim(Tick end) noexcept {
 
 void SampleRing::publish(Tick end) noexcept {
   published_.store(end, std::memory_order_release);
-  writes_.fetch_add(1, std::memory_order_release);
-  writes_.notify_all();
 }
 
 void SampleRing::write(const Block& block, std::span<RunStatistics> statistics) noexcept {
@@ -190,20 +188,6 @@ void SampleRing::copy_out(std::size_t channel, Tick first,
 
 Tick SampleRing::end_tick() const noexcept {
   return published_.load(std::memory_order_acquire);
-}
-
-void SampleRing::wait_past(Tick tick) const noexcept {
-  while (true) {
-    const std::uint32_t seen = writes_.load(std::memory_order_acquire);
-    if (end_tick() > tick || stopped_.load(std::memory_order_acquire)) return;
-    writes_.wait(seen, std::memory_order_acquire);
-  }
-}
-
-void SampleRing::stop_waiting() noexcept {
-  stopped_.store(true, std::memory_order_release);
-  writes_.fetch_add(1, std::memory_order_release);
-  writes_.notify_all();
 }
 
 }  // namespace kolsky

@@ -40,10 +40,6 @@ class SampleRing {
 
   /// Tick after the newest sample.
   [[nodiscard]] Tick end_tick() const noexcept;
-  /// Waits until end_tick() > tick or `stop_waiting` is called.
-  void wait_past(Tick tick) const noexcept;
-  /// For good: nobody waits any more.
-  void stop_waiting() noexcept;
 
   [[nodiscard]] std::size_t capacity_samples() const noexcept { return capacity_; }
   [[nodiscard]] std::size_t channels() const noexcept { return channels_; }
@@ -75,10 +71,8 @@ class SampleRing {
   static constexpr std::size_t kCacheLine = 64;
   alignas(kCacheLine) std::atomic<Tick> claimed_{0};
   alignas(kCacheLine) std::atomic<Tick> published_{0};
-  std::atomic<Tick> begin_{0};            ///< the first tick ever written
-  std::atomic<std::uint32_t> writes_{0};  ///< what waiting readers sleep on
-  std::atomic<bool> stopped_{false};
-  bool empty_ = true;  ///< writer only
+  std::atomic<Tick> begin_{0};  ///< the first tick ever written
+  bool empty_ = true;           ///< writer only
 };
 
 }  // namespace kolsky

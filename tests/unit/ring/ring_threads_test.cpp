@@ -104,42 +104,5 @@ TEST(SampleRingThreads, NoTornWindowPassesForAGoodOne) {
   lap_readers<std::int32_t>(SampleFormat::int32);
 }
 
-void write_one_block(SampleRing& ring, Tick first) {
-  const std::vector<std::int16_t> codes(kBlock, 1);
-  std::vector<RunStatistics> statistics(1);
-  Block block;
-  block.first_tick = first;
-  block.samples = kBlock;
-  block.channels.push_back(std::as_bytes(std::span(codes)));
-  ring.write(block, statistics);
-}
-
-TEST(SampleRingThreads, AWaitingReaderWakesWhenItsTickIsThere) {
-  SampleRing ring(SampleFormat::int16, 1, kCapacity);
-  std::atomic<Tick> seen{-1};
-  std::thread reader([&] {
-    ring.wait_past(150);
-    seen.store(ring.end_tick());
-  });
-  write_one_block(ring, 0);
-  std::this_thread::sleep_for(milliseconds(50));
-  EXPECT_EQ(seen.load(), -1) << "100 samples are not past tick 150";
-  write_one_block(ring, 100);
-  reader.join();
-  EXPECT_EQ(seen.load(), 200);
-  ring.wait_past(199);  // there already
-}
-
-TEST(SampleRingThreads, StopWakesAllAndForGood) {
-  SampleRing ring(SampleFormat::int16, 1, kCapacity);
-  std::vector<std::thread> readers;
-  readers.reserve(3);
-  for (int i = 0; i < 3; ++i) readers.emplace_back([&] { ring.wait_past(1'000'000); });
-  std::this_thread::sleep_for(milliseconds(20));
-  ring.stop_waiting();
-  for (std::thread& reader : readers) reader.join();
-  ring.wait_past(1'000'000);
-}
-
 }  // namespace
 }  // namespace kolsky
