@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <random>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
@@ -68,6 +70,72 @@ double rough_speed_m_per_s(const BarRecords& records) {
   const double time_s = records.rise_s.back() - records.rise_s.front();
   return time_s > 0.0 ? span_m / time_s : 0.0;
 }
+
+/// Spectra of records, low-passed.
+class LowPassed {
+ public:
+  /// @param transform  outlives this
+  LowPassed(DampedTransform& transform, double limit_Hz, std::size_t lead, std::size_t bins)
+      : transform_(transform),
+        lead_(static_cast<std::ptrdiff_t>(lead)),
+        bins_(bins),
+        filter_(transform.bins(), 1.0),
+        padded_(transform.length()) {
+    BandLimit(transform, 16).apply(limit_Hz, filter_);
+  }
+
+  [[nodiscard]] BarData::Spectrum spectrum_of(std::span<const double> record) {
+    std::fill(padded_.begin(), padded_.end(), 0.0);
+    std::copy(record.begin(), record.end(), padded_.begin() + lead_);
+    BarData::Spectrum spectrum(bins_);
+    transform_.forward(padded_, spectrum);
+    for (std::size_t k = 0; k < bins_; ++k) {
+      spectrum[k] *= filter_[k];
+    }
+    return spectrum;
+  }
+
+ private:
+  DampedTransform& transform_;
+  std::ptrdiff_t lead_;
+  std::size_t bins_;
+  BarData::Spectrum filter_;
+  std::vector<double> padded_;
+};
+
+/// Records of noise, cut from others twice as long.
+class DrawnNoise {
+ public:
+  explicit DrawnNoise(std::size_t samples)
+      : samples_(samples), transform_(2 * samples, 1.0, 1.0), spectrum_(transform_.bins()) {}
+
+  /// @param least  power that it has at least
+  [[nodiscard]] std::vector<double> record(const NoiseSpectrum& noise, double least,
+                                           std::size_t quiet) {
+    const auto length = static_cast<double>(transform_.length());
+    for (std::size_t k = 0; k < spectrum_.size(); ++k) {
+      const double power = std::max(noise.power(static_cast<double>(k) / length), least);
+      const double sd = std::sqrt(0.5 * power * length);
+      spectrum_[k] = {sd * normal_(random_), sd * normal_(random_)};
+    }
+    std::vector<double> record(samples_);
+    transform_.inverse(spectrum_, record);
+    const double baseline =
+        std::accumulate(record.begin(), record.begin() + static_cast<std::ptrdiff_t>(quiet), 0.0) /
+        static_cast<double>(quiet);
+    for (double& value : record) {
+      value -= baseline;
+    }
+    return record;
+  }
+
+ private:
+  std::size_t samples_;
+  DampedTransform transform_;
+  BarData::Spectrum spectrum_;
+  std::mt19937_64 random_{1};
+  std::normal_distribution<double> normal_;
+};
 
 }  // namespace
 
@@ -225,32 +293,38 @@ void BarData::weigh(BarNoise& noise) const {
 }
 
 void BarData::prepare_spectra() {
-  BandLimit band(transform_, 16);
-  Spectrum filter(transform_.bins(), 1.0);
-  band.apply(filter_limit_Hz_, filter);
-  std::vector<double> padded(transform_.length());
-  const auto filtered = [&](std::span<const double> record) {
-    std::fill(padded.begin(), padded.end(), 0.0);
-    std::copy(record.begin(), record.end(), padded.begin() + static_cast<std::ptrdiff_t>(lead_));
-    Spectrum spectrum(path_.size());
-    transform_.forward(padded, spectrum);
-    for (std::size_t k = 0; k < spectrum.size(); ++k) {
-      spectrum[k] *= filter[k];
-    }
-    return spectrum;
-  };
+  LowPassed filtered(transform_, filter_limit_Hz_, lead_, path_.size());
   BarJudge judge(*this);
   for (const BarRecords& records : records_) {
     auto& of_shot = spectra_.emplace_back();
     auto& judged_of_shot = judged_.emplace_back();
     for (const auto& strain : records.strain) {
-      of_shot.push_back(filtered(strain));
+      of_shot.push_back(filtered.spectrum_of(strain));
       judge.judge(of_shot.back(), judged_of_shot.emplace_back(judged_path_.size()));
     }
   }
   combine_shots();
-  unit_offset_ = filtered(std::vector<double>(records_.front().strain.front().size(), 1.0));
-  unit_impulse_ = filtered(std::vector<double>{1.0});
+  unit_offset_ =
+      filtered.spectrum_of(std::vector<double>(records_.front().strain.front().size(), 1.0));
+  unit_impulse_ = filtered.spectrum_of(std::vector<double>{1.0});
+}
+
+std::vector<BarData::Spectra> BarData::noise_alone(const BarNoise& noise, std::size_t count) const {
+  DampedTransform transform(transform_.length(), records_.front().period_s);
+  LowPassed filtered(transform, filter_limit_Hz_, lead_, path_.size());
+  BarJudge judge(*this);
+  const BarRecords& like = records_.front();
+  DrawnNoise drawn(like.strain.front().size());
+  std::vector<Spectra> list(count);
+  for (Spectra& shot : list) {
+    for (std::size_t j = 0; j < gauges(); ++j) {
+      const std::vector<double> record =
+          drawn.record(noise.spectra[j], least_noise(j), like.quiet_samples);
+      shot.damped.push_back(filtered.spectrum_of(record));
+      judge.judge(shot.damped.back(), shot.judged.emplace_back(judged_path_.size()));
+    }
+  }
+  return list;
 }
 
 /// Weights are the shots' shares in what gauge 0's records have in common, strongest first: by

@@ -94,6 +94,14 @@ class BarData {
   [[nodiscard]] const Spectrum& judged(std::size_t shot, std::size_t gauge) const {
     return judged_[shot][gauge];
   }
+  /// A shot's spectra by gauge, the damped ones and those that are judged.
+  struct Spectra {
+    std::vector<Spectrum> damped;
+    std::vector<Spectrum> judged;
+  };
+  /// Of records that hold noise alone, their baselines taken off as a shot's are. The same at every
+  /// call.
+  [[nodiscard]] std::vector<Spectra> noise_alone(const BarNoise& noise, std::size_t count) const;
   /// What judging multiplies a bin of the transform by.
   [[nodiscard]] double undo_filter(std::size_t bin) const { return undo_filter_[bin]; }
   /// Each gauge's noise by the quiet part of all shots together; never less than that of its codes.

@@ -130,10 +130,50 @@ std::size_t BarLikelihood::count_of(Shots which) const {
       return data_.shots();
     case Shots::telling:
       return data_.telling();
+    case Shots::noise_alone:
+      return noise_alone_.size();
     case Shots::as_one:
       break;
   }
   return 1;
+}
+
+std::size_t BarLikelihood::first_of(Shots which) const {
+  switch (which) {
+    case Shots::each:
+      return 0;
+    case Shots::noise_alone:
+      return data_.shots() + data_.telling();
+    default:
+      return data_.all_as_one();
+  }
+}
+
+const BarLikelihood::Spectrum& BarLikelihood::damped_of_first(std::size_t shot) const {
+  const std::size_t drawn = first_of(Shots::noise_alone);
+  return shot < drawn ? data_.spectrum(shot, 0) : noise_alone_[shot - drawn].damped[0];
+}
+
+const BarLikelihood::Spectrum& BarLikelihood::judged_of(std::size_t shot, std::size_t gauge) const {
+  const std::size_t drawn = first_of(Shots::noise_alone);
+  return shot < drawn ? data_.judged(shot, gauge) : noise_alone_[shot - drawn].judged[gauge];
+}
+
+Eigen::VectorXd BarLikelihood::gradient_of_noise_alone(std::span<const double> at) {
+  constexpr std::size_t kDraws = 16;
+  noise_alone_ = data_.noise_alone(weights_->noise, kDraws);
+  (void)chi2_at(at, Shots::noise_alone);
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_.parameters()));
+  for (const ShotTerms& shot : terms()) {
+    mean += shot.gradient / static_cast<double>(kDraws);
+  }
+  return mean;
+}
+
+double BarLikelihood::left_of_a_return(std::span<const double> at) {
+  const double R = model_.reflection(at);
+  const std::vector<Complex> middle{data_.judged_path()[data_.judged_path().size() / 2]};
+  return R != 0.0 ? std::abs(R * model_.returns(at, middle)[0][0]) : 0.0;
 }
 
 /// g is its first passage times (1 + R q_j) times the sum of (-R q_0)^i.
@@ -368,8 +408,8 @@ void BarLikelihood::look_at_residuals() {
     for (Eigen::Index j = 0; j < others(); ++j) {
       const auto i = static_cast<std::size_t>(j);
       Spectrum r(data_.judged_path().size());
-      judge_.judge_product(place_.transfers->g[i], data_.spectrum(place_.shots[index], 0), r);
-      const Spectrum& own = data_.judged(place_.shots[index], i + 1);
+      judge_.judge_product(place_.transfers->g[i], damped_of_first(place_.shots[index]), r);
+      const Spectrum& own = judged_of(place_.shots[index], i + 1);
       for (std::size_t k = 0; k < r.size(); ++k) {
         r[k] = own[k] - r[k];
       }
@@ -385,8 +425,7 @@ double BarLikelihood::chi2_at(std::span<const double> at, Shots which) {
   place_.transfers = model_.transfers(at, data_.path(), true);
   place_.passages = model_.first_passages(at, data_.judged_path(), true);
   place_.shots.resize(count_of(which));
-  std::iota(place_.shots.begin(), place_.shots.end(),
-            which == Shots::each ? std::size_t{0} : data_.all_as_one());
+  std::iota(place_.shots.begin(), place_.shots.end(), first_of(which));
   look_at_nuisances();
   look_at_residuals();
   const Eigen::Index nuisances = 1 + others();
@@ -432,10 +471,10 @@ void BarLikelihood::put_slopes(std::size_t index, const Slopes& slopes, EightCol
       const BarModel::Derivative& passage = slopes.passages[i][d];
       if (derivative.proportion) {
         for (std::size_t k = 0; k < bins; ++k) {
-          moved[k] = *derivative.proportion * (data_.judged(shot, i + 1)[k] - residual[i][k]);
+          moved[k] = *derivative.proportion * (judged_of(shot, i + 1)[k] - residual[i][k]);
         }
       } else {
-        judge_.judge_product(derivative.of_g, data_.spectrum(shot, 0), moved);
+        judge_.judge_product(derivative.of_g, damped_of_first(shot), moved);
       }
       for (std::size_t k = 0; k < bins; ++k) {
         const Complex slope =

@@ -64,12 +64,19 @@ class BarLikelihood {
   [[nodiscard]] const Weights& weights() const { return weights_; }
 
   /// Which shots are looked at: all of them, those of their combinations that hold more than noise,
-  /// or what they have in common as one (see BarData).
-  enum class Shots { each, telling, as_one };
+  /// or what they have in common as one (see BarData), or records of noise alone that were drawn.
+  enum class Shots { each, telling, as_one, noise_alone };
   [[nodiscard]] std::size_t count_of(Shots which) const;
 
   /// What the shots' chi2 add up to at a place in the parameters.
   [[nodiscard]] double chi2_at(std::span<const double> at, Shots which);
+  /// What noise adds to the gradient of one shot by itself, on average over records of noise alone:
+  /// its square, which does not vanish where the weights leave out how the far end ties the bins.
+  /// Changes the place looked at last.
+  [[nodiscard]] Eigen::VectorXd gradient_of_noise_alone(std::span<const double> at);
+  /// What is left of a wave that has come back once, half way up the band.
+  [[nodiscard]] double left_of_a_return(std::span<const double> at);
+
   /// One per shot, at the place looked at last: near it, half of chi2 moves by
   /// gradient . step + step . information . step / 2.
   [[nodiscard]] std::vector<ShotTerms> terms();
@@ -112,6 +119,10 @@ class BarLikelihood {
     EightColumns nuisances{0, 0};                  ///< white
   };
 
+  /// Of a shot, a combination of them or, after those, of noise alone.
+  [[nodiscard]] const Spectrum& damped_of_first(std::size_t shot) const;
+  [[nodiscard]] const Spectrum& judged_of(std::size_t shot, std::size_t gauge) const;
+  [[nodiscard]] std::size_t first_of(Shots which) const;
   [[nodiscard]] Eigen::Index others() const {
     return static_cast<Eigen::Index>(data_.gauges()) - 1;
   }
@@ -156,6 +167,7 @@ class BarLikelihood {
   BarJudge judge_;
   BarModel model_;
   Weights weights_;
+  std::vector<BarData::Spectra> noise_alone_;
   Place place_;
 };
 

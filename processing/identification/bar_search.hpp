@@ -69,6 +69,8 @@ class BarSearch {
   /// @return whether it came to an end below `hopeless`
   bool minimise(BarLikelihood::Shots shots, double negligible_gain, double hopeless = HUGE_VAL);
   void to_the_end();
+  [[nodiscard]] bool rings_with_a_loss_that_shows();
+  void take_off_what_noise_adds();
   [[nodiscard]] BarFit describe(double objective) const;
   [[nodiscard]] BarFit describe(double objective, const Eigen::MatrixXd& posterior) const;
   [[nodiscard]] double chi2_reduced(double objective) const;
