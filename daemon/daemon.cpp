@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <optional>
-#include <thread>
 
 #include "daemon/controller.hpp"
 #include "daemon/live/monitor.hpp"

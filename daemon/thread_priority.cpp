@@ -1,6 +1,5 @@
 #include "daemon/thread_priority.hpp"
 
-#include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -10,10 +9,6 @@
 #include "daemon/clock.hpp"
 
 namespace kolsky {
-
-void name_thread(const char* name) noexcept {
-  pthread_setname_np(pthread_self(), name);
-}
 
 bool run_in_real_time(RealTime priority) noexcept {
   sched_param parameters{};

@@ -8,8 +8,6 @@ namespace kolsky {
 /// programs do. Reading goes before recording.
 enum class RealTime : int { recording = 10, reading = 20 };
 
-void name_thread(const char* name) noexcept;
-
 /// Asks for real-time scheduling of the calling thread; threads that it makes run as usual.
 /// @return whether it was permitted
 bool run_in_real_time(RealTime priority) noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "daemon/thread_priority.hpp"
 
@@ -43,12 +44,12 @@ Acquirer::~Acquirer() {
 }
 
 void Acquirer::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = Thread("kolsky-acquire", [this] { run(); });
 }
 
 void Acquirer::stop() {
   stop_.store(true);
-  if (thread_.joinable()) {
+  if (thread_.begun()) {
     digitiser_.cancel();
     thread_.join();
   }
@@ -118,7 +119,6 @@ void Acquirer::run() {
 }
 
 void Acquirer::go_real_time() {
-  name_thread("kolsky-acquire");
   if (!stream_.ends) {  // a replay ahead of its own consumers would only wait for them
     real_time_.store(run_in_real_time(RealTime::reading));
   }

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "daemon/acquisition/acquisition_event.hpp"
 #include "daemon/acquisition/sample_ring.hpp"
+#include "daemon/thread.hpp"
 #include "daemon/thread_priority.hpp"
 #include "drivers/digitiser/digitiser.hpp"
 #include "processing/trigger/channel_level.hpp"
@@ -183,7 +183,7 @@ class Acquirer {
   std::atomic<std::uint64_t> triggers_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> progress_{0};
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

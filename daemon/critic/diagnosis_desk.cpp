@@ -10,7 +10,6 @@
 #include "daemon/critic/diagnosis_message.hpp"
 #include "daemon/log.hpp"
 #include "daemon/shots/shot_id.hpp"
-#include "daemon/thread_priority.hpp"
 #include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/models/diagnosis_step.hpp"
 #include "kolsky/v1/kolsky.pb.h"
@@ -89,9 +88,7 @@ void DiagnosisDesk::stop() {
     cancel_.store(true);
   }
   const std::lock_guard begins(begin_mutex_);
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
 }
 
 void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Diagnose& request,
@@ -112,9 +109,7 @@ void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Di
     }
   }
   const std::vector<std::string> ids = chosen(archivist_, request);
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
   {
     const std::lock_guard lock(mutex_);
     cancel_.store(stopped_);
@@ -129,7 +124,7 @@ void DiagnosisDesk::begin(std::shared_ptr<const ActiveModel> model, const v1::Di
     last_->set_model_sha256(model->sha256);
     begun = *last_;
   }
-  thread_ = std::thread([this, model = std::move(model), ids] { work(model, ids); });
+  thread_ = Thread("kolsky-diagnose", [this, model = std::move(model), ids] { work(model, ids); });
 }
 
 void DiagnosisDesk::cancel() {
@@ -177,7 +172,6 @@ void DiagnosisDesk::step(const std::string& what) {
 
 void DiagnosisDesk::work(const std::shared_ptr<const ActiveModel>& model,
                          const std::vector<std::string>& ids) {
-  name_thread("kolsky-diagnose");
   run_last();
   const auto end = [&](v1::DiagnosisSummary::State state, const std::string& step) {
     publish([&](v1::Diagnosis& message) {

@@ -6,12 +6,12 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "daemon/critic/active_model.hpp"
 #include "daemon/publish/publisher.hpp"
 #include "daemon/shots/archivist.hpp"
+#include "daemon/thread.hpp"
 #include "drivers/files/store/store.hpp"
 
 namespace kolsky {
@@ -65,7 +65,7 @@ class DiagnosisDesk {
   std::uint64_t count_ = 0;
   bool stopped_ = false;
   std::atomic<bool> cancel_{false};
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

@@ -5,7 +5,6 @@
 #include "daemon/clock.hpp"
 #include "daemon/critic/shot_comparison.hpp"
 #include "daemon/log.hpp"
-#include "daemon/thread_priority.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "proto/light.hpp"
 
@@ -18,7 +17,7 @@ ShotCritic::~ShotCritic() {
 }
 
 void ShotCritic::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = Thread("kolsky-compare", [this] { run(); });
 }
 
 void ShotCritic::stop() {
@@ -27,9 +26,7 @@ void ShotCritic::stop() {
     stop_ = true;
   }
   changed_.notify_all();
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
 }
 
 void ShotCritic::change(std::shared_ptr<const ActiveModel> model) {
@@ -82,7 +79,6 @@ bool ShotCritic::idle() const {
 }
 
 void ShotCritic::run() {
-  name_thread("kolsky-compare");
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return stop_ || !waiting_.empty(); });

@@ -4,10 +4,10 @@
 #include <deque>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "daemon/critic/active_model.hpp"
 #include "daemon/publish/publisher.hpp"
+#include "daemon/thread.hpp"
 #include "processing/base/shot.hpp"
 
 namespace kolsky {
@@ -53,7 +53,7 @@ class ShotCritic {
   std::unique_ptr<v1::Comparison> last_;
   bool busy_ = false;
   bool stop_ = false;
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

@@ -1,12 +1,12 @@
 #include "daemon/live/monitor.hpp"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 
 #include "daemon/live/previewer.hpp"
 #include "daemon/live/sd_notify.hpp"
 #include "daemon/log.hpp"
-#include "daemon/thread_priority.hpp"
 
 namespace kolsky {
 
@@ -43,18 +43,15 @@ Monitor::~Monitor() {
 }
 
 void Monitor::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = Thread("kolsky-monitor", [this] { run(); });
 }
 
 void Monitor::stop() {
   stop_.store(true);
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
 }
 
 void Monitor::run() {
-  name_thread("kolsky-monitor");
   auto next = std::chrono::steady_clock::now();
   while (!stop_.load()) {
     turn(next);

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "daemon/controller.hpp"
 #include "daemon/live/thread_watch.hpp"
 #include "daemon/station.hpp"
+#include "daemon/thread.hpp"
 
 namespace kolsky {
 
@@ -49,7 +49,7 @@ class Monitor {
   std::chrono::steady_clock::time_point next_watchdog_;
   std::chrono::microseconds watchdog_interval_{0};
   std::atomic<bool> stop_{false};
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <mutex>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 #include <zmq.hpp>
@@ -18,6 +17,7 @@
 #include "daemon/publish/reply_memory.hpp"
 #include "daemon/publish/request.hpp"
 #include "daemon/publish/worker.hpp"
+#include "daemon/thread.hpp"
 #include "kolsky/v1/kolsky.pb.h"
 #include "proto/codec.hpp"
 #include "proto/text.hpp"
@@ -92,13 +92,13 @@ struct ControlServer::State {
         lease(options.lease),
         commands(options.remembered_replies, options.remembered_bytes),
         questions(options.remembered_replies, options.remembered_bytes),
-        command_worker(options.most_waiting),
-        reading_worker(options.most_waiting) {
+        command_worker("kolsky-command", options.most_waiting),
+        reading_worker("kolsky-answer", options.most_waiting) {
     socket.set(zmq::sockopt::sndhwm, kPeerQueue);
     socket.set(zmq::sockopt::maxmsgsize, kMaxFrameBytes);
     socket.set(zmq::sockopt::linger, kLinger_ms);
     endpoint = bind_socket(socket, "endpoints.control", options.endpoint);
-    thread = std::thread([this] { serve(); });
+    thread = Thread("kolsky-control", [this] { serve(); });
   }
 
   ~State() {
@@ -149,7 +149,7 @@ struct ControlServer::State {
   std::atomic<bool> finished = false;  ///< and nothing will be handed back
   Worker command_worker;
   Worker reading_worker;
-  std::thread thread;
+  Thread thread;
 };
 
 void ControlServer::State::serve() {

@@ -4,8 +4,8 @@
 
 namespace kolsky {
 
-Worker::Worker(std::size_t most_waiting)
-    : most_waiting_(most_waiting), thread_([this] { run(); }) {}
+Worker::Worker(const char* name, std::size_t most_waiting)
+    : most_waiting_(most_waiting), thread_(name, [this] { run(); }) {}
 
 Worker::~Worker() {
   finish();
@@ -29,9 +29,7 @@ void Worker::finish() {
     finishing_ = true;
   }
   changed_.notify_one();
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
 }
 
 void Worker::run() {

@@ -5,7 +5,8 @@
 #include <deque>
 #include <functional>
 #include <mutex>
-#include <thread>
+
+#include "daemon/thread.hpp"
 
 namespace kolsky {
 
@@ -13,7 +14,8 @@ namespace kolsky {
 /// throw.
 class Worker {
  public:
-  explicit Worker(std::size_t most_waiting);
+  /// @param name  of its thread
+  Worker(const char* name, std::size_t most_waiting);
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -31,7 +33,7 @@ class Worker {
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;
   bool finishing_ = false;
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

@@ -9,7 +9,6 @@
 #include "daemon/log.hpp"
 #include "daemon/shots/shot_id.hpp"
 #include "daemon/shots/summary.hpp"
-#include "daemon/thread_priority.hpp"
 #include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 
@@ -38,7 +37,7 @@ Archivist::~Archivist() {
 void Archivist::start() {
   tried_ = std::chrono::steady_clock::now();
   submit([this] { complete_catalogue(); });
-  thread_ = std::thread([this] { run(); });
+  thread_ = Thread("kolsky-archive", [this] { run(); });
 }
 
 void Archivist::stop() {
@@ -47,9 +46,7 @@ void Archivist::stop() {
     stop_ = true;
   }
   changed_.notify_all();
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
 }
 
 void Archivist::store(std::shared_ptr<const Shot> shot, CatalogueEntry entry) {
@@ -72,7 +69,6 @@ void Archivist::submit(Job job) {
 }
 
 void Archivist::run() {
-  name_thread("kolsky-archive");
   std::unique_lock lock(mutex_);
   for (;;) {
     wait_for_job(lock);

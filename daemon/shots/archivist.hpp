@@ -10,10 +10,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "daemon/shots/shared_journal.hpp"
+#include "daemon/thread.hpp"
 #include "drivers/files/store/catalogue.hpp"
 #include "drivers/files/store/store.hpp"
 #include "processing/reduction/reducer.hpp"
@@ -137,7 +137,7 @@ class Archivist {
   std::atomic<std::uint64_t> stored_{0};
   std::atomic<std::uint64_t> failed_{0};
   std::atomic<std::uint64_t> progress_{0};
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

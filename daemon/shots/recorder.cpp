@@ -68,13 +68,11 @@ ShotRecorder::~ShotRecorder() {
 
 void ShotRecorder::start() {
   rehearse(*settings());
-  thread_ = std::thread([this] { run(); });
+  thread_ = Thread("kolsky-record", [this] { run(); });
 }
 
 void ShotRecorder::stop() {
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  thread_.join();
 }
 
 void ShotRecorder::change(std::shared_ptr<const ShotSettings> settings) {
@@ -117,7 +115,6 @@ std::shared_ptr<const ShotSettings> ShotRecorder::settings() const {
 }
 
 void ShotRecorder::run() {
-  name_thread("kolsky-record");
   bool real_time = parts_.real_time && run_in_real_time(RealTime::recording);
   IdleCheck idle_check;
   AcquisitionEvent event;

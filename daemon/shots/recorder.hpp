@@ -7,7 +7,6 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "daemon/acquisition/acquirer.hpp"
@@ -20,6 +19,7 @@
 #include "daemon/shots/reducing_thread.hpp"
 #include "daemon/shots/shared_journal.hpp"
 #include "daemon/shots/shot_id.hpp"
+#include "daemon/thread.hpp"
 
 namespace kolsky {
 
@@ -125,7 +125,7 @@ class ShotRecorder {
   std::atomic<std::uint64_t> progress_{0};
   std::atomic<bool> busy_{false};
   std::atomic<bool> seen_end_{false};
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky

@@ -7,7 +7,7 @@
 
 namespace kolsky {
 
-ReducingThread::ReducingThread() : thread_([this] { run(); }) {}
+ReducingThread::ReducingThread() : thread_("kolsky-reduce", [this] { run(); }) {}
 
 ReducingThread::~ReducingThread() {
   ends_.store(true);
@@ -44,7 +44,6 @@ bool ReducingThread::reduce_if_it_waits() {
 }
 
 void ReducingThread::run() {
-  name_thread("kolsky-reduce");
   run_ahead_of_usual();
   for (begun_.acquire(); !ends_.load(); begun_.acquire()) {
     if (reduce_if_it_waits()) {

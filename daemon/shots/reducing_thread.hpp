@@ -4,8 +4,8 @@
 #include <memory>
 #include <mutex>
 #include <semaphore>
-#include <thread>
 
+#include "daemon/thread.hpp"
 #include "processing/base/shot.hpp"
 #include "processing/reduction/reducer.hpp"
 
@@ -46,7 +46,7 @@ class ReducingThread {
   std::atomic<bool> ends_ = false;
   std::counting_semaphore<> begun_{0};  ///< the thread may come late and find nothing
   std::binary_semaphore finished_{0};
-  std::thread thread_;
+  Thread thread_;
 };
 
 }  // namespace kolsky
