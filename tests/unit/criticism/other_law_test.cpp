@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "processing/criticism/verdict/diagnosis.hpp"
 #include "processing/criticism/verdict/refits.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/unit/criticism/filed_bars.hpp"
@@ -53,6 +56,22 @@ TEST(OtherLaw, DoesNotStandForASensorThatIsAtFault) {
   const Asked asked = asked_of({"specimen-nonlinearity=1", "crosstalk:g1=0.01"});
   EXPECT_TRUE(asked.missed);
   EXPECT_EQ(asked.said, std::nullopt);
+}
+
+// A second claim would be of what the law's formula leaves, and cast doubt on the first.
+TEST(OtherLaw, ThatLeavesNextToNothingIsNoSecondClaim) {
+  testing::Campaign truth = testing::draw_campaign(
+      {.seed = 16, .shots = 4, .gauges = 3, .noise_strain = 3e-6, .split = true});
+  testing::hide(truth, testing::parse_effect(kLaw + "=1"));
+  testing::hide(truth, testing::parse_effect("x-softening=1.3e-8"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(study, filed_split_bar(truth), {});
+  EXPECT_EQ(diagnosis.effects, std::vector<std::string>{kLaw});
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::named);
+  EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [](const std::string& note) {
+    return note.find("may depart from that law") != std::string::npos;
+  }));
 }
 
 }  // namespace
