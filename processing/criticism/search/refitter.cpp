@@ -99,15 +99,15 @@ std::vector<double> Refitter::begin_near(const Candidate& candidate, const Direc
       strengths.push_back(i);
     }
   }
-  std::vector<double> best = carry(ground_.base.composition, ground_.base.fit.theta, composition);
+  const std::vector<double> null =
+      carry(ground_.base.composition, ground_.base.fit.theta, composition);
   if (candidate.frees_prior ||
       static_cast<Eigen::Index>(strengths.size()) != direction.step.size()) {
-    return best;
+    return null;
   }
-  const std::vector<double> null = best;
   const Eigen::VectorXd along =
       -ground_.base.fit.covariance * direction.model_share * direction.step;
-  double least = ground_.study.residuals().evaluate(composition, best, worker).squaredNorm();
+  std::vector<std::vector<double>> starts{null};
   for (const double share : {1.0, 0.3, 0.1}) {
     std::vector<double> moved = ground_.base.fit.theta;
     for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -120,14 +120,9 @@ std::vector<double> Refitter::begin_near(const Candidate& candidate, const Direc
       start[strengths[i]] =
           number.inside(null[strengths[i]] + share * direction.step[static_cast<Eigen::Index>(i)]);
     }
-    const double chi2 =
-        ground_.study.residuals().evaluate(composition, start, worker).squaredNorm();
-    if (chi2 < least) {
-      least = chi2;
-      best = std::move(start);
-    }
+    starts.push_back(std::move(start));
   }
-  return best;
+  return fits_best(std::move(starts), composition, worker);
 }
 
 /// Where fits of a large strength begin. @param from  what the model's other numbers begin with
@@ -152,14 +147,12 @@ std::vector<std::vector<double>> Refitter::large_sizes(const Candidate& candidat
   return starts;
 }
 
-/// The one of them that fits best as it is.
-std::vector<double> Refitter::begin_large(const Candidate& candidate,
-                                          const Composition& composition,
-                                          const std::vector<double>& from,
-                                          std::size_t worker) const {
-  std::vector<double> best;
+/// The one of them that fits best as it is, of those that do so equally the first.
+std::vector<double> Refitter::fits_best(std::vector<std::vector<double>> starts,
+                                        const Composition& composition, std::size_t worker) const {
+  std::vector<double> best = starts.front();
   double least = HUGE_VAL;
-  for (std::vector<double>& start : large_sizes(candidate, composition, from)) {
+  for (std::vector<double>& start : starts) {
     const double chi2 =
         ground_.study.residuals().evaluate(composition, start, worker).squaredNorm();
     if (chi2 < least) {
@@ -219,9 +212,9 @@ void Refitter::from_large_sizes(std::size_t index, const Composition& compositio
     better_of(fit, begun_from(composition, std::move(theta), nullptr, worker));
   };
   if (!ground_.far_off() || !is_sudden(candidate)) {
-    begin(begin_large(candidate, composition,
-                      carry(ground_.base.composition, ground_.base.fit.theta, composition),
-                      worker));
+    const std::vector<double> from =
+        carry(ground_.base.composition, ground_.base.fit.theta, composition);
+    begin(fits_best(large_sizes(candidate, composition, from), composition, worker));
     return;
   }
   // Until the model's other numbers are fitted, none of its sizes says which is the right one.

@@ -28,10 +28,9 @@ class Refitter {
                                                std::size_t worker) const;
   [[nodiscard]] static std::vector<std::vector<double>> large_sizes(
       const Candidate& candidate, const Composition& composition, const std::vector<double>& from);
-  [[nodiscard]] std::vector<double> begin_large(const Candidate& candidate,
-                                                const Composition& composition,
-                                                const std::vector<double>& from,
-                                                std::size_t worker) const;
+  [[nodiscard]] std::vector<double> fits_best(std::vector<std::vector<double>> starts,
+                                              const Composition& composition,
+                                              std::size_t worker) const;
   [[nodiscard]] std::optional<Eigen::MatrixXd> chord_of(const Candidate& candidate,
                                                         const Direction& direction,
                                                         const Composition& composition) const;
