@@ -26,13 +26,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+namespace {
+
+/// A word that stops short of a name counts as one edit, however much is left out.
+std::size_t distance_to(std::string_view word, const std::string& name) {
+  const std::size_t distance = edit_distance(word, name);
+  return name.starts_with(word) ? std::min<std::size_t>(distance, 1) : distance;
+}
+
+}  // namespace
+
 std::string nearest_name(std::string_view word, const std::vector<std::string>& names) {
   // A key is never this long; bounding it bounds the work that a hostile file can ask for.
   constexpr std::size_t kLongest = 256;
   std::string nearest;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const std::string& name : names) {
-    const std::size_t distance = edit_distance(word.substr(0, kLongest), name);
+    const std::size_t distance = distance_to(word.substr(0, kLongest), name);
     if (distance < least) {
       least = distance;
       nearest = name;

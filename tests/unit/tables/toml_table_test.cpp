@@ -343,6 +343,7 @@ TEST(NearestName, CountsEdits) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
   EXPECT_EQ(edit_distance("ca", "abc"), 3U);
   EXPECT_EQ(nearest_name("diametre_m", {"length_m", "diameter_m", "density_kg_m3"}), "diameter_m");
+  EXPECT_EQ(nearest_name("--band", {"--solid", "--band-limit"}), "--band-limit");
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
