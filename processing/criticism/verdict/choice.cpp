@@ -157,7 +157,8 @@ std::optional<double> Chooser::lead_over_next(const Found& found, std::size_t be
     const Refit& next = found.refits[i];
     if (id_of(found.search, next) != id_of(found.search, ahead) && !is_barred(found, i) &&
         claimable(found.search, next) && sound(found, i) && agreed(found, i)) {
-      return lead(ahead, next);
+      // In deviations alone a lead is never more than what is known of the noise allows.
+      return std::max(lead(ahead, next), ahead.over_noise - next.over_noise);
     }
   }
   return std::nullopt;

@@ -29,8 +29,8 @@ struct Choice {
   /// By how much its strength is another in a variant of it that fits as well: of a hum that is as
   /// well of 50 as of 60 Hz.
   double variants_differ = 0.0;
-  /// In squares of normal deviates, over the next that could be named in its place, be it in a tie
-  /// with it. Of a first choice only.
+  /// In squares of normal deviates, or of misfit over the noise if that is more, over the next that
+  /// could be named in its place, be it in a tie with it. Of a first choice only.
   std::optional<double> lead_over_next = std::nullopt;
 };
 
