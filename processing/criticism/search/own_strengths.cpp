@@ -1,11 +1,14 @@
 #include "processing/criticism/search/own_strengths.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/search/amplitude_over_shots.hpp"
+#include "processing/criticism/search/hum_slopes.hpp"
 #include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/search_trials.hpp"
 
@@ -180,14 +183,24 @@ bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim
 }
 
 /// Less the hum that was found in all of a record, what came before the pulse slopes no longer as
-/// gauges do together. What wanders turns otherwise there than a hum would. But of a hum in shares
-/// the source takes up whatever part all gauges have alike, and what is found of it may be far off:
-/// gauges that did not slope together before it was taken off do not wander.
-bool wanders_on(const Slopes& slopes, const Campaign& campaign, bool alike) {
+/// gauges do together. What wanders turns otherwise there than a hum would; and where gauges are
+/// seen to turn together there, what they slope by must be more than that does.
+bool wanders_on(const Studied& studied, const EffectUse& hum, const Campaign& campaign,
+                const Slopes& slopes, Claim claim) {
+  const double share = claim == Claim::standing ? 0.5 : 1.0;
   constexpr double kChance = -5.8;
-  constexpr double kOrdinary = -3.0;
-  return log_chance_of_common_slopes(campaign, slopes.of_all_additions) < kChance &&
-         (alike || log_chance_of_common_slopes(campaign, slopes.of_others) < kOrdinary);
+  if (wanders_in_common(campaign) &&
+      log_chance_of_common_slopes(campaign, slopes.of_others) > share * kChance) {
+    return true;
+  }
+  if (hum.alike) {
+    return log_chance_of_common_slopes(campaign, slopes.of_all_additions) < kChance;
+  }
+  SlopesByShot less = slopes_of_products(studied, hum.id(), campaign, slopes.of_others);
+  for (std::size_t n = 0; n < less.size(); ++n) {
+    std::ranges::transform(less[n], slopes.of_others[n], less[n].begin(), std::plus{});
+  }
+  return log_chance_of_common_slopes(campaign, less) < kChance;
 }
 
 }  // namespace
@@ -202,7 +215,7 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
     return false;
   }
   const Slopes slopes = slopes_of(studied, id, campaign);
-  if (use->effect->about().quadrature && wanders_on(slopes, campaign, use->alike)) {
+  if (use->effect->about().quadrature && wanders_on(studied, *use, campaign, slopes, claim)) {
     return false;
   }
   if (const auto test = product_test_of(studied, id, campaign)) {
@@ -223,25 +236,29 @@ bool slow_noise_excluded(double log_chance, Claim claim) {
   return log_chance < share * kChance;
 }
 
+OwnStrengths own_strengths_in(const Studied& studied, const std::string& id) {
+  OwnStrengths own;
+  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[i];
+    if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id) {
+      own.places.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> theta(studied.fit.theta.data(),
+                                                studied.fit.covariance.rows());
+  own.found = theta(own.places);
+  own.information = symmetric_inverse(studied.fit.covariance(own.places, own.places));
+  return own;
+}
+
 std::optional<ProductTest> product_test_of(const Studied& studied, const std::string& id,
                                            const Campaign& campaign) {
   const EffectUse* use = studied.model.find(id);
   if (use == nullptr || !use->per_shot || !use->effect->about().each_gauge || use->alike) {
     return std::nullopt;
   }
-  // In the order of the composition: by parameter, then shot, then gauge.
-  std::vector<Eigen::Index> own;
-  for (std::size_t i = 0; i < studied.fit.theta.size(); ++i) {
-    const FreeNumber& number = studied.composition.numbers()[i];
-    if (number.shot >= 0 && studied.composition.uses()[number.use].id() == id) {
-      own.push_back(static_cast<Eigen::Index>(i));
-    }
-  }
-  const Eigen::Map<const Eigen::VectorXd> theta(studied.fit.theta.data(),
-                                                studied.fit.covariance.rows());
-  const Eigen::MatrixXd covariance = studied.fit.covariance(own, own);
-  return test_products(theta(own), symmetric_inverse(covariance), campaign.shots.size(),
-                       campaign.gauges());
+  const OwnStrengths own = own_strengths_in(studied, id);
+  return test_products(own.found, own.information, campaign.shots.size(), campaign.gauges());
 }
 
 }  // namespace kolsky

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "processing/criticism/fitting/study.hpp"
 #include "processing/criticism/search/product_test.hpp"
@@ -27,6 +28,15 @@ enum class Claim { fresh, beyond_slow_noise, standing };
 /// Whether slow noise does so much so rarely that its chance confirms strengths of each shot's own
 /// instead (`SlowNoise`).
 [[nodiscard]] bool slow_noise_excluded(double log_chance, Claim claim);
+
+/// Strengths that every shot has of its own: by parameter, then shot, then gauge, as a composition
+/// has them.
+struct OwnStrengths {
+  std::vector<Eigen::Index> places;  ///< among a fit's numbers
+  Eigen::VectorXd found;             ///< in scales
+  Eigen::MatrixXd information;       ///< inverse of their covariance, priors included
+};
+[[nodiscard]] OwnStrengths own_strengths_in(const Studied& studied, const std::string& id);
 
 /// How near a hum's amplitudes by shot and gauge are to products. @return nothing for other effects
 [[nodiscard]] std::optional<ProductTest> product_test_of(const Studied& studied,

@@ -18,6 +18,23 @@ constexpr int kDraws = 100;
 constexpr int kSteps = 8;
 constexpr double kSeen = 1e-2;  ///< of the prior's information
 
+/// What the records say of strengths without the prior, in the directions in which they say
+/// anything, as measurements of unit noise.
+struct Seen {
+  Eigen::MatrixXd root;   ///< from strengths to measurements
+  Eigen::VectorXd white;  ///< the measurements
+
+  Seen(const Eigen::VectorXd& strengths, const Eigen::MatrixXd& information) {
+    const SymmetricEigen solver(information);
+    const Eigen::VectorXd lambda = solver.eigenvalues().array() - 1.0;
+    const Eigen::Index seen = (lambda.array() > kSeen).count();
+    const Eigen::MatrixXd directions = solver.eigenvectors().rightCols(seen).transpose();
+    const Eigen::VectorXd roots = lambda.tail(seen).cwiseSqrt();
+    root = roots.asDiagonal() * directions;
+    white = roots.cwiseInverse().asDiagonal() * (directions * (information * strengths));
+  }
+};
+
 /// Products sought by alternating least squares.
 class Products {
  public:
@@ -27,28 +44,42 @@ class Products {
         shots_(static_cast<Eigen::Index>(shots)),
         gauges_(static_cast<Eigen::Index>(gauges)) {}
 
-  /// The square of what the best products explain of measurements.
-  [[nodiscard]] double explained(const Eigen::VectorXd& z) const {
-    double best = 0.0;
+  /// Products of some shares, and the square of what they explain of measurements.
+  struct Found {
+    double explained = 0.0;
+    Eigen::VectorXd amplitudes;  ///< cosine parts, then sine parts, by shot
+    Eigen::VectorXd shares;
+
+    /// In the order of strengths.
+    [[nodiscard]] Eigen::VectorXd strengths() const {
+      const Eigen::MatrixXd by_gauge = shares * amplitudes.transpose();
+      return by_gauge.reshaped();
+    }
+  };
+
+  [[nodiscard]] Found best(const Eigen::VectorXd& z) const {
+    Found best;
     const Eigen::VectorXd strengths = root_.transpose() * z;
     const Eigen::Map<const Eigen::MatrixXd> by_gauge(strengths.data(), gauges_, 2 * shots_);
     const Eigen::MatrixXd left = singular_values(by_gauge).left;
     const Eigen::Index starts = std::min<Eigen::Index>(2, left.cols());
     for (Eigen::Index start = 0; start < starts; ++start) {
-      Eigen::VectorXd shares = left.col(start);
-      double found = 0.0;
+      Found own;
+      own.shares = left.col(start);
       for (int step = 0; step < kSteps; ++step) {
-        const Eigen::MatrixXd of_shots = by_shot(shares);
-        const Eigen::VectorXd amplitudes = least_squares(of_shots, z);
-        const Eigen::MatrixXd of_gauges = by_share(amplitudes);
-        shares = least_squares(of_gauges, z);
-        found = share_of(of_gauges, shares, z);
-        shares.normalize();
+        own.shares.normalize();
+        own.amplitudes = least_squares(by_shot(own.shares), z);
+        const Eigen::MatrixXd of_gauges = by_share(own.amplitudes);
+        own.shares = least_squares(of_gauges, z);
+        own.explained = share_of(of_gauges, own.shares, z);
       }
-      best = std::max(best, found);
+      best = own.explained > best.explained ? std::move(own) : best;
     }
     return best;
   }
+
+  /// The square of what the best products explain of measurements.
+  [[nodiscard]] double explained(const Eigen::VectorXd& z) const { return best(z).explained; }
 
   /// The same with equal shares.
   [[nodiscard]] double explained_alike(const Eigen::VectorXd& z) const {
@@ -155,7 +186,8 @@ ProductTest judged(double explained, double at_one_gauge, double all, double see
   }
   const double freedom = seen * (1.0 - noise.mean());
   const double rest = std::max(all - explained, 1e-12 * all) / freedom;
-  return {log_beta_tail(share, noise), (explained - at_one_gauge) / rest};
+  return {.log_p = log_beta_tail(share, noise),
+          .beyond_one_gauge = (explained - at_one_gauge) / rest};
 }
 
 }  // namespace
@@ -165,26 +197,28 @@ ProductTest test_products(const Eigen::VectorXd& strengths, const Eigen::MatrixX
   if (shots < 2 || gauges < 3) {
     return {};
   }
-  // What the records say without the prior, in the directions in which they say anything.
-  const SymmetricEigen solver(information);
-  const Eigen::VectorXd lambda = solver.eigenvalues().array() - 1.0;
-  const Eigen::Index seen = (lambda.array() > kSeen).count();
-  const Eigen::MatrixXd root = lambda.tail(seen).cwiseSqrt().asDiagonal() *
-                               solver.eigenvectors().rightCols(seen).transpose();
-  const Eigen::VectorXd white =
-      lambda.tail(seen).cwiseSqrt().cwiseInverse().asDiagonal() *
-      (solver.eigenvectors().rightCols(seen).transpose() * (information * strengths));
-  const Products products(root, shots, gauges);
-  const NoiseShares noise = shares_of_noise(products, root, white, shots * gauges);
+  const Seen seen(strengths, information);
+  const Eigen::VectorXd& white = seen.white;
+  const Products products(seen.root, shots, gauges);
+  const NoiseShares noise = shares_of_noise(products, seen.root, white, shots * gauges);
   const double all = white.squaredNorm();
   const double at_one_gauge = products.at_one_gauge(white);
-  const auto count = static_cast<double>(seen);
+  const auto count = static_cast<double>(white.size());
   const ProductTest any = judged(products.explained(white), at_one_gauge, all, count, noise.any);
   const ProductTest alike =
       judged(products.explained_alike(white), at_one_gauge, all, count, noise.alike);
   ProductTest better = alike.log_p < any.log_p ? alike : any;
   better.log_p = std::min(0.0, better.log_p + std::log(2.0));
   return better;
+}
+
+NearestProducts nearest_products(const Eigen::VectorXd& strengths,
+                                 const Eigen::MatrixXd& information, std::size_t shots,
+                                 std::size_t gauges) {
+  const Seen seen(strengths, information);
+  const Products::Found found = Products(seen.root, shots, gauges).best(seen.white);
+  return {found.explained > 0.0 ? found.strengths() : Eigen::VectorXd::Zero(strengths.size()),
+          seen.white.squaredNorm() - found.explained};
 }
 
 }  // namespace kolsky

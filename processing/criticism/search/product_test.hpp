@@ -26,4 +26,14 @@ struct ProductTest {
                                         const Eigen::MatrixXd& information, std::size_t shots,
                                         std::size_t gauges);
 
+/// Products of any shares.
+struct NearestProducts {
+  Eigen::VectorXd strengths;  ///< that they are
+  double left = 0.0;          ///< square of what is left of those found, over the records' noise
+};
+/// Those nearest to strengths, of two gauges and more. Arguments as above.
+[[nodiscard]] NearestProducts nearest_products(const Eigen::VectorXd& strengths,
+                                               const Eigen::MatrixXd& information,
+                                               std::size_t shots, std::size_t gauges);
+
 }  // namespace kolsky

@@ -112,6 +112,63 @@ double mean_correlation(const QuietParts& parts) {
   return std::max(0.0, sum / pairs);
 }
 
+/// What gauges share of noise that is slow beside the quiet parts: covariance of two gauges'
+/// samples about their slopes, so far apart that quicker noise has none, and its deviation where
+/// the gauges have nothing in common.
+struct Wander {
+  double covariance = 0.0;
+  double sd = 0.0;
+
+  [[nodiscard]] bool is_seen() const {
+    constexpr double kSigma = 3.0;
+    return covariance > kSigma * sd;
+  }
+  /// Of each shot's slope: of a random walk, the slowest that turns.
+  [[nodiscard]] double slope_variance(double quiet_s) const {
+    constexpr double kOfWalk = 30.0;  // its slope's variance times duration^2 over that covariance
+    return is_seen() ? kOfWalk * covariance / (quiet_s * quiet_s) : 0.0;
+  }
+};
+
+/// Mean of products of two gauges' samples of one shot, a thirtieth to a fifteenth of them apart.
+double slow_product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const Eigen::Index first = std::max<Eigen::Index>(1, a.size() / 30);
+  const Eigen::Index last = std::max(first, a.size() / 15);
+  double sum = 0.0;
+  for (Eigen::Index lag = first; lag <= last; ++lag) {
+    sum += (product(a, b, lag) + product(b, a, lag)) / static_cast<double>(2 * (a.size() - lag));
+  }
+  return sum / static_cast<double>(last - first + 1);
+}
+
+/// Variance of such a mean of so many samples where the two have nothing in common, or a little
+/// more: as if it were at one lag.
+double product_variance(const std::vector<double>& a, const std::vector<double>& b,
+                        Eigen::Index samples) {
+  double sum = a.front() * b.front();
+  for (std::size_t lag = 1; lag < a.size(); ++lag) {
+    sum += 2.0 * a[lag] * b[lag];
+  }
+  return sum / static_cast<double>(samples);
+}
+
+Wander wander_of(const QuietParts& parts) {
+  double sum = 0.0;
+  double variance = 0.0;
+  double count = 0.0;
+  for (std::size_t a = 0; a < parts.about.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      for (std::size_t n = 0; n < parts.weights.size(); ++n) {
+        sum += slow_product(parts.about[a][n], parts.about[b][n]);
+        variance +=
+            product_variance(parts.covariance[a], parts.covariance[b], parts.about[a][n].size());
+        count += 1.0;
+      }
+    }
+  }
+  return {sum / count, std::sqrt(variance) / count};
+}
+
 /// Degrees of freedom by which the samples' spectrum tells how slopes scatter: none where the noise
 /// is slow, or where the differences between gauges scatter more than it says, as what wanders too
 /// slowly to show otherwise makes them.
@@ -126,17 +183,24 @@ double belief_in_spectrum(double white_share, double within, double differences)
   return kMost * std::clamp((white_share - kSlow) / (kWhite - kSlow), 0.0, 1.0);
 }
 
+/// Of the samples before a shot's pulse.
+double duration_s(const CampaignShot& shot) {
+  return shot.facts.time_s[shot.quiet_samples - 1] - shot.facts.time_s.front();
+}
+
 /// Sums of squares of slopes over their variances.
 struct Scatter {
-  double between = 0.0;      ///< of the shots' means over the gauges
-  double within = 0.0;       ///< about them
-  double white_share = 0.0;  ///< variance of as much white noise over that of the noise
+  std::vector<double> between;  ///< of the shots' means over the gauges, by shot
+  std::vector<double> wander;   ///< what noise that gauges share may make of each
+  double within = 0.0;          ///< about the means, all shots
+  double white_share = 0.0;     ///< variance of as much white noise over that of the noise
 };
 
 /// @return nothing where a gauge is silent
 std::optional<Scatter> scatter_of(const Campaign& campaign, const QuietParts& parts,
                                   const SlopesByShot& less) {
   Scatter scatter;
+  const Wander wander = wander_of(parts);
   for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
     double weight = 0.0;
     double mean = 0.0;
@@ -155,7 +219,8 @@ std::optional<Scatter> scatter_of(const Campaign& campaign, const QuietParts& pa
       mean += slope / variance;
       square += slope * slope / variance;
     }
-    scatter.between += mean * mean / weight;
+    scatter.between.push_back(mean * mean / weight);
+    scatter.wander.push_back(weight * wander.slope_variance(duration_s(campaign.shots[n])));
     scatter.within += square - mean * mean / weight;
   }
   return scatter;
@@ -174,6 +239,17 @@ double slope_before(const CampaignShot& shot, const std::vector<double>& record)
   return weights.dot(Eigen::Map<const Eigen::VectorXd>(record.data(), weights.size()));
 }
 
+SlopesByShot variances_of_slopes(const Campaign& campaign) {
+  const QuietParts parts = quiet_parts(campaign);
+  SlopesByShot variances(campaign.shots.size());
+  for (std::size_t n = 0; n < variances.size(); ++n) {
+    for (const std::vector<double>& covariance : parts.covariance) {
+      variances[n].push_back(slope_variance(covariance, parts.weights[n]));
+    }
+  }
+  return variances;
+}
+
 double log_chance_of_common_slopes(const Campaign& campaign, const SlopesByShot& less) {
   if (!long_enough(campaign)) {
     return 0.0;
@@ -190,8 +266,16 @@ double log_chance_of_common_slopes(const Campaign& campaign, const SlopesByShot&
   const double belief = belief_in_spectrum(scatter->white_share, scatter->within, differences);
   const double noise =
       (belief + scatter->within / std::max(1e-3, 1.0 - shared)) / (belief + differences);
-  const double of_means = scatter->between / shots / (1.0 + further * shared);
-  return log_f_tail(of_means / noise, shots, belief + differences);
+  double of_means = 0.0;
+  for (std::size_t n = 0; n < scatter->between.size(); ++n) {
+    of_means +=
+        scatter->between[n] / (noise * (1.0 + further * shared) + scatter->wander[n]) / shots;
+  }
+  return log_f_tail(of_means, shots, belief + differences);
+}
+
+bool wanders_in_common(const Campaign& campaign) {
+  return long_enough(campaign) && wander_of(quiet_parts(campaign)).is_seen();
 }
 
 double log_chance_of_slopes(const Campaign& campaign, std::size_t gauge) {

@@ -99,7 +99,7 @@ class Diagnostician {
         study_.fit(model, options_.safeguards.fitted_noise ? LearnNoise::yes : LearnNoise::no);
     diagnosis_.before = first.misfit;
     Studied current = first;
-    const bool settled = seek(current);
+    const bool settled = seek(first, current);
     first = let_out_.value_or(first);
     if (trodden_) {
       led_nowhere_ = outweighed_by(trail_.excess) ? std::optional(begun_with_) : std::nullopt;
@@ -121,6 +121,7 @@ class Diagnostician {
     set_dwarfed_aside(current);
     set_what_a_law_leaves_aside(first, current);
     make_alike(current);
+    set_drifts_of_shares_aside(current);
     tie_with_drifts(study_, current, diagnosis_);
     tie_with_hum(study_, current, diagnosis_);
     conclude(first, current);
@@ -131,14 +132,15 @@ class Diagnostician {
   /// One effect after another. Two are sought again beside each other before a third is: that may
   /// explain no more than what the first of them was chosen wrongly for.
   /// @return that nothing was added to two that stand beside each other
-  bool seek(Studied& current) {
+  bool seek(const Studied& first, Studied& current) {
     bool gone_back = false;
     while (surprises(diagnosis_.effects, current.model).size() < options_.most_effects) {
       const bool two = beside_the_bar(diagnosis_.effects).size() == 2;
       if (two && !gone_back && options_.safeguards.backward) {
         go_back(current);
         gone_back = true;
-        if (has_been_here()) {
+        far_off_ = leaves_most(first, current);
+        if (has_been_here() || far_off_) {
           return true;
         }
       }
@@ -149,6 +151,19 @@ class Diagnostician {
     return false;
   }
 
+  /// Whether two that stand beside each other leave more of what repeats than they explain: no
+  /// third and no other beginning explains what nothing in the library is near to, and a search is
+  /// long.
+  bool leaves_most(const Studied& first, const Studied& current) {
+    if (beside_the_bar(diagnosis_.effects).size() < 2) {
+      return false;
+    }
+    const double noise = noise_of(current.misfit, study_.campaign().shots.size());
+    const double explained =
+        (study_.refit(first).fit.objective() - current.fit.objective()) / noise;
+    return explained < repeated_excess(study_, current);
+  }
+
   /// Whether an earlier beginning came by the same pair: from there on the way is the same.
   bool has_been_here() {
     const std::set<std::string> here(diagnosis_.effects.begin(), diagnosis_.effects.end());
@@ -157,9 +172,10 @@ class Diagnostician {
     return trodden_;
   }
 
-  /// Whether what is left weighs more than the lead of what the search began with.
+  /// Whether what is left weighs more than the lead of what the search began with, so that another
+  /// beginning may be the right one.
   [[nodiscard]] bool outweighed_by(double excess) const {
-    return lead_over_next_ && *lead_over_next_ < excess;
+    return !far_off_ && lead_over_next_ && *lead_over_next_ < excess;
   }
 
   bool add_one(Studied& current) {
@@ -303,6 +319,19 @@ class Diagnostician {
         current = std::move(alike);
       }
     }
+  }
+
+  /// A drift is no claim beside a hum whose unequal shares do as well.
+  void set_drifts_of_shares_aside(Studied& current) {
+    auto hum = hum_in_shares(study_, current, diagnosis_.effects);
+    if (!hum) {
+      return;
+    }
+    for (const std::string& drift : hum->drifts) {
+      drop_claim(diagnosis_, drift, "not needed");
+      std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == drift; });
+    }
+    current = std::move(hum->studied);
   }
 
   /// A third beside a solid's formula that explains next to nothing of what the others do is what
@@ -685,6 +714,7 @@ class Diagnostician {
   std::vector<std::string> barred_;
   Trail& trail_;
   bool trodden_ = false;
+  bool far_off_ = false;  ///< see `leaves_most`
   std::string begun_with_;
   std::optional<double> lead_over_next_;  ///< of that
   std::optional<std::string> led_nowhere_;

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/search/common_amplitude.hpp"
+#include "processing/criticism/search/own_strengths.hpp"
 #include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/choice.hpp"
@@ -160,6 +163,42 @@ void tie_with_hum(Study& study, const Studied& current, Diagnosis& diagnosis) {
       ties.emplace_back(kHum);
     }
   }
+}
+
+std::optional<HumInShares> hum_in_shares(Study& study, const Studied& current,
+                                         const std::vector<std::string>& effects) {
+  const EffectUse* hum = current.model.find(kHum);
+  if (std::ranges::count(effects, kHum) == 0 || !hum->per_shot || !hum->alike) {
+    return std::nullopt;
+  }
+  std::vector<std::string> drifts;
+  std::ranges::copy_if(effects, std::back_inserter(drifts),
+                       [&](const std::string& id) { return is_drift(current.model.find(id)); });
+  if (drifts.empty()) {
+    return std::nullopt;
+  }
+  Model model = current.model;
+  std::erase_if(model.effects,
+                [&](const EffectUse& use) { return std::ranges::count(drifts, use.id()) > 0; });
+  const Studied alike = changed(study, current, model);
+  const Studied neither = without(study, alike, kHum);
+  model.find(kHum)->alike = false;
+  Studied shared = changed(study, alike, model);
+  // Each gauge's own in every shot would be many hums: shares are a number a gauge.
+  const OwnStrengths own = own_strengths_in(shared, kHum);
+  const double many = nearest_products(own.found, own.information, study.campaign().shots.size(),
+                                       study.campaign().gauges())
+                          .left;
+  const double noise = noise_of(current.misfit, study.campaign().shots.size());
+  const double gain = (neither.fit.objective() - shared.fit.objective() - many) / noise;
+  const double freedom = neither.fit.degrees_of_freedom(neither.composition) -
+                         alike.fit.degrees_of_freedom(alike.composition) +
+                         static_cast<double>(study.campaign().gauges() - 1);
+  if (equivalent_square(log_gain_tail(gain, freedom, false)) <
+      evidence(neither, current, noise) - kTie) {
+    return std::nullopt;
+  }
+  return HumInShares{std::move(shared), std::move(drifts)};
 }
 
 }  // namespace kolsky

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "processing/criticism/fitting/study.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 
@@ -19,5 +23,17 @@ void tie_with_drifts(Study& study, const Studied& current, Diagnosis& diagnosis)
 /// that all shots have alike is a hum of one phase, where another gauge drifts beside it.
 /// @param current  with what the diagnosis claims; drifts among it have the hum added to their ties
 void tie_with_hum(Study& study, const Studied& current, Diagnosis& diagnosis);
+
+/// A hum that all gauges seem to have alike leaves the rest of what they pick up in unequal shares,
+/// which is a slope at one of them: a drift beside it is no claim of its own where shares do as
+/// well.
+struct HumInShares {
+  Studied studied;                  ///< with each gauge's own hum and without the drifts
+  std::vector<std::string> drifts;  ///< that it needs no more
+};
+/// @param current  with what the diagnosis claims
+/// @return nothing where no drift is claimed beside such a hum, or what is claimed is likelier
+[[nodiscard]] std::optional<HumInShares> hum_in_shares(Study& study, const Studied& current,
+                                                       const std::vector<std::string>& effects);
 
 }  // namespace kolsky

@@ -104,6 +104,50 @@ TEST(CommonSlopes, AreNotThoseOfNoiseThatGaugesShare) {
   }
 }
 
+/// A walk at random that all gauges take together, an eighth of the noise a sample.
+void add_walk(Campaign& campaign, std::mt19937_64& random) {
+  std::normal_distribution<double> step(0.0, kNoise / 8.0);
+  for (CampaignShot& shot : campaign.shots) {
+    double at = 0.0;
+    for (std::size_t i = 0; i < kQuiet; ++i) {
+      at += step(random);
+      for (auto& record : shot.strain) {
+        record[i] += at;
+      }
+    }
+  }
+}
+
+// About its slopes it turns, by which it is told from what only slopes.
+TEST(CommonSlopes, AreNotThoseOfAWalkThatGaugesTakeTogether) {
+  EXPECT_LE(seldom(kCampaigns, 4,
+                   [&](Campaign& campaign, std::mt19937_64& random) {
+                     add_noise(campaign, 0.0, 0.0, random);
+                     add_walk(campaign, random);
+                   }),
+            kMost);
+}
+
+TEST(CommonWander, IsSeenOfAWalkAndOfNothingElse) {
+  std::mt19937_64 random(8);
+  int seen_without = 0;
+  int seen_of_hum = 0;
+  int seen_of_walk = 0;
+  for (int n = 0; n < kCampaigns; ++n) {
+    Campaign campaign = silent(5, 4);
+    add_noise(campaign, n % 2 == 0 ? 0.0 : 0.9, 0.0, random);
+    seen_without += wanders_in_common(campaign) ? 1 : 0;
+    Campaign humming = campaign;
+    add_hum(humming, 6e-5, true, random);
+    seen_of_hum += wanders_in_common(humming) ? 1 : 0;
+    add_walk(campaign, random);
+    seen_of_walk += wanders_in_common(campaign) ? 1 : 0;
+  }
+  EXPECT_LE(seen_without, kMost);
+  EXPECT_LE(seen_of_hum, kMost);
+  EXPECT_GE(seen_of_walk, 9 * kCampaigns / 10);
+}
+
 TEST(CommonSlopes, AreNotThoseThatEachGaugeHasOfItsOwn) {
   EXPECT_LE(seldom(kCampaigns, 4,
                    [&](Campaign& campaign, std::mt19937_64& random) {
