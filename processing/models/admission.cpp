@@ -85,7 +85,8 @@ class Examination {
         return problem;
       }
     }
-    if (auto problem = derivative(without)) {
+    // What nobody seeks is there or not, and no fit moves it.
+    if (auto problem = effect_.about().told_only ? std::nullopt : derivative(without)) {
       return problem;
     }
     for (const double period_s : {1e-6, 2e-5}) {
@@ -203,8 +204,8 @@ class Examination {
         out.specimen_J.push_back(scene.specimen->solid.compliance(path[k], k));
       }
       const SpecimenScene& own = *scene.specimen;
-      for (const double number :
-           {own.stiffening, own.friction, own.gap_m, own.lateral_inertia_kg_per_m, own.punching}) {
+      for (const double number : {own.stiffening, own.friction, own.gap_m, own.parts ? 1.0 : 0.0,
+                                  own.lateral_inertia_kg_per_m, own.punching}) {
         out.all.emplace_back(number);
       }
     }

@@ -52,8 +52,8 @@ double SpecimenScene::share_of_stress(double strain) const {
 }
 
 bool SpecimenScene::nonlinear() const {
-  return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || lateral_inertia_kg_per_m != 0.0 ||
-         !further_strain.empty();
+  return stiffening != 0.0 || friction != 0.0 || gap_m != 0.0 || parts ||
+         lateral_inertia_kg_per_m != 0.0 || !further_strain.empty();
 }
 
 void RecordScene::straighten(std::size_t gauge, std::vector<double>& record) const {

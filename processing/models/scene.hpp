@@ -92,6 +92,7 @@ struct SpecimenScene {
   double friction = 0.0;                  ///< mu of Coulomb friction at its faces
   double gap_m = 0.0;                     ///< closes before it is loaded
   GapAfter gap_after = GapAfter::closed_for_good;
+  bool parts = false;  ///< faces push and never pull, gap or none
   /// A strain history beside all this, by step of the specimen's histories; empty for none.
   std::vector<double> further_strain{};
 

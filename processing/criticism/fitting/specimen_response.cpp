@@ -180,7 +180,7 @@ void SpecimenResponse::part(const SpecimenScene& specimen, DampedTransform& tran
     at_rest_ = at_rest_until(strain_);
   }
   apart_.assign(strain_.size(), 0.0);
-  if (specimen.gap_after == GapAfter::pulls_nothing) {
+  if (specimen.parts || specimen.gap_after == GapAfter::pulls_nothing) {
     const double length = static_cast<double>(transform.length());
     push_only(specimen, 1.0 / (transform.bin_width_Hz() * length));
   } else {
@@ -224,7 +224,7 @@ void SpecimenResponse::depart(const Scene& scene, DampedTransform& transform) {
   if (bends(specimen)) {
     bend(scene, transform);
   }
-  if (specimen.gap_m != 0.0) {
+  if (specimen.gap_m != 0.0 || specimen.parts) {
     part(specimen, transform);
   }
 }

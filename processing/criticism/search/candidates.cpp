@@ -123,7 +123,7 @@ std::vector<Candidate> candidates_for(const Studied& studied, const Campaign& ca
   }
   for (const Effect* effect : effects_known_to(studied.model)) {
     const EffectAbout& about = effect->about();
-    if (about.base || !belongs(about, campaign.bench.kind)) {
+    if (about.base || about.told_only || !belongs(about, campaign.bench.kind)) {
       continue;
     }
     std::vector<std::string> gauges{""};

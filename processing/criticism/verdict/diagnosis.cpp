@@ -27,6 +27,7 @@
 #include "processing/criticism/verdict/filed_conflict.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
 #include "processing/criticism/verdict/other_law.hpp"
+#include "processing/criticism/verdict/parting.hpp"
 #include "processing/criticism/verdict/refits.hpp"
 #include "processing/criticism/verdict/slow_ties.hpp"
 #include "processing/criticism/verdict/small_rest.hpp"
@@ -191,7 +192,10 @@ class Diagnostician {
     }
     std::optional<Choice> choice =
         chooser_.choose(search, current, first, first ? barred_ : std::vector<std::string>{});
-    if (!choice) {
+    if (first) {
+      parting_ = parting_in_place_of(study_, current, start_, choice ? choice->studied : current);
+    }
+    if (!choice || parting_) {
       return false;
     }
     if (first) {
@@ -567,6 +571,9 @@ class Diagnostician {
     if (!options_.safeguards.unknown) {
       return {};
     }
+    if (parting_) {
+      return {*parting_};
+    }
     std::vector<std::string> reasons =
         why_unknown(diagnosis_, current, study_.campaign(), remains,
                     (before.fit.objective() - current.fit.objective()) / noise, options_.log_alpha);
@@ -711,6 +718,7 @@ class Diagnostician {
   };
   std::optional<SetAside> set_aside_;
   std::optional<SmallRest> small_rest_;
+  std::optional<std::string> parting_;  ///< that the specimen's faces part, in a sentence
   std::vector<std::string> barred_;
   Trail& trail_;
   bool trodden_ = false;

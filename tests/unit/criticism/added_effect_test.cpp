@@ -88,6 +88,22 @@ TEST(Added, AGapOfDryFacesPullsNothing) {
   }
 }
 
+// The same without a gap: loose from the beginning.
+TEST(Added, AFaceThatPartsPullsNothing) {
+  for (std::uint64_t seed = 5; seed < 8; ++seed) {
+    testing::CampaignWishes wished = wishes(true);
+    wished.seed = seed;
+    testing::Campaign truth = testing::draw_campaign(wished);
+    testing::hide(truth, testing::parse_effect("interface-gap=1e-12,dry=1"));
+    const Campaign campaign = read_campaign(testing::shots_of(truth));
+    Study study(campaign, 0.0, Workers{});
+    Model model = paper_model(BenchKind::shpb, false);
+    EXPECT_GT(study.fit(model).misfit.chi2_reduced, 1.5) << seed;
+    model.effects.push_back(use_named("parting-faces"));
+    EXPECT_LT(study.fit(model).misfit.chi2_reduced, 1.1) << seed;
+  }
+}
+
 /// A model that was fitted without what is hidden, and fitted again with it.
 struct AddedLater {
   testing::Campaign truth;

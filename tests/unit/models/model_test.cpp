@@ -83,6 +83,7 @@ std::vector<Complex> said(const Model& model, const Bench& bench) {
     all.emplace_back(scene.specimen->stiffening);
     all.emplace_back(scene.specimen->friction);
     all.emplace_back(scene.specimen->gap_m);
+    all.emplace_back(scene.specimen->parts ? 1.0 : 0.0);
     all.emplace_back(scene.specimen->lateral_inertia_kg_per_m);
   }
   return all;
