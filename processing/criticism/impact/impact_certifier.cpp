@@ -116,20 +116,21 @@ std::optional<std::string> ImpactCertifier::unbelievable(const ImpactSearch& sea
                             id, off_m));
 }
 
-const ImpactRefit* ImpactCertifier::first_certified(const ImpactSearch& search,
-                                                    const std::vector<ImpactRefit>& refits,
-                                                    const Studied& current,
-                                                    std::vector<std::string>& rejected) const {
+JudgedRefits ImpactCertifier::judged(const ImpactSearch& search,
+                                     const std::vector<ImpactRefit>& refits,
+                                     const Studied& current) const {
+  JudgedRefits judged;
   for (const ImpactRefit& refit : refits) {
     if (refit.evidence < refits.front().evidence - kStandsBefore) {
       break;
     }
     if (certified(search, refit, current)) {
-      return &refit;
+      judged.certified = &refit;
+      break;
     }
-    rejected.push_back(search.candidate(refit).id());
+    judged.rejected.push_back(search.candidate(refit).id());
   }
-  return nullptr;
+  return judged;
 }
 
 std::vector<std::string> beside(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,

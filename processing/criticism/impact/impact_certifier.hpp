@@ -9,6 +9,12 @@
 
 namespace kolsky {
 
+/// What becomes of the best of a search's refits.
+struct JudgedRefits {
+  const ImpactRefit* certified = nullptr;  ///< the best that is; none: null
+  std::vector<std::string> rejected;       ///< those before it
+};
+
 /// What a refit has to stand before it is claimed: chance among all that was searched, shots and
 /// speeds that its strength was not found in, and one strength at all speeds.
 class ImpactCertifier {
@@ -22,12 +28,10 @@ class ImpactCertifier {
   /// Of a fit, per residual; of the same folds.
   [[nodiscard]] double held_out_misfit(const Studied& studied) const;
 
-  /// The best of what stands before nothing at all and is certified; none: null.
-  /// @param rejected  those before it, which are not
-  [[nodiscard]] const ImpactRefit* first_certified(const ImpactSearch& search,
-                                                   const std::vector<ImpactRefit>& refits,
-                                                   const Studied& current,
-                                                   std::vector<std::string>& rejected) const;
+  /// Of what stands before nothing at all, down to the best that is certified.
+  [[nodiscard]] JudgedRefits judged(const ImpactSearch& search,
+                                    const std::vector<ImpactRefit>& refits,
+                                    const Studied& current) const;
   /// Why the best is not believed though all else certifies it; none: nothing of it is there.
   [[nodiscard]] std::optional<std::string> unbelievable(const ImpactSearch& search,
                                                         const std::vector<ImpactRefit>& refits,
