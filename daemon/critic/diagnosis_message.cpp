@@ -30,7 +30,7 @@ void put(const CandidateResult& candidate, v1::DiagnosisCandidate& message) {
   message.set_smallest_detectable(candidate.detectable);
   message.set_smallest_identifiable(candidate.identifiable);
   message.set_nearest_rival(candidate.nearest_rival);
-  message.set_verdict(candidate.verdict);
+  message.set_verdict(name_of(candidate.verdict));
 }
 
 }  // namespace

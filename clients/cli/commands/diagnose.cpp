@@ -55,7 +55,7 @@ JsonValue describe(const CandidateResult& candidate) {
                     {"nearest_rival", candidate.nearest_rival},
                     {"refitted", candidate.refitted},
                     {"per_shot", candidate.per_shot},
-                    {"verdict", candidate.verdict}};
+                    {"verdict", kolsky::name_of(candidate.verdict)}};
 }
 
 JsonObject describe(const Diagnosis& diagnosis) {

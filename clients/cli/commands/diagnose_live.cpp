@@ -60,14 +60,19 @@ v1::Diagnosis wait(ControlClient& client, v1::Diagnosis diagnosis, bool tell) {
   return diagnosis;
 }
 
-DiagnosisVerdict verdict_named(const std::string& name) {
-  constexpr std::array kAll{DiagnosisVerdict::named,      DiagnosisVerdict::tied,
-                            DiagnosisVerdict::unknown,    DiagnosisVerdict::adequate,
-                            DiagnosisVerdict::untestable, DiagnosisVerdict::bad_data};
-  const auto found = std::find_if(kAll.begin(), kAll.end(), [&](DiagnosisVerdict verdict) {
-    return kolsky::name_of(verdict) == name;
-  });
-  if (found == kAll.end()) {
+constexpr std::array kVerdicts{DiagnosisVerdict::named,      DiagnosisVerdict::tied,
+                               DiagnosisVerdict::unknown,    DiagnosisVerdict::adequate,
+                               DiagnosisVerdict::untestable, DiagnosisVerdict::bad_data};
+constexpr std::array kVerdictsOfCandidates{
+    CandidateVerdict::named,       CandidateVerdict::tied,       CandidateVerdict::rejected,
+    CandidateVerdict::unconfirmed, CandidateVerdict::not_needed, CandidateVerdict::untestable};
+
+/// @param all  that this version knows
+template <typename Verdict, std::size_t n>
+Verdict verdict_named(const std::string& name, const std::array<Verdict, n>& all) {
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](Verdict verdict) { return kolsky::name_of(verdict) == name; });
+  if (found == all.end()) {
     throw InputError("kolskyd", "says \"" + name + "\", a verdict that this version does not know",
                      "use a client of the daemon's version");
   }
@@ -88,14 +93,14 @@ CandidateResult candidate_of(const v1::DiagnosisCandidate& message) {
   candidate.detectable = message.smallest_detectable();
   candidate.identifiable = message.smallest_identifiable();
   candidate.nearest_rival = message.nearest_rival();
-  candidate.verdict = message.verdict();
+  candidate.verdict = verdict_named(message.verdict(), kVerdictsOfCandidates);
   return candidate;
 }
 
 /// What the daemon found, as `kolsky diagnose` has it.
 Diagnosis found(const v1::Diagnosis& message) {
   Diagnosis diagnosis;
-  diagnosis.verdict = verdict_named(message.summary().verdict());
+  diagnosis.verdict = verdict_named(message.summary().verdict(), kVerdicts);
   for (const std::string& id : message.summary().effects()) {
     diagnosis.effects.push_back(id);
     std::vector<std::string>& ties = diagnosis.tied_with[id];

@@ -30,10 +30,11 @@ PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_o
                   {}};
   for (const CandidateResult& c : ranked) {
     const std::string strength =
-        c.verdict == "untestable" ? "" : strength_text(c.strength, c.sd, c.unit);
-    table.rows.push_back({c.effect, c.verdict, strength, gain_text(c.log_p), gain_text(c.gain),
-                          gain_text(c.held_out_gain), size_text(c.detectable, c.unit),
-                          number_text(c.identifiable), c.nearest_rival});
+        c.verdict == CandidateVerdict::untestable ? "" : strength_text(c.strength, c.sd, c.unit);
+    table.rows.push_back({c.effect, kolsky::name_of(c.verdict), strength, gain_text(c.log_p),
+                          gain_text(c.gain), gain_text(c.held_out_gain),
+                          size_text(c.detectable, c.unit), number_text(c.identifiable),
+                          c.nearest_rival});
   }
   return table;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace kolsky::cli {
@@ -14,12 +15,13 @@ namespace kolsky::cli {
 namespace {
 
 bool claimed(const CandidateResult& result) {
-  return result.verdict == "named" || result.verdict == "tied";
+  return result.verdict == CandidateVerdict::named || result.verdict == CandidateVerdict::tied;
 }
 
 /// What an experimenter wants to see beside what is claimed.
 bool came_into_question(const CandidateResult& result) {
-  return claimed(result) || result.verdict == "rejected" || result.verdict == "unconfirmed";
+  return claimed(result) || result.verdict == CandidateVerdict::rejected ||
+         result.verdict == CandidateVerdict::unconfirmed;
 }
 
 std::string notes_text(const Diagnosis& diagnosis) {
@@ -62,8 +64,9 @@ std::string chance_text(double log_p) {
 /// Claimed first, then what came into question, then what noise makes least likely.
 std::vector<CandidateResult> ranked(const Diagnosis& diagnosis) {
   std::vector<CandidateResult> list;
-  std::ranges::copy_if(diagnosis.candidates, std::back_inserter(list),
-                       [](const CandidateResult& c) { return c.verdict != "untestable"; });
+  std::ranges::copy_if(
+      diagnosis.candidates, std::back_inserter(list),
+      [](const CandidateResult& c) { return c.verdict != CandidateVerdict::untestable; });
   std::ranges::stable_sort(list, {}, [](const CandidateResult& c) {
     return std::tuple(!claimed(c), !came_into_question(c), c.log_p, c.own_log_p);
   });
@@ -78,7 +81,7 @@ std::string row_text(const CandidateResult& c) {
   return fmt::format("  {:<27} {:>28} {:>9} {:>10} {:>10} {:>11} {:>10}  {}\n", c.effect,
                      strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p),
                      gain_text(c.gain), gain_text(c.held_out_gain), size_text(c.detectable),
-                     size_text(c.identifiable), c.verdict);
+                     size_text(c.identifiable), kolsky::name_of(c.verdict));
 }
 
 /// Only of the verdicts that are there.
@@ -88,17 +91,17 @@ std::string legend_text(const std::vector<CandidateResult>& shown) {
       "  gain: of chi-square, and of that on shots which the strength was not found in;\n"
       "  detectable: the smallest change that stands at 6 deviations here; told apart: and at 5\n"
       "  beside the effect that resembles it most; -: none does within its bounds.\n";
-  constexpr std::array<std::array<const char*, 2>, 3> kMeanings{
-      {{"rejected",
+  constexpr std::array<std::pair<CandidateVerdict, const char*>, 3> kMeanings{
+      {{CandidateVerdict::rejected,
         "it gains, but other shots do not foretell it, the shots disagree on it, the quiet before "
         "the pulse lacks it, nothing is built so strong, or it stands in for something else"},
-       {"unconfirmed",
+       {CandidateVerdict::unconfirmed,
         "it gains with a strength of each shot's own, as slow noise would, and nothing else in the "
         "records shows it"},
-       {"not needed", "noise gains as much, or others explain it"}}};
+       {CandidateVerdict::not_needed, "noise gains as much, or others explain it"}}};
   for (const auto& [verdict, meaning] : kMeanings) {
     if (std::ranges::any_of(shown, [&](const auto& c) { return c.verdict == verdict; })) {
-      text += fmt::format("  {}: {}.\n", verdict, meaning);
+      text += fmt::format("  {}: {}.\n", kolsky::name_of(verdict), meaning);
     }
   }
   return text;
@@ -107,7 +110,7 @@ std::string legend_text(const std::vector<CandidateResult>& shown) {
 std::string untestable_text(const Diagnosis& diagnosis) {
   std::string text;
   for (const CandidateResult& c : diagnosis.candidates) {
-    if (c.verdict == "untestable") {
+    if (c.verdict == CandidateVerdict::untestable) {
       text += (text.empty() ? "" : ", ") + c.effect;
     }
   }

@@ -7,8 +7,14 @@ namespace kolsky {
 namespace {
 
 StepTest test_of(const CandidateResult& candidate, const Diagnosis& diagnosis) {
-  StepTest test{candidate.effect, candidate.strength,      candidate.sd,      candidate.unit,
-                candidate.log_p,  candidate.held_out_gain, candidate.verdict, {}};
+  StepTest test{candidate.effect,
+                candidate.strength,
+                candidate.sd,
+                candidate.unit,
+                candidate.log_p,
+                candidate.held_out_gain,
+                name_of(candidate.verdict),
+                {}};
   if (const auto ties = diagnosis.tied_with.find(candidate.effect);
       ties != diagnosis.tied_with.end()) {
     test.tied_with = ties->second;

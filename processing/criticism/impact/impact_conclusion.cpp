@@ -72,7 +72,7 @@ void add_next_impacts(Diagnosis& diagnosis) {
 void reject_what_quiet_lacks(Diagnosis& diagnosis, const std::set<std::string>& not_in_quiet) {
   for (const std::string& id : not_in_quiet) {
     if (std::ranges::count(diagnosis.effects, id) == 0) {
-      set_verdict(diagnosis, id, "rejected");
+      set_verdict(diagnosis, id, CandidateVerdict::rejected);
     }
   }
 }

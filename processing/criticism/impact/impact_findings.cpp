@@ -134,7 +134,7 @@ class Seeker {
     note_not_in_quiet(search);
     const JudgedRefits judged = certifier_.judged(search, refits, base);
     for (const std::string& id : judged.rejected) {
-      set_verdict(diagnosis_, id, "rejected");
+      set_verdict(diagnosis_, id, CandidateVerdict::rejected);
     }
     std::vector<std::string> told = judged.rejected;
     if (judged.certified != nullptr) {
@@ -191,7 +191,7 @@ class Seeker {
     const std::vector<ImpactRefit> refits = search.refits();
     const ImpactRefit* claimed = judge(search, refits, search.base());
     if (claimed == nullptr) {
-      drop_claim(diagnosis_, id, "rejected");
+      drop_claim(diagnosis_, id, CandidateVerdict::rejected);
       take(others, current);
       return true;
     }
@@ -202,7 +202,7 @@ class Seeker {
     if (now == id) {
       return false;
     }
-    set_verdict(diagnosis_, id, "rejected");
+    set_verdict(diagnosis_, id, CandidateVerdict::rejected);
     take(claimed->studied, current);
     return true;
   }

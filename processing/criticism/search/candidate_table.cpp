@@ -288,7 +288,7 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
     // Nothing is known of it but its bounds: the deviation of an even distribution between them.
     result.strength = parameter.null_value;
     result.sd = (parameter.upper - parameter.lower) / std::sqrt(12.0);
-    result.verdict = "untestable";
+    result.verdict = CandidateVerdict::untestable;
     return result;
   }
   const double scale = scale_of(candidate);
@@ -302,7 +302,7 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
   set_identifiable(tried, i, parameter.power, result);
   result.detectable = within_reach(candidate, result.detectable);
   result.identifiable = within_reach(candidate, result.identifiable);
-  result.verdict = "not needed";
+  result.verdict = CandidateVerdict::not_needed;
   return result;
 }
 
@@ -328,7 +328,7 @@ std::vector<CandidateResult> first_order_table(const Tried& tried) {
   std::vector<CandidateResult> table;
   for (const std::string& id : order) {
     CandidateResult result = first_order_result(tried, best_variant(tried, variants[id]));
-    if (result.verdict != "untestable") {
+    if (result.verdict != CandidateVerdict::untestable) {
       set_chances(tried, variants[id], result);
     }
     table.push_back(std::move(result));

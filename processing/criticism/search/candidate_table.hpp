@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "processing/criticism/fitting/held_out.hpp"
+#include "processing/criticism/search/candidate_verdict.hpp"
 #include "processing/criticism/search/search.hpp"
 
 namespace kolsky {
@@ -32,10 +33,7 @@ struct CandidateResult {
   std::string nearest_rival;
   bool refitted = false;  ///< in full; else all this is first order
   bool per_shot = false;  ///< with a strength of each shot's own
-  /// "named", "tied"; "rejected" (refitted: not foretold, shots disagree, or it imitates
-  /// something), "unconfirmed" (only strengths of single shots gain, and nothing else shows them),
-  /// "not needed", "untestable".
-  std::string verdict;
+  CandidateVerdict verdict = CandidateVerdict::not_needed;
 };
 
 /// What one search tried at first order.

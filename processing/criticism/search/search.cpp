@@ -62,7 +62,7 @@ void Search::dismiss(const Refit& refit) {
   const double gain = gain_over_own_noise(refit, ground_);
   const double chance = log_gain_tail(gain, refit.freedom, false);
   Dismissed& own = dismissed_[use.id()];
-  own.verdict = use.per_shot ? "unconfirmed" : "rejected";
+  own.verdict = use.per_shot ? CandidateVerdict::unconfirmed : CandidateVerdict::rejected;
   own.gain = std::max(own.gain, gain);
   own.chance = std::min(own.chance, chance);
   if (use.per_shot && is_addition(*use.effect) && fits_the_signal(refit, ground_.base)) {

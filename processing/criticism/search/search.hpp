@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/criticism/search/candidate_verdict.hpp"
 #include "processing/criticism/search/rating.hpp"
 #include "processing/criticism/search/refit.hpp"
 #include "processing/criticism/search/refitter.hpp"
@@ -42,7 +43,7 @@ class Search {
 
   /// What was refitted and is no explanation.
   struct Dismissed {
-    std::string verdict;  ///< "unconfirmed" or "rejected"
+    CandidateVerdict verdict = CandidateVerdict::rejected;  ///< or unconfirmed
     double gain = 0.0;    ///< over the noise; first order may have promised far more
     double chance = 0.0;  ///< ln of that of its gain on noise, the search not counted
   };

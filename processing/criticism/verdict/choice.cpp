@@ -136,7 +136,7 @@ Chooser::Places Chooser::places_of(const Found& found) {
       continue;
     }
     if (!is_sound || !agreed(found, i)) {
-      set_verdict(diagnosis_, id_of(found.search, refit), "rejected");
+      set_verdict(diagnosis_, id_of(found.search, refit), CandidateVerdict::rejected);
       places.nearest = is_sound && may_be_named && !places.nearest ? i : places.nearest;
       continue;
     }

@@ -8,7 +8,7 @@
 
 namespace kolsky {
 
-void set_verdict(Diagnosis& diagnosis, const std::string& id, const std::string& verdict) {
+void set_verdict(Diagnosis& diagnosis, const std::string& id, CandidateVerdict verdict) {
   for (CandidateResult& result : diagnosis.candidates) {
     if (result.effect == id) {
       result.verdict = verdict;
@@ -16,7 +16,7 @@ void set_verdict(Diagnosis& diagnosis, const std::string& id, const std::string&
   }
 }
 
-void drop_claim(Diagnosis& diagnosis, const std::string& id, const std::string& verdict) {
+void drop_claim(Diagnosis& diagnosis, const std::string& id, CandidateVerdict verdict) {
   std::erase(diagnosis.effects, id);
   diagnosis.tied_with.erase(id);
   set_verdict(diagnosis, id, verdict);
@@ -26,7 +26,7 @@ std::vector<std::string> drop_claims(Diagnosis& diagnosis) {
   std::vector<std::string> claimed = std::exchange(diagnosis.effects, {});
   diagnosis.tied_with.clear();
   for (const std::string& id : claimed) {
-    set_verdict(diagnosis, id, "rejected");
+    set_verdict(diagnosis, id, CandidateVerdict::rejected);
   }
   return claimed;
 }
@@ -59,9 +59,9 @@ void settle_claims(Diagnosis& diagnosis,
     std::erase_if(ties, [&](const std::string& other) {
       return std::ranges::count(diagnosis.effects, other) > 0;
     });
-    set_verdict(diagnosis, id, ties.empty() ? "named" : "tied");
+    set_verdict(diagnosis, id, ties.empty() ? CandidateVerdict::named : CandidateVerdict::tied);
     for (const std::string& other : ties) {
-      set_verdict(diagnosis, other, "tied");
+      set_verdict(diagnosis, other, CandidateVerdict::tied);
       diagnosis.verdict = DiagnosisVerdict::tied;
     }
   }
@@ -71,7 +71,7 @@ void settle_claims(Diagnosis& diagnosis,
       // First order about null does not see all that some effects do; the refits did, at this size.
       const double size = std::abs(result.strength);
       result.detectable = std::min(result.detectable, size);
-      if (result.verdict == "named") {
+      if (result.verdict == CandidateVerdict::named) {
         result.identifiable = std::min(result.identifiable, size);
       }
     }

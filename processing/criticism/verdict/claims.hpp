@@ -8,11 +8,11 @@
 
 namespace kolsky {
 
-/// What becomes of a candidate; nothing where it is not among them.
-void set_verdict(Diagnosis& diagnosis, const std::string& id, const std::string& verdict);
+/// Of a candidate; nothing where it is not among them.
+void set_verdict(Diagnosis& diagnosis, const std::string& id, CandidateVerdict verdict);
 
 /// Takes a claim back.
-void drop_claim(Diagnosis& diagnosis, const std::string& id, const std::string& verdict);
+void drop_claim(Diagnosis& diagnosis, const std::string& id, CandidateVerdict verdict);
 /// All of them, as rejected. @return what was claimed
 std::vector<std::string> drop_claims(Diagnosis& diagnosis);
 

@@ -109,7 +109,7 @@ class Diagnostician {
     }
     if (diagnosis_.effects.size() == 1 && any_beyond_belief(current)) {
       // Nothing was found beside it that takes its part.
-      drop(0, "rejected", without(study_, current, diagnosis_.effects[0]), current);
+      drop(0, CandidateVerdict::rejected, without(study_, current, diagnosis_.effects[0]), current);
     }
     if (options_.safeguards.backward && diagnosis_.effects.size() > 1 && !settled) {
       go_back(current);
@@ -221,7 +221,7 @@ class Diagnostician {
     if (missed_in(study_, left, current)) {
       return false;
     }
-    drop(0, "not needed", std::move(left), current);
+    drop(0, CandidateVerdict::not_needed, std::move(left), current);
     diagnosis_.candidates.clear();
     on_trial_.reset();
     lead_over_next_.reset();
@@ -280,7 +280,7 @@ class Diagnostician {
         continue;
       }
       if (choice->id != id) {
-        set_verdict(diagnosis_, id, "not needed");
+        set_verdict(diagnosis_, id, CandidateVerdict::not_needed);
         diagnosis_.tied_with.erase(id);
         diagnosis_.effects[i] = choice->id;
         changed = true;
@@ -332,7 +332,7 @@ class Diagnostician {
       return;
     }
     for (const std::string& drift : hum->drifts) {
-      drop_claim(diagnosis_, drift, "not needed");
+      drop_claim(diagnosis_, drift, CandidateVerdict::not_needed);
       std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == drift; });
     }
     current = std::move(hum->studied);
@@ -351,7 +351,7 @@ class Diagnostician {
     if (id) {
       set_aside_ = {*id, gains.others.at(*id), dwarfed_text(gains, *id)};
       const auto at = std::ranges::find(diagnosis_.effects, *id);
-      drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), "rejected",
+      drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), CandidateVerdict::rejected,
            without(study_, current, *id), current);
     }
   }
@@ -374,7 +374,7 @@ class Diagnostician {
                       "from that law",
                       other->claim, 100.0 * by_claim / explained, other->law));
       const auto at = std::ranges::find(diagnosis_.effects, other->claim);
-      drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), "rejected",
+      drop(static_cast<std::size_t>(at - diagnosis_.effects.begin()), CandidateVerdict::rejected,
            std::move(other->without), current);
     }
   }
@@ -408,7 +408,7 @@ class Diagnostician {
         left = without_from_start(current, id);
       }
       if (!confirmed || !missed_in(study_, left, current)) {
-        drop(i, "not needed", std::move(left), current);
+        drop(i, CandidateVerdict::not_needed, std::move(left), current);
       } else {
         ++i;
       }
@@ -441,7 +441,7 @@ class Diagnostician {
   }
 
   /// @param left  the fit without it
-  void drop(std::size_t i, const std::string& verdict, Studied left, Studied& current) {
+  void drop(std::size_t i, CandidateVerdict verdict, Studied left, Studied& current) {
     const std::string id = diagnosis_.effects[i];
     current = std::move(left);
     std::erase_if(start_.effects, [&](const EffectUse& use) { return use.id() == id; });

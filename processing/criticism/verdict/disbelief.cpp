@@ -141,7 +141,8 @@ const CandidateResult* surest_rejected(const Diagnosis& diagnosis, double explai
   const CandidateResult* surest = nullptr;
   for (const CandidateResult& own : diagnosis.candidates) {
     if ((diagnosis.effects.empty() || own.gain > limit) && !own.per_shot &&
-        own.verdict == "rejected" && own.log_p < (surest != nullptr ? surest->log_p : kSure)) {
+        own.verdict == CandidateVerdict::rejected &&
+        own.log_p < (surest != nullptr ? surest->log_p : kSure)) {
       surest = &own;
     }
   }

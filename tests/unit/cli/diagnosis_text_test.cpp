@@ -31,7 +31,7 @@ TEST(StrengthText, IsEmptyForWhatIsUntestable) {
   EXPECT_EQ(strength_text(NAN, NAN, "m"), "");
 }
 
-CandidateResult candidate(const char* effect, const char* verdict, double log_p) {
+CandidateResult candidate(const char* effect, CandidateVerdict verdict, double log_p) {
   CandidateResult result;
   result.effect = effect;
   result.verdict = verdict;
@@ -48,10 +48,10 @@ TEST(DiagnosisText, PutsWhatIsClaimedFirstAndExplainsTheVerdictsThatAreThere) {
   diagnosis.model = Model{};
   diagnosis.effects = {"bar-length"};
   diagnosis.tied_with["bar-length"] = {"gauge-position:g1"};
-  diagnosis.candidates = {candidate("crosstalk:g2", "not needed", -60.0),
-                          candidate("baseline-drift:g1", "unconfirmed", -1.0),
-                          candidate("bar-length", "tied", -40.0),
-                          candidate("gauge-length:g1", "untestable", 0.0)};
+  diagnosis.candidates = {candidate("crosstalk:g2", CandidateVerdict::not_needed, -60.0),
+                          candidate("baseline-drift:g1", CandidateVerdict::unconfirmed, -1.0),
+                          candidate("bar-length", CandidateVerdict::tied, -40.0),
+                          candidate("gauge-length:g1", CandidateVerdict::untestable, 0.0)};
   diagnosis.next_experiment = {{"a further gauge", {"bar-length", "gauge-position:g1"}, 5.0}};
   const std::string text = diagnosis_text(diagnosis);
 

@@ -71,7 +71,7 @@ TEST(CandidateTable, StatesAnUntestableStrengthByItsBounds) {
   for (const CandidateResult& result : searched(bar(501), "")) {
     EXPECT_TRUE(std::isfinite(result.strength)) << result.effect;
     EXPECT_TRUE(std::isfinite(result.sd)) << result.effect;
-    if (result.verdict == "untestable") {
+    if (result.verdict == CandidateVerdict::untestable) {
       ++untestable;
       EXPECT_EQ(result.own_log_p, 0.0) << result.effect;
       EXPECT_GT(result.sd, std::abs(result.strength)) << result.effect;

@@ -130,8 +130,9 @@ TEST(Friction, IsNotCalledANonlinearityOfTheSpecimen) {
       return candidate.effect == "interface-friction";
     });
     ASSERT_NE(friction, diagnosis.candidates.end()) << seed;
-    EXPECT_TRUE(friction->verdict == "named" || friction->verdict == "tied")
-        << seed << ": " << friction->verdict;
+    EXPECT_TRUE(friction->verdict == CandidateVerdict::named ||
+                friction->verdict == CandidateVerdict::tied)
+        << seed << ": " << name_of(friction->verdict);
     EXPECT_NEAR(friction->strength, 0.25, 3.0 * friction->sd) << seed;
   }
 }

@@ -162,7 +162,7 @@ TEST(Diagnosis, KeepsARelaxationAsQuickAsTheMaterialsOwnAmongWhatMayBeThere) {
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("second-relaxation=3e-12,tau=4e-5"));
   const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
-  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
+  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, CandidateVerdict::tied);
 }
 
 testing::CampaignWishes split_wishes(std::uint64_t seed, int shots, std::size_t samples) {
@@ -211,7 +211,7 @@ TEST(Diagnosis, DoesNotRankRivalsByHowMuchTheirShotsScatter) {
   testing::Campaign truth = testing::draw_campaign(wishes);
   testing::hide(truth, testing::parse_effect("second-relaxation=1.2e-12,tau=8e-5"));
   const Diagnosis diagnosis = diagnosed_split(truth);
-  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, "tied");
+  EXPECT_EQ(result_of(diagnosis, "second-relaxation").verdict, CandidateVerdict::tied);
 }
 
 // A specimen that keeps part of its strain flows, for all that the records say: its own branch
@@ -544,7 +544,7 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   Diagnosis diagnosis;
   CandidateResult& own = diagnosis.candidates.emplace_back();
   own.effect = "bridge-nonlinearity";
-  own.verdict = "rejected";
+  own.verdict = CandidateVerdict::rejected;
   double explained = 0.0;
   const auto reasons = [&] {
     return why_unknown(diagnosis, current, campaign, std::nullopt, explained, -5.8).size();
@@ -564,9 +564,9 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   own.per_shot = true;
   EXPECT_EQ(reasons(), 0U) << "strengths of single shots follow slow noise";
   own.per_shot = false;
-  own.verdict = "not needed";
+  own.verdict = CandidateVerdict::not_needed;
   EXPECT_EQ(reasons(), 0U);
-  own.verdict = "rejected";
+  own.verdict = CandidateVerdict::rejected;
   diagnosis.effects = {"gauge-factor:" + campaign.bench.gauges.back().name};
   own.gain = 60.0;
   explained = 50.0;
@@ -575,7 +575,7 @@ TEST(Unknown, IsWhatGainsFarMoreThanNoiseAndIsRejectedWhereNothingIsClaimed) {
   EXPECT_EQ(reasons(), 1U) << "what is claimed explains less by far";
   CandidateResult& claimed = diagnosis.candidates.emplace_back();
   claimed.effect = diagnosis.effects.front();
-  claimed.verdict = "named";
+  claimed.verdict = CandidateVerdict::named;
   claimed.gain = 59.0;
   EXPECT_EQ(reasons(), 0U) << "by the noise of the search it explains as much";
 }

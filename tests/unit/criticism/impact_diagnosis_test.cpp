@@ -36,7 +36,7 @@ std::string told(const Diagnosis& diagnosis) {
   }
   for (const CandidateResult& c : diagnosis.candidates) {
     text += "\n    " + c.effect + " " + std::to_string(c.strength) + " +- " + std::to_string(c.sd) +
-            " gain " + std::to_string(c.gain) + " " + c.verdict;
+            " gain " + std::to_string(c.gain) + " " + name_of(c.verdict);
   }
   return text;
 }
@@ -303,7 +303,7 @@ TEST(LongImpactDiagnosis, AnOffsetThatTheLawWouldTakeUpIsNotAdequate) {
     return note.find("cannot exclude off-centre-contact") != std::string::npos;
   })) << told(diagnosis);
   const CandidateResult& offset = row_of(diagnosis, "off-centre-contact");
-  EXPECT_NE(offset.verdict, "untestable") << told(diagnosis);
+  EXPECT_NE(offset.verdict, CandidateVerdict::untestable) << told(diagnosis);
   EXPECT_GT(offset.strength, 0.003);
   EXPECT_GT(offset.detectable, 0.004) << "less of it stays on the bar's face";
   EXPECT_LT(offset.detectable, 0.010);

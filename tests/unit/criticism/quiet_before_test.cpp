@@ -78,7 +78,7 @@ TEST(QuietBefore, AShiftOfZeroIsNeitherHumNorDrift) {
   }
   for (const char* id : {"mains-hum", "baseline-drift:g1"}) {
     const auto row = std::ranges::find(diagnosis.candidates, id, &CandidateResult::effect);
-    EXPECT_EQ(row->verdict, "rejected") << id;
+    EXPECT_EQ(row->verdict, CandidateVerdict::rejected) << id;
     EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [&](const std::string& note) {
       return note.starts_with(std::string(id) + " is not claimed: ");
     })) << id;

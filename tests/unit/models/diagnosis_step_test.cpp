@@ -28,7 +28,7 @@ Diagnosis found(DiagnosisVerdict verdict) {
   candidate.strength = 3e-3;
   candidate.sd = 1e-5;
   candidate.log_p = -700.0;
-  candidate.verdict = "tied";
+  candidate.verdict = CandidateVerdict::tied;
   diagnosis.candidates = {candidate};
   Model model = paper_model(BenchKind::bar, false);
   model.effects.push_back(use_named("temperature"));
