@@ -216,7 +216,7 @@ void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::str
   DiagnosisOptions options;
   options.progress = [this](const std::string& what) { step(what); };
   if (campaign.bench.kind == BenchKind::impact) {
-    ImpactStudy study(campaign, judges_whole(model.file.model), 0.0, std::move(one));
+    ImpactStudy study(campaign, judged_stretch(model.file.model), 0.0, std::move(one));
     file(model, diagnose_impacts(study, model.file.model, options), captures);
     return;
   }

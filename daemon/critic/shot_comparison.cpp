@@ -63,7 +63,7 @@ v1::Comparison::Light light_of(Allowance allowance) {
 /// No share of the energy bounds what a calculation may be off by: the light is by what is allowed
 /// for it.
 void compare_impact(const Campaign& campaign, const Model& model, v1::Comparison& message) {
-  ImpactStudy study(campaign, judges_whole(model), 0.0, Workers{});
+  ImpactStudy study(campaign, judged_stretch(model), 0.0, Workers{});
   const Studied studied = study.as_it_is(model);
   const ImpactComparison comparison = study.compare(studied);
   put_places(

@@ -131,7 +131,7 @@ void diagnose_fifteen_impacts(benchmark::State& state, double core_b, double bri
   const Campaign campaign = read_campaign(testing::impact_shots(wishes));
   std::string found;
   for (auto _ : state) {
-    ImpactStudy study(campaign, false, 0.0, two_threads());
+    ImpactStudy study(campaign, JudgedStretch::to_reflection, 0.0, two_threads());
     const Diagnosis diagnosis = diagnose_impacts(study, known_ball(), {});
     found = name_of(diagnosis.verdict);
     for (const std::string& id : diagnosis.effects) {

@@ -66,7 +66,7 @@ std::string how(const Settings& settings, const ModelFile& file) {
 int run_impacts(const Settings& settings, const ModelFile& file, const Campaign& campaign,
                 Context& context) {
   require_kind(file.model, campaign);
-  ImpactStudy study(campaign, judges_whole(file.model), band_limit_of(settings.band_limit_Hz),
+  ImpactStudy study(campaign, judged_stretch(file.model), band_limit_of(settings.band_limit_Hz),
                     all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
   const Studied studied = naming_model(settings.model, [&] {

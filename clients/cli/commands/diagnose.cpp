@@ -94,7 +94,7 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
                           const std::vector<Shot>& shots, const DiagnosisOptions& options) {
   const Campaign campaign = read_campaign(shots);
   require_kind(model, campaign);
-  ImpactStudy study(campaign, judges_whole(model), band_limit_of(settings.band_limit_Hz),
+  ImpactStudy study(campaign, judged_stretch(model), band_limit_of(settings.band_limit_Hz),
                     all_cores());
   ImpactsSeen seen;
   Diagnosis diagnosis =

@@ -32,7 +32,7 @@ Studied fit(const Settings& settings, const Model& model, const Campaign& campai
   const double band_limit_Hz = band_limit_of(settings.band_limit_Hz);
   if (model.kind == BenchKind::impact) {
     require_kind(model, campaign);
-    ImpactStudy study(campaign, judges_whole(model), band_limit_Hz, executor);
+    ImpactStudy study(campaign, judged_stretch(model), band_limit_Hz, executor);
     return naming_model(settings.model, [&] { return study.settled(study.fit(model)); });
   }
   Study study(campaign, band_limit_Hz, executor);

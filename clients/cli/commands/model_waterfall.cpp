@@ -64,9 +64,10 @@ Waterfall fall_of(const Settings& settings, const ModelFile& file) {
   if (file.model.kind == BenchKind::impact) {
     require_kind(file.model, campaign);
     const bool whole = std::any_of(steps.begin(), steps.end(), [](const LineageStep& step) {
-      return judges_whole(step.model);
+      return judged_stretch(step.model) == JudgedStretch::whole;
     });
-    ImpactStudy study(campaign, whole, band_limit_Hz, all_cores());
+    ImpactStudy study(campaign, whole ? JudgedStretch::whole : JudgedStretch::to_reflection,
+                      band_limit_Hz, all_cores());
     return naming_model(settings.model, [&] { return waterfall(study, steps); });
   }
   Study study(campaign, band_limit_Hz, all_cores());

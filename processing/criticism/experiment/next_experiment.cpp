@@ -112,7 +112,7 @@ double objective_of(Study& study, const Studied& bare, const std::string& rival)
     return std::numeric_limits<double>::infinity();
   }
   const Candidate& candidate = candidates[static_cast<std::size_t>(best - directions.begin())];
-  const Composition composition(with(bare.model, candidate, true), study.campaign());
+  const Composition composition(with(bare.model, candidate, Auxiliaries::free), study.campaign());
   std::vector<double> start = carry(bare.composition, bare.fit.theta, composition);
   Eigen::Index strength = 0;
   for (std::size_t i = 0; i < start.size() && strength < best->step.size(); ++i) {

@@ -80,7 +80,7 @@ ModelFit fit_model(const Composition& composition, ShotResiduals& residuals,
                    const Eigen::MatrixXd* chord) {
   FitSteps steps(composition, residuals, executor, std::move(start));
   if (steps.nothing_free()) {
-    return steps.done(true);
+    return steps.as_it_is();
   }
   double damping = 0.0;
   bool fresh = false;
@@ -140,7 +140,7 @@ ModelFit fit_by_secants(const Composition& composition, ShotResiduals& residuals
                         const Eigen::MatrixXd* chord, Settle settle) {
   FitSteps steps(composition, residuals, executor, std::move(start));
   if (steps.nothing_free()) {
-    return steps.done(true);
+    return steps.as_it_is();
   }
   const bool roughly = settle == Settle::roughly;
   bool fresh = chord == nullptr;  // derivatives made, and no step taken since

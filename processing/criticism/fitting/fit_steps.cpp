@@ -185,14 +185,15 @@ void FitSteps::take(Step step) {
 ModelFit FitSteps::done(bool converged) {
   fit_.converged = converged;
   fit_.taken_by_noise = residuals_.taken_by_noise(composition_, fit_.theta, executor_.first);
-  const auto count = static_cast<Eigen::Index>(fit_.theta.size());
-  if (count == 0) {
-    // Nothing is free: the model is what it is.
-    fit_.jacobian.resize(fit_.residual.size(), 0);
-    fit_.covariance.resize(0, 0);
-    return std::move(fit_);
-  }
   fit_.covariance = covariance_of(fit_.information, holds_weak());
+  return std::move(fit_);
+}
+
+ModelFit FitSteps::as_it_is() {
+  fit_.converged = true;
+  fit_.taken_by_noise = residuals_.taken_by_noise(composition_, fit_.theta, executor_.first);
+  fit_.jacobian.resize(fit_.residual.size(), 0);
+  fit_.covariance.resize(0, 0);
   return std::move(fit_);
 }
 

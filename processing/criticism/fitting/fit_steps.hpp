@@ -47,6 +47,8 @@ class FitSteps {
   [[nodiscard]] bool nothing_free() const { return fit_.theta.empty(); }
   /// The fit as it stands, with its covariance.
   [[nodiscard]] ModelFit done(bool converged);
+  /// The same where nothing is free: the model is what it is.
+  [[nodiscard]] ModelFit as_it_is();
 
  private:
   void linearise();

@@ -146,11 +146,11 @@ double held_out_misfit(const std::vector<double>& squares, double penalty, doubl
   return (std::accumulate(squares.begin(), squares.end(), 0.0) + penalty) / residuals;
 }
 
-double floor_of(const Studied& after, bool remains, std::size_t shots) {
+double floor_of(const Studied& after, Left left, std::size_t shots) {
   if (shots < 2) {
     return 1.0;
   }
-  return remains
+  return left == Left::more
              ? after.misfit.noise_scale
              : (after.fit.chi2 + after.fit.penalty + static_cast<double>(after.fit.theta.size())) /
                    static_cast<double>(after.fit.residual.size());

@@ -31,13 +31,15 @@ namespace kolsky {
 [[nodiscard]] double held_out_misfit(const std::vector<double>& squares, double penalty,
                                      double residuals);
 
+/// What a fit leaves.
+enum class Left { noise, more };
+
 /// What the true model would leave of these very records, in the same measure. Where nothing shows
 /// that more than noise is left, it is what the fit left and what its numbers took up, one each:
 /// noise that repeats by chance is in all of them alike, and is nothing that an effect could close.
 /// Else noise is what differs between the shots.
-/// @param remains  more than noise is left
-/// @param shots    1: there is nothing but the noise as it is known
-[[nodiscard]] double floor_of(const Studied& after, bool remains, std::size_t shots);
+/// @param shots  1: there is nothing but the noise as it is known
+[[nodiscard]] double floor_of(const Studied& after, Left left, std::size_t shots);
 
 /// What an effect brought on shots that the fits did not see.
 struct Certification {

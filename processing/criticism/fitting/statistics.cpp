@@ -57,9 +57,9 @@ double log_f_tail(double f, double m, double n) {
   return tail > 1e-280 ? std::log(tail) : log_chi2_tail(f * m / (1.0 + f * m / n), m);
 }
 
-double log_gain_tail(double gain, double freedom, bool one_sided) {
+double log_gain_tail(double gain, double freedom, Signs signs) {
   const double log_p = log_chi2_tail(std::max(gain, 0.0), std::max(freedom, 1.0));
-  return one_sided ? log_p - std::log(2.0) : log_p;
+  return signs == Signs::one ? log_p - std::log(2.0) : log_p;
 }
 
 double equivalent_square(double log_tail) {

@@ -13,10 +13,12 @@ namespace kolsky {
 /// The same for Fisher's F with m and n degrees of freedom.
 [[nodiscard]] double log_f_tail(double f, double m, double n);
 
+/// Of which signs the strength of an effect may be.
+enum class Signs { both, one };
+
 /// ln of the probability that noise lets an effect gain so much chi2.
-/// @param freedom    strengths and other numbers that the effect is free in, at least 1
-/// @param one_sided  its strength has one sign only
-[[nodiscard]] double log_gain_tail(double gain, double freedom, bool one_sided);
+/// @param freedom  strengths and other numbers that the effect is free in, at least 1
+[[nodiscard]] double log_gain_tail(double gain, double freedom, Signs signs);
 
 /// Evidence on one scale whatever the number of free strengths: the square of the normal deviate
 /// with this two-sided tail probability.

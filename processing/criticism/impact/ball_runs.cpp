@@ -13,7 +13,7 @@ namespace kolsky {
 
 namespace {
 
-impact::BallMaterial material_of(const BallLayer& layer, int reading, bool cauchy) {
+impact::BallMaterial material_of(const BallLayer& layer, int reading, LawForm form) {
   impact::BallMaterial material;
   material.material.density_kg_m3 = {layer.density_kg_m3, 0.0};
   material.material.poisson_ratio = {layer.poisson_ratio, 0.0};
@@ -22,7 +22,8 @@ impact::BallMaterial material_of(const BallLayer& layer, int reading, bool cauch
   material.material.eta2_Pa_s() = {layer.solid.eta2_Pa_s, 0.0};
   material.reading = static_cast<impact::Reading>(reading);
   material.nonlinearity = layer.nonlinearity;
-  material.law = cauchy ? impact::FiniteStrain::cauchy : impact::FiniteStrain::kirchhoff;
+  material.law =
+      form == LawForm::cauchy ? impact::FiniteStrain::cauchy : impact::FiniteStrain::kirchhoff;
   if (!layer.solid.relaxations.empty()) {
     material.second = {layer.solid.relaxations[0].D_per_Pa, layer.solid.relaxations[0].tau_s};
   }
@@ -75,10 +76,13 @@ impact::ImpactHistory thrown(const impact::ImpactModel& model) {
 }  // namespace
 
 std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed_m_per_s,
-                                             std::size_t elements, bool cauchy) {
-  std::vector<double> key{speed_m_per_s,      static_cast<double>(elements),
-                          cauchy ? 1.0 : 0.0, static_cast<double>(ball.reading),
-                          ball.friction,      ball.offset_m,
+                                             std::size_t elements, LawForm form) {
+  std::vector<double> key{speed_m_per_s,
+                          static_cast<double>(elements),
+                          form == LawForm::cauchy ? 1.0 : 0.0,
+                          static_cast<double>(ball.reading),
+                          ball.friction,
+                          ball.offset_m,
                           ball.sabot_mass_kg};
   append(ball.core, key);
   append(ball.cover, key);
@@ -88,9 +92,9 @@ std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed
       return found->second;
     }
   }
-  impact::ImpactModel model = impact::impact_on(
-      bench_, material_of(ball.core, ball.reading, cauchy),
-      material_of(ball.cover, ball.reading, cauchy), impact::TargetKind::dashpot, speed_m_per_s);
+  impact::ImpactModel model = impact::impact_on(bench_, material_of(ball.core, ball.reading, form),
+                                                material_of(ball.cover, ball.reading, form),
+                                                impact::TargetKind::dashpot, speed_m_per_s);
   model.friction = ball.friction;
   model.offset_m = ball.offset_m;
   model.sabot_mass_kg = ball.sabot_mass_kg;

@@ -28,6 +28,9 @@ struct BallMeshes {
   std::size_t fine = 8192;
 };
 
+/// Of the law at finite strain: a mixture of the two is made of impacts with either.
+enum class LawForm { kirchhoff, cauchy };
+
 /// Impacts on one bench, each calculated once: a fit comes back to the same numbers, and effects of
 /// the sensors leave the ball alone. May be asked by several workers at once.
 class BallRuns {
@@ -35,10 +38,11 @@ class BallRuns {
   /// @param bench  outlives this
   explicit BallRuns(const Bench& bench) : bench_(bench) {}
 
-  /// @param cauchy  the law's finite-strain form; the scene's share of it is not looked at
+  /// @param form  the scene's share of it is not looked at
   /// @throws InputError what the solver refuses, place the effect, with the speed
   [[nodiscard]] std::shared_ptr<const BallRun> run(const BallScene& ball, double speed_m_per_s,
-                                                   std::size_t elements, bool cauchy = false);
+                                                   std::size_t elements,
+                                                   LawForm form = LawForm::kirchhoff);
 
  private:
   const Bench& bench_;

@@ -38,7 +38,7 @@ class Strengths {
         studied_(studied),
         worker_(worker),
         movable_(movable_of(studied)),
-        composition_(with(studied.model, candidate, false), study.campaign()),
+        composition_(with(studied.model, candidate, Auxiliaries::held), study.campaign()),
         theta_(carry(studied.composition, studied.fit.theta, composition_)) {
     for (std::size_t i = 0; i < composition_.numbers().size(); ++i) {
       if (composition_.uses()[composition_.numbers()[i].use].id() == candidate.id()) {

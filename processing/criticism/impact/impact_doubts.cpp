@@ -106,11 +106,11 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
   double reading_square = 0.0;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
-    const BallRun slower = force(moves_, ball, g, false);
-    const BallRun faster = force(moves_, ball, g, true);
+    const BallRun slower = force(moves_, ball, g, anchors_[g].low);
+    const BallRun faster = force(moves_, ball, g, anchors_[g].high);
     const auto low = recorded(read(slower, transfer, executor_.first), 0.0);
     const auto high = recorded(read(faster, transfer, executor_.first), 0.0);
-    const auto mesh = recorded(read(anchors_[g][0].mesh, transfer, executor_.first), 0.0);
+    const auto mesh = recorded(read(anchors_[g].low.mesh, transfer, executor_.first), 0.0);
     shapes.push_back(shape_of(g, foretold, low, high));
     shapes.back().by_speed.tail(1).setConstant((faster.rebound_m_per_s - slower.rebound_m_per_s) /
                                                records_.wave_speed_m_per_s * group.speed_m_per_s /
@@ -119,7 +119,7 @@ void ImpactResiduals::set_whitening(const Foretold& foretold, const Composition&
     judged = at_judged(g, foretold, mesh);
     judged.head(gauges) =
         not_of_arrival(judged.head(gauges), shapes.back().by_time.head(gauges), noise_inverse_);
-    judged[size - 1] = anchors_[g][0].mesh.rebound_m_per_s / records_.wave_speed_m_per_s;
+    judged[size - 1] = anchors_[g].low.mesh.rebound_m_per_s / records_.wave_speed_m_per_s;
     mesh_square += judged.head(gauges).squaredNorm();
     reading_square += shapes.back().reading.head(gauges).squaredNorm();
   }

@@ -44,7 +44,7 @@ class Seeker {
     }
     searched_ = search->base().fit.objective();
     Studied current = first;
-    while ((add_one(*search, current, true) || add_two(current)) &&
+    while ((add_one(*search, current, Searched::settled) || add_two(current)) &&
            diagnosis_.effects.size() < options_.most_effects) {
       options_.progress("testing what remains after " + diagnosis_.effects.back());
       search.emplace(study_, current);
@@ -65,8 +65,11 @@ class Seeker {
   }
 
  private:
-  /// @param settled  the model that was searched for what it lacks
-  bool add_one(ImpactSearch& search, Studied& current, bool settled) {
+  /// How far the model was fitted that was searched for what it lacks: a refit of a search goes by
+  /// borrowed derivatives.
+  enum class Searched { settled, as_refitted };
+
+  bool add_one(ImpactSearch& search, Studied& current, Searched searched) {
     options_.progress("refitting rivals");
     std::vector<ImpactRefit> refits = search.refits();
     scale_ = search.scale();
@@ -78,7 +81,7 @@ class Seeker {
     }
     const ImpactRefit* claimed = judge(search, refits, search.base());
     unbelievable_ = certifier_.unbelievable(search, refits, search.base());
-    if (claimed == nullptr && settled && diagnosis_.effects.empty() &&
+    if (claimed == nullptr && searched == Searched::settled && diagnosis_.effects.empty() &&
         study_.allowance(current) != Allowance::kept) {
       options_.progress("fitting the nearest to a claim to their ends");
       refits = search.settled(std::move(refits), current);
@@ -117,7 +120,7 @@ class Seeker {
     Studied beside = nearest.studied;
     ImpactSearch search(study_, beside);
     const std::size_t place = diagnosis_.effects.size();
-    if (!add_one(search, beside, false)) {
+    if (!add_one(search, beside, Searched::as_refitted)) {
       rest_ = nearest;
       unbelievable_ = unbelievable;
       return false;

@@ -14,11 +14,10 @@ constexpr double kChangeBySpeed = 1.5;
 
 }  // namespace
 
-BallRun ImpactResiduals::force(Moves mesh, const BallScene& ball, std::size_t group, bool high) {
+BallRun ImpactResiduals::force(Moves mesh, const BallScene& ball, std::size_t group,
+                               const Anchor& anchor) {
   const SpeedGroup& own = records_.groups[group];
-  const double speed = high ? own.high_m_per_s : own.low_m_per_s;
-  const Anchor& anchor = anchors_[group][high ? 1 : 0];
-  const double growth = std::pow(speed / own.speed_m_per_s, kChangeBySpeed);
+  const double growth = std::pow(anchor.speed_m_per_s / own.speed_m_per_s, kChangeBySpeed);
   const auto moved_from = [&](const BallRun& there, std::size_t elements) {
     const BallRun here = *runs_->run(ball, own.speed_m_per_s, elements);
     return sum_of(anchor.fine, growth, sum_of(here, -1.0, there));
@@ -33,8 +32,8 @@ BallRun ImpactResiduals::force(Moves mesh, const BallScene& ball, std::size_t gr
 
 /// Cauchy's less Kirchhoff's.
 BallRun ImpactResiduals::law_by(const BallScene& ball, double speed_m_per_s, std::size_t elements) {
-  return sum_of(*runs_->run(ball, speed_m_per_s, elements, true), -1.0,
-                *runs_->run(ball, speed_m_per_s, elements));
+  return sum_of(*runs_->run(ball, speed_m_per_s, elements, LawForm::cauchy), -1.0,
+                *runs_->run(ball, speed_m_per_s, elements, LawForm::kirchhoff));
 }
 
 void ImpactResiduals::anchor(const Composition& composition, const std::vector<double>& theta,
@@ -45,24 +44,24 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   struct Task {
     double speed_m_per_s;
     std::size_t elements;
-    bool cauchy;
+    LawForm form = LawForm::kirchhoff;
   };
   std::vector<Task> tasks;
   for (const SpeedGroup& group : records_.groups) {
     for (const double speed : {group.low_m_per_s, group.high_m_per_s}) {
       if (finest) {
-        tasks.push_back({speed, meshes_.fine, false});
+        tasks.push_back({speed, meshes_.fine});
       }
-      tasks.push_back({speed, meshes_.middle, false});
-      tasks.push_back({speed, meshes_.middle, true});
+      tasks.push_back({speed, meshes_.middle});
+      tasks.push_back({speed, meshes_.middle, LawForm::cauchy});
     }
-    tasks.push_back({group.speed_m_per_s, meshes_.coarse, false});
+    tasks.push_back({group.speed_m_per_s, meshes_.coarse});
   }
   // The long ones first: no worker is left with one at the end.
   std::stable_sort(tasks.begin(), tasks.end(),
                    [](const Task& a, const Task& b) { return a.elements > b.elements; });
   const auto run = [&](const Task& task) {
-    return runs_->run(ball, task.speed_m_per_s, task.elements, task.cauchy);
+    return runs_->run(ball, task.speed_m_per_s, task.elements, task.form);
   };
   executor_.run(tasks.size(),
                 [&](std::size_t i, std::size_t) { static_cast<void>(run(tasks[i])); });
@@ -71,17 +70,17 @@ void ImpactResiduals::anchor(const Composition& composition, const std::vector<d
   anchors_.resize(records_.groups.size());
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
-    const BallRun coarse = *run({group.speed_m_per_s, meshes_.coarse, false});
-    for (const bool high : {false, true}) {
-      const double speed = high ? group.high_m_per_s : group.low_m_per_s;
-      const BallRun middle = *run({speed, meshes_.middle, false});
-      Anchor& own = anchors_[g][high ? 1 : 0];
+    const BallRun coarse = *run({group.speed_m_per_s, meshes_.coarse});
+    anchors_[g].low.speed_m_per_s = group.low_m_per_s;
+    anchors_[g].high.speed_m_per_s = group.high_m_per_s;
+    for (Anchor* own : {&anchors_[g].low, &anchors_[g].high}) {
+      const BallRun middle = *run({own->speed_m_per_s, meshes_.middle});
       if (finest) {
-        own.mesh = sum_of(*run({speed, meshes_.fine, false}), -1.0, middle);
+        own->mesh = sum_of(*run({own->speed_m_per_s, meshes_.fine}), -1.0, middle);
       }
-      own.fine = sum_of(middle, 1.0, own.mesh);
-      own.coarse = coarse;
-      own.law = law_by(ball, speed, meshes_.middle);
+      own->fine = sum_of(middle, 1.0, own->mesh);
+      own->coarse = coarse;
+      own->law = law_by(ball, own->speed_m_per_s, meshes_.middle);
     }
   }
 }
@@ -98,9 +97,9 @@ void ImpactResiduals::move_by(Moves mesh, const Composition& composition) {
     const double speed = records_.groups[g].speed_m_per_s;
     const BallRun there = *runs_->run(ball, speed, meshes_.middle);
     const BallRun law = law_by(ball, speed, meshes_.middle);
-    for (Anchor& own : anchors_[g]) {
-      own.middle = there;
-      own.middle_law = law;
+    for (Anchor* own : {&anchors_[g].low, &anchors_[g].high}) {
+      own->middle = there;
+      own->middle_law = law;
     }
   }
 }
@@ -111,9 +110,9 @@ void ImpactResiduals::run_ahead(const Workers& executor, const BallScene& ball) 
   const std::size_t laws = coarse ? 1 : 2;
   executor.run(laws * records_.groups.size(), [&](std::size_t i, std::size_t /*worker*/) {
     const double speed = records_.groups[i / laws].speed_m_per_s;
+    const LawForm form = i % laws == 1 ? LawForm::cauchy : LawForm::kirchhoff;
     try {
-      static_cast<void>(
-          runs_->run(ball, speed, coarse ? meshes_.coarse : meshes_.middle, i % laws == 1));
+      static_cast<void>(runs_->run(ball, speed, coarse ? meshes_.coarse : meshes_.middle, form));
     } catch (const InputError&) {
       // Refused again where it is asked for, and said there.
     }

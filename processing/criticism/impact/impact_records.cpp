@@ -127,12 +127,12 @@ double common_slope(const Campaign& campaign, std::size_t gauge) {
 }
 
 /// How long after the arrival at the reference gauge every gauge is free of what is not modelled.
-double clear_s(const Campaign& campaign, bool whole) {
+double clear_s(const Campaign& campaign, JudgedStretch stretch) {
   const Bar& bar = campaign.bench.input;
   const double c0 = std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3);
   const double x0 = campaign.bench.gauges[campaign.reference].position_m;
   double least = kLongest_s;
-  if (whole) {
+  if (stretch == JudgedStretch::whole) {
     return 2.0 * bar.length_m / c0 - kClear_s;
   }
   for (const Gauge& gauge : campaign.bench.gauges) {
@@ -224,7 +224,8 @@ void ImpactRecords::take_samples() {
   }
 }
 
-ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double cutoff_Hz) {
+ImpactRecords read_impact_records(const Campaign& campaign, JudgedStretch stretch,
+                                  double cutoff_Hz) {
   if (!campaign.bench.input.youngs_modulus_Pa) {
     throw InputError("bars.input.youngs_modulus_Pa", "is missing: the ball strikes an elastic bar",
                      "give the bar's modulus");
@@ -234,7 +235,7 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
   records.sample_period_s = period_s;
   constexpr double kSamplesOfCutoff = 8.0;
   ImpactWindow& window = records.window;
-  window.to_far_end_only = !whole;
+  window.to_far_end_only = stretch == JudgedStretch::to_reflection;
   window.cutoff_Hz =
       std::min(cutoff_Hz > 0.0 ? cutoff_Hz : kUsualCutoff_Hz, 1.0 / (kSamplesOfCutoff * period_s));
   constexpr double kSamplesPerCycle = 3.0;
@@ -255,7 +256,7 @@ ImpactRecords read_impact_records(const Campaign& campaign, bool whole, double c
   read_travel(campaign, records);
   // The same stretch of every shot.
   double lead_s = kLead_s;
-  double after_s = clear_s(campaign, whole);
+  double after_s = clear_s(campaign, stretch);
   for (const CampaignShot& shot : campaign.shots) {
     lead_s = std::min(lead_s, shot.foot_s - 2.0 * period_s);
     const double end_s = static_cast<double>(shot.strain[0].size()) * period_s;

@@ -80,11 +80,16 @@ struct ImpactRecords {
   [[nodiscard]] std::size_t unsaid_rebounds() const;
 };
 
-/// @param whole  judge beyond the far end's reflection, up to where the struck end sends it back
+/// How much of the records is judged.
+enum class JudgedStretch {
+  to_reflection,  ///< until the far end's reflection is back
+  whole,          ///< beyond that, up to where the struck end sends it back
+};
+
 /// @param cutoff_Hz  0: 10 kHz; above it forces carry the ripple of a contact that grows node by
 /// node, whatever the mesh
 /// @throws InputError where too little of a pulse is left to judge
-[[nodiscard]] ImpactRecords read_impact_records(const Campaign& campaign, bool whole,
+[[nodiscard]] ImpactRecords read_impact_records(const Campaign& campaign, JudgedStretch stretch,
                                                 double cutoff_Hz);
 
 }  // namespace kolsky

@@ -15,13 +15,13 @@ constexpr double kSettled_s = 1e-11;
 
 }  // namespace
 
-ImpactResiduals::ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz,
+ImpactResiduals::ImpactResiduals(const Campaign& campaign, JudgedStretch stretch, double cutoff_Hz,
                                  const Workers& executor, const BallMeshes& meshes,
                                  std::shared_ptr<BallRuns> runs)
     : campaign_(campaign),
       executor_(executor),
       meshes_(meshes),
-      records_(read_impact_records(campaign, whole, cutoff_Hz)),
+      records_(read_impact_records(campaign, stretch, cutoff_Hz)),
       runs_(runs ? std::move(runs) : std::make_shared<BallRuns>(campaign.bench)) {
   const ImpactWindow& window = records_.window;
   const double judged_s = window.period_s * static_cast<double>(window.samples);
@@ -99,8 +99,8 @@ ImpactResiduals::Foretold ImpactResiduals::foretold_by(Moves mesh, const Composi
 ImpactResiduals::Readings ImpactResiduals::readings_of(
     Moves mesh, const BallScene& ball, std::size_t group,
     const std::vector<std::vector<Complex>>& transfer, double bridge_b, std::size_t worker) {
-  const BallRun low = force(mesh, ball, group, false);
-  const BallRun high = force(mesh, ball, group, true);
+  const BallRun low = force(mesh, ball, group, anchors_[group].low);
+  const BallRun high = force(mesh, ball, group, anchors_[group].high);
   return {recorded(read(low, transfer, worker), bridge_b),
           recorded(read(high, transfer, worker), bridge_b), low.rebound_m_per_s,
           high.rebound_m_per_s};

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -42,10 +41,10 @@ inline constexpr double kStandsBefore = 7.5;
 /// astray and makes deviations a third of what they are (Moves).
 class ImpactResiduals : public ShotResiduals {
  public:
-  /// @param whole  judge beyond the far end's reflection
-  /// @param runs   impacts on this bench that others calculate too; none: its own
-  ImpactResiduals(const Campaign& campaign, bool whole, double cutoff_Hz, const Workers& executor,
-                  const BallMeshes& meshes = {}, std::shared_ptr<BallRuns> runs = nullptr);
+  /// @param runs  impacts on this bench that others calculate too; none: its own
+  ImpactResiduals(const Campaign& campaign, JudgedStretch stretch, double cutoff_Hz,
+                  const Workers& executor, const BallMeshes& meshes = {},
+                  std::shared_ptr<BallRuns> runs = nullptr);
 
   /// Takes from this model the fine forces, the arrivals and the whitener.
   /// @throws InputError what the solver refuses there
@@ -67,9 +66,9 @@ class ImpactResiduals : public ShotResiduals {
   [[nodiscard]] const std::vector<double>& anchored_at() const { return anchored_at_; }
   /// Of the core or the cover where the fine forces were taken last, at the highest speed: the
   /// share that is strained beyond what the law of a solid that softens allows.
-  [[nodiscard]] double falling_share() const { return anchors_.back()[1].fine.falling_share; }
+  [[nodiscard]] double falling_share() const { return anchors_.back().high.fine.falling_share; }
   /// There, of the core: the share beyond a strain of 0.1.
-  [[nodiscard]] double strained_share() const { return anchors_.back()[1].fine.strained_share; }
+  [[nodiscard]] double strained_share() const { return anchors_.back().high.fine.strained_share; }
   /// Allows for this share of what the force's calculation is commonly off by, and for twice what
   /// the meshes show at least.
   void allow(double share, const Composition& composition, const std::vector<double>& theta);
@@ -171,6 +170,7 @@ class ImpactResiduals : public ShotResiduals {
     [[nodiscard]] Reading at(double share) const;
   };
   struct Anchor {
+    double speed_m_per_s = 0.0;
     BallRun fine;        ///< at the prepared numbers
     BallRun law;         ///< Cauchy's less Kirchhoff's
     BallRun mesh;        ///< fine less middle
@@ -178,13 +178,19 @@ class ImpactResiduals : public ShotResiduals {
     BallRun middle;      ///< there, where forces change by it
     BallRun middle_law;  ///< the law by it, there
   };
+  /// At the ends of a group's speeds.
+  struct Anchors {
+    Anchor low;
+    Anchor high;
+  };
 
   [[nodiscard]] RecordScene record_of(const Composition& composition,
                                       const std::vector<double>& theta, std::size_t shot) const;
   [[nodiscard]] Foretold foretold_by(Moves mesh, const Composition& composition,
                                      const std::vector<double>& theta, std::size_t worker);
   [[nodiscard]] Eigen::VectorXd white(const Foretold& foretold) const;
-  [[nodiscard]] BallRun force(Moves mesh, const BallScene& ball, std::size_t group, bool high);
+  [[nodiscard]] BallRun force(Moves mesh, const BallScene& ball, std::size_t group,
+                              const Anchor& anchor);
   void run_ahead(const Workers& executor, const BallScene& ball);
   [[nodiscard]] BallRun law_by(const BallScene& ball, double speed_m_per_s, std::size_t elements);
   [[nodiscard]] std::vector<std::vector<Complex>> transfers(const Composition& composition,
@@ -223,7 +229,7 @@ class ImpactResiduals : public ShotResiduals {
   Moves moves_ = Moves::coarse;
   ImpactRecords records_;
   std::shared_ptr<BallRuns> runs_;
-  std::vector<std::array<Anchor, 2>> anchors_;  ///< by group: low and high
+  std::vector<Anchors> anchors_;  ///< by group
   std::vector<double> anchored_at_;
   std::unique_ptr<ImpactWhitening> whitening_;
   std::unique_ptr<ImpactEnergy> energy_;

@@ -139,8 +139,7 @@ ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
       direction = flat_[i] ? flat_[i]->secant : untestable(std::move(direction));
     }
     if (direction.freedom > 0.0) {
-      evidence_[i] =
-          equivalent_square(log_gain_tail(direction.gain, direction.freedom, own.one_sided));
+      evidence_[i] = equivalent_square(log_gain_tail(direction.gain, direction.freedom, own.signs));
     }
   });
   trials_ = independent_trials(base_, candidates_, directions_);
@@ -221,7 +220,7 @@ void ImpactSearch::add_variants_as_likely(std::vector<std::size_t>& chosen) cons
 std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor,
                                                double least) {
   const Candidate& candidate = candidates_[index];
-  const Model model = with(base_.model, candidate, true);
+  const Model model = with(base_.model, candidate, Auxiliaries::free);
   Composition composition(model, study_.campaign());
   const Eigen::MatrixXd chord = borrowed(candidate, directions_[index], base_, composition);
   ModelFit fit = fit_by_secants(composition, study_.residuals(), executor,
@@ -272,16 +271,16 @@ void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
   for (ImpactRefit& refit : list) {
     refit.gain = refit.lowers / noise;
     refit.of_filed = refit.lowers_filed / noise;
-    const bool one_sided = candidate(refit).one_sided && refit.freedom < 1.5;
+    const Signs signs = refit.freedom < 1.5 ? candidate(refit).signs : Signs::both;
     const double beside_rivals = (refit.gain - refit.of_filed) / scale_ + refit.of_filed;
     refit.evidence =
-        equivalent_square(log_gain_tail(std::max(0.0, beside_rivals), refit.freedom, one_sided));
+        equivalent_square(log_gain_tail(std::max(0.0, beside_rivals), refit.freedom, signs));
     const double squares = std::max(0.0, refit.gain) /
                            doubt_of_gain(candidate(refit), directions_[refit.candidate], scale_);
-    const double by_chi2 = log_gain_tail(squares, refit.freedom, one_sided);
+    const double by_chi2 = log_gain_tail(squares, refit.freedom, signs);
     refit.log_p = scale_ > kSolverDoubt
                       ? log_f_tail(squares / refit.freedom, refit.freedom, known) -
-                            (one_sided ? std::log(2.0) : 0.0)
+                            (signs == Signs::one ? std::log(2.0) : 0.0)
                       : by_chi2;
   }
 }

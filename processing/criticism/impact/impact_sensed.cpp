@@ -21,13 +21,12 @@ ImpactResiduals::Sensed ImpactResiduals::sensed(const Composition& composition,
   const RecordScene record = record_of(composition, theta, shot);
   const std::size_t g = records_.group_of[shot];
   const SpeedGroup& group = records_.groups[g];
-  const auto run = [&](bool high) {
-    const double speed = high ? group.high_m_per_s : group.low_m_per_s;
-    return sum_of(*runs_->run(ball, speed, meshes_.middle), ball.cauchy_share,
-                  anchors_[g][high ? 1 : 0].law);
+  const auto run = [&](const Anchor& anchor) {
+    return sum_of(*runs_->run(ball, anchor.speed_m_per_s, meshes_.middle), ball.cauchy_share,
+                  anchor.law);
   };
-  const BallRun low = run(false);
-  const BallRun high = run(true);
+  const BallRun low = run(anchors_[g].low);
+  const BallRun high = run(anchors_[g].high);
   const CampaignShot& own = campaign_.shots[shot];
   const double share = (*own.facts.incident_speed_m_per_s * (1.0 + faster) - group.low_m_per_s) /
                        (group.high_m_per_s - group.low_m_per_s);

@@ -88,8 +88,9 @@ std::string name_of(Allowance allowance) {
   return {};
 }
 
-bool judges_whole(const Model& model) {
-  return model.find("end-reflection") != nullptr;
+JudgedStretch judged_stretch(const Model& model) {
+  return model.find("end-reflection") != nullptr ? JudgedStretch::whole
+                                                 : JudgedStretch::to_reflection;
 }
 
 /// A ball with little friction has a second minimum where friction is filed, with moduli and law in

@@ -66,20 +66,19 @@ enum class Allowance {
 /// "kept", "mimicked", "exceeded"
 [[nodiscard]] std::string name_of(Allowance allowance);
 
-/// Whether the model asks for more of the records than what precedes the far end's reflection.
-[[nodiscard]] bool judges_whole(const Model& model);
+/// How much of the records a model asks for: with end-reflection the whole.
+[[nodiscard]] JudgedStretch judged_stretch(const Model& model);
 
 /// A campaign of impacts under study.
 class ImpactStudy {
  public:
-  /// @param whole   judge beyond the far end's reflection, as a model with end-reflection asks for
   /// @param meshes  other than these cost more or say less; the documented figures are of these
   /// @param runs    impacts on this bench that other studies calculate too
-  ImpactStudy(const Campaign& campaign, bool whole, double cutoff_Hz, Workers executor,
+  ImpactStudy(const Campaign& campaign, JudgedStretch stretch, double cutoff_Hz, Workers executor,
               const BallMeshes& meshes = {}, std::shared_ptr<BallRuns> runs = nullptr)
       : campaign_(campaign),
         executor_(std::move(executor)),
-        residuals_(campaign, whole, cutoff_Hz, executor_, meshes, std::move(runs)) {}
+        residuals_(campaign, stretch, cutoff_Hz, executor_, meshes, std::move(runs)) {}
 
   /// Where else the last fit's model might stand, and by how much its objective is more there.
   struct SecondMinimum {

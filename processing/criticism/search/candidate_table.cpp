@@ -131,11 +131,11 @@ double first_order_log_p(const Tried& tried, std::size_t i) {
   const auto two_sided = [&](double gain) {
     const double over = gain / doubt(tried, i);
     return tried.known.empty()
-               ? log_gain_tail(over, direction.freedom, false)
+               ? log_gain_tail(over, direction.freedom, Signs::both)
                : log_f_tail(over / direction.freedom, direction.freedom, tried.known[i]);
   };
   const Candidate& candidate = tried.candidates[i];
-  if (!candidate.one_sided || direction.information.rows() != 1) {
+  if (candidate.signs == Signs::both || direction.information.rows() != 1) {
     return two_sided(place_of(tried, i).gain);
   }
   const EffectParameter& strength = candidate.use.effect->about().parameters.front();
@@ -200,7 +200,7 @@ double foretold_gain(const Tried& tried, std::size_t i) {
   for (Eigen::Index n = 0; n < shots; ++n) {
     const double others = information.sum() - information[n];
     double strength = others > 0.0 ? (pull.sum() - pull[n]) / others : 0.0;
-    if (tried.candidates[i].one_sided && side * strength < 0.0) {
+    if (tried.candidates[i].signs == Signs::one && side * strength < 0.0) {
       strength = 0.0;
     }
     gain += strength * (2.0 * pull[n] - strength * information[n]);

@@ -39,13 +39,13 @@ bool means_something(const EffectUse& use, const Campaign& campaign) {
   return true;
 }
 
-bool one_sided(const EffectUse& use) {
+Signs signs_of(const EffectUse& use) {
   const auto& parameters = use.effect->about().parameters;
   const auto strengths = std::count_if(parameters.begin(), parameters.end(),
                                        [](const auto& p) { return !p.auxiliary(); });
   const EffectParameter& first = parameters.front();
-  return strengths == 1 && !use.per_shot &&
-         (first.null_value <= first.lower || first.null_value >= first.upper);
+  const bool at_end = first.null_value <= first.lower || first.null_value >= first.upper;
+  return strengths == 1 && !use.per_shot && at_end ? Signs::one : Signs::both;
 }
 
 void hold_auxiliaries(EffectUse& use) {
@@ -101,10 +101,10 @@ void add_variants(const Effect& effect, const std::string& gauge, const Campaign
       }
       variant.per_shot = per_shot;
       variant.alike = false;
-      list.push_back({variant, false, one_sided(variant)});
+      list.push_back({.use = variant, .signs = signs_of(variant)});
       if (about.each_gauge) {
         variant.alike = true;
-        list.push_back({variant, false, one_sided(variant)});
+        list.push_back({.use = variant, .signs = signs_of(variant)});
       }
     }
   }
@@ -118,7 +118,7 @@ std::vector<Candidate> candidates_for(const Studied& studied, const Campaign& ca
     const bool filed = std::any_of(use.values.begin(), use.values.end(),
                                    [](const auto& value) { return value.prior_sd > 0.0; });
     if (filed && !use.effect->about().base && !use.effect->about().each_gauge) {
-      list.push_back({use, true, false});
+      list.push_back({.use = use, .frees_prior = true});
     }
   }
   for (const Effect* effect : effects_known_to(studied.model)) {
@@ -144,7 +144,7 @@ std::vector<Candidate> candidates_for(const Studied& studied, const Campaign& ca
   return list;
 }
 
-Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries) {
+Model with(const Model& model, const Candidate& candidate, Auxiliaries auxiliaries) {
   Model out = model;
   EffectUse use = candidate.use;
   if (candidate.frees_prior) {
@@ -153,7 +153,7 @@ Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries
     }
   }
   const auto& parameters = use.effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size() && free_auxiliaries; ++p) {
+  for (std::size_t p = 0; p < parameters.size() && auxiliaries == Auxiliaries::free; ++p) {
     if (parameters[p].is_switch) {
       use.values[p].value = parameters[p].upper;
       use.values[p].free = false;
@@ -241,7 +241,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, const
     direction.information = direction.unprojected - direction.model_share.transpose() *
                                                         fit.covariance * direction.model_share;
   } else {
-    const Model extended = with(studied.model, candidate, false);
+    const Model extended = with(studied.model, candidate, Auxiliaries::held);
     const Composition composition(extended, campaign);
     const std::vector<double> theta = carry(studied.composition, fit.theta, composition);
     std::vector<std::size_t> own;
@@ -271,7 +271,7 @@ Direction direction_of(const Candidate& candidate, const Studied& studied, const
     }
   }
   direction.step = least_norm_solution(information, direction.pull);
-  if (candidate.one_sided && count > 0) {
+  if (candidate.signs == Signs::one && count > 0) {
     const EffectParameter& p = candidate.use.effect->about().parameters.front();
     const bool up = p.null_value <= p.lower;
     if ((direction.step[0] < 0.0) == up) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/fitting/study.hpp"
 
 namespace kolsky {
@@ -11,9 +12,9 @@ namespace kolsky {
 /// One way to add one effect to a model: with its auxiliary parameters at one of their starts, for
 /// all shots or each shot by itself. Or a filed number set free of its prior.
 struct Candidate {
-  EffectUse use;             ///< at null, auxiliaries set
-  bool frees_prior = false;  ///< the model holds it already as a known unknown
-  bool one_sided = false;    ///< its strength cannot be negative
+  EffectUse use;              ///< at null, auxiliaries set
+  bool frees_prior = false;   ///< the model holds it already as a known unknown
+  Signs signs = Signs::both;  ///< of its strength
 
   [[nodiscard]] std::string id() const { return use.id(); }
 };
@@ -42,8 +43,11 @@ struct Direction {
 [[nodiscard]] double doubt_of_gain(const Candidate& candidate, const Direction& direction,
                                    double scale);
 
-/// The model with a candidate added (or its prior dropped), auxiliaries free where asked for.
-[[nodiscard]] Model with(const Model& model, const Candidate& candidate, bool free_auxiliaries);
+/// Whether a fit may move a candidate's auxiliary numbers or they stay where its variant has them.
+enum class Auxiliaries { held, free };
+
+/// The model with a candidate added (or its prior dropped).
+[[nodiscard]] Model with(const Model& model, const Candidate& candidate, Auxiliaries auxiliaries);
 
 /// Numbers of one composition carried into another: by effect, parameter and place; what is new
 /// keeps its start.
@@ -60,7 +64,7 @@ struct Direction {
                                      const Campaign& campaign, ShotResiduals& residuals,
                                      std::size_t worker);
 [[nodiscard]] inline Direction direction_of(const Candidate& candidate, const Studied& studied,
-                                            Study& study, std::size_t worker) {
+                                            Study& study, std::size_t worker = 0) {
   return direction_of(candidate, studied, study.campaign(), study.residuals(), worker);
 }
 

@@ -51,7 +51,7 @@ void Rating::rate_in_order(std::vector<Refit>& list) const {
 void Rating::rate(Refit& refit, double noise) const {
   double over_noise = (ground_.base.fit.objective() - refit.studied.fit.objective()) / noise;
   refit.beside = share_beside_unconfirmed(
-      refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.one_sided)));
+      refit, equivalent_square(log_gain_tail(over_noise, refit.freedom, refit.signs)));
   over_noise *= refit.beside;
   refit.noise = noise;
   refit.over_noise = over_noise;
@@ -67,7 +67,7 @@ void Rating::rate(Refit& refit, double noise) const {
   refit.known = addition ? kKnownWell : std::min(kKnownWell, known_of(use));
   refit.rival_log_p = addition ? refit.log_p : chance_of(refit, over_noise);
   refit.evidence = equivalent_square(
-      log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.one_sided));
+      log_gain_tail(addition ? refit.gain : over_noise, refit.freedom, refit.signs));
   if (refit.products) {
     // What differs between the shots may have been taken for noise: then its gain says too little.
     refit.evidence = std::max(refit.evidence, equivalent_square(refit.log_p));
@@ -95,11 +95,11 @@ double Rating::chance_of(const Refit& refit, double gain) const {
     return refit.slow->least() - std::log(trials_);
   }
   if (use.per_shot || gain <= 0.0) {
-    return log_gain_tail(gain, refit.freedom, refit.one_sided);
+    return log_gain_tail(gain, refit.freedom, refit.signs);
   }
   const double freedom = std::max(refit.freedom, 1.0);
   const double log_p = log_f_tail(gain / freedom, freedom, known_of(use));
-  return refit.one_sided ? log_p - std::log(2.0) : log_p;
+  return refit.signs == Signs::one ? log_p - std::log(2.0) : log_p;
 }
 
 /// What explains less than something slow that nothing confirms must do so beside it, too: else it
@@ -123,7 +123,7 @@ bool Rating::is_most_of_unconfirmed(const Refit& refit, double evidence) const {
   }
   const double rest = std::max(0.0, unconfirmed_->gain - gain_over_own_noise(refit, ground_));
   const double freedom = std::max(1.0, unconfirmed_->freedom - refit.freedom);
-  return evidence > equivalent_square(log_gain_tail(rest, freedom, false));
+  return evidence > equivalent_square(log_gain_tail(rest, freedom, Signs::both));
 }
 
 void Rating::note_unconfirmed(const Refit& refit, double gain, double evidence) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/fitting/study.hpp"
 #include "processing/criticism/search/product_test.hpp"
 
@@ -25,7 +26,7 @@ struct Refit {
   std::size_t candidate = 0;
   Studied studied;
   double freedom = 1.0;
-  bool one_sided = false;
+  Signs signs = Signs::both;        ///< of its strength
   double chi2_in_base_noise = 0.0;  ///< its residuals whitened as those without the candidate
   double scatter = 1.0;             ///< how much more than noise the shots differ in its direction
   /// That strengths which every shot and gauge has of its own are products all the same.

@@ -61,7 +61,7 @@ ModelFit Refitter::begun_from(const Composition& composition, std::vector<double
 Refit Refitter::refit(std::size_t index, std::size_t worker) const {
   const Candidate& candidate = ground_.candidates[index];
   const Direction& direction = ground_.directions[index];
-  const Model model = with(ground_.base.model, candidate, true);
+  const Model model = with(ground_.base.model, candidate, Auxiliaries::free);
   Composition composition(model, ground_.study.campaign());
   const auto chord = chord_of(candidate, direction, composition);
   const auto fit_from = [&](std::vector<double> theta, const Eigen::MatrixXd* known = nullptr) {
@@ -70,7 +70,7 @@ Refit Refitter::refit(std::size_t index, std::size_t worker) const {
   ModelFit fit =
       fit_from(begin_near(candidate, direction, composition, worker), chord ? &*chord : nullptr);
   if (begins_afresh(candidate)) {
-    const Composition again(with(afresh_, candidate, true), ground_.study.campaign());
+    const Composition again(with(afresh_, candidate, Auxiliaries::free), ground_.study.campaign());
     better_of(fit, fit_from(carry(again, again.start(), composition)));
   }
   from_large_sizes(index, composition, worker, fit);
@@ -205,7 +205,7 @@ void Refitter::from_large_sizes(std::size_t index, const Composition& compositio
   const Candidate& candidate = ground_.candidates[index];
   const bool even = candidate.use.effect->about().parameters.front().power != 1.0;
   const bool bends = (even && ground_.may_be_astray) || (is_sudden(candidate) && ground_.far_off());
-  if (!candidate.one_sided || !(bends || ground_.evidence_of(index) < kWorthRefitting)) {
+  if (candidate.signs == Signs::both || !(bends || ground_.evidence_of(index) < kWorthRefitting)) {
     return;
   }
   const auto begin = [&](std::vector<double> theta) {
@@ -218,7 +218,7 @@ void Refitter::from_large_sizes(std::size_t index, const Composition& compositio
     return;
   }
   // Until the model's other numbers are fitted, none of its sizes says which is the right one.
-  const Composition again(with(afresh_, candidate, true), ground_.study.campaign());
+  const Composition again(with(afresh_, candidate, Auxiliaries::free), ground_.study.campaign());
   for (std::vector<double>& start :
        large_sizes(candidate, composition, carry(again, again.start(), composition))) {
     begin(std::move(start));
@@ -244,7 +244,7 @@ void Refitter::from_other_starts(std::size_t index, const Composition& compositi
                            [&](std::size_t i) { return ground_.directions[i].gain; });
   variants.resize(std::min(variants.size(), kStarts));
   for (const std::size_t i : variants) {
-    const Composition other(with(ground_.base.model, ground_.candidates[i], true),
+    const Composition other(with(ground_.base.model, ground_.candidates[i], Auxiliaries::free),
                             ground_.study.campaign());
     if (other.numbers().size() != composition.numbers().size()) {
       continue;
@@ -268,7 +268,7 @@ Refit Refitter::described(std::size_t index, const Model& model, Composition com
   const double freedom = ground_.base.fit.degrees_of_freedom(ground_.base.composition) -
                          out.studied.fit.degrees_of_freedom(out.studied.composition);
   out.freedom = candidate.frees_prior ? 1.0 : std::round(freedom);
-  out.one_sided = candidate.one_sided && freedom < 1.5;
+  out.signs = freedom < 1.5 ? candidate.signs : Signs::both;
   out.scatter =
       scatter_over_noise(out.studied, candidate.id(), ground_.study.residuals().per_shot());
   out.chi2_in_base_noise =
@@ -281,7 +281,8 @@ Refit Refitter::described(std::size_t index, const Model& model, Composition com
 }
 
 Refit Refitter::refit_closely(Refit rough, std::size_t worker) const {
-  const Model model = with(ground_.base.model, ground_.candidates[rough.candidate], true);
+  const Model model =
+      with(ground_.base.model, ground_.candidates[rough.candidate], Auxiliaries::free);
   Studied& studied = rough.studied;
   ModelFit fit = fit_model(studied.composition, ground_.study.residuals(), serial_on(worker),
                            studied.fit.theta);

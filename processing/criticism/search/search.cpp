@@ -60,7 +60,7 @@ bool Search::admissible(Refit& refit) {
 void Search::dismiss(const Refit& refit) {
   const EffectUse& use = ground_.candidates[refit.candidate].use;
   const double gain = gain_over_own_noise(refit, ground_);
-  const double chance = log_gain_tail(gain, refit.freedom, false);
+  const double chance = log_gain_tail(gain, refit.freedom, Signs::both);
   Dismissed& own = dismissed_[use.id()];
   own.verdict = use.per_shot ? CandidateVerdict::unconfirmed : CandidateVerdict::rejected;
   own.gain = std::max(own.gain, gain);

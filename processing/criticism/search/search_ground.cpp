@@ -26,7 +26,7 @@ double SearchGround::evidence_of(std::size_t candidate) const {
     return 0.0;
   }
   return equivalent_square(
-      log_gain_tail(direction.gain, direction.freedom, candidates[candidate].one_sided));
+      log_gain_tail(direction.gain, direction.freedom, candidates[candidate].signs));
 }
 
 }  // namespace kolsky

@@ -57,15 +57,15 @@ double independent_trials(const Studied& studied, const std::vector<Candidate>& 
     double two_sided = 0.0;
     double one_sided = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
-      if (!candidates[single[static_cast<std::size_t>(i)]].one_sided) {
+      if (candidates[single[static_cast<std::size_t>(i)]].signs == Signs::both) {
         two_sided = std::max(two_sided, z[i] * z[i]);
       } else if (z[i] > 0.0) {
         one_sided = std::max(one_sided, z[i] * z[i]);
       }
     }
     // One-sided tests have half the tail: the same chance lies at a smaller square.
-    best.push_back(-std::min(log_gain_tail(two_sided, 1.0, false),
-                             one_sided > 0.0 ? log_gain_tail(one_sided, 1.0, true) : 0.0));
+    best.push_back(-std::min(log_gain_tail(two_sided, 1.0, Signs::both),
+                             one_sided > 0.0 ? log_gain_tail(one_sided, 1.0, Signs::one) : 0.0));
   }
   // Chance 5 % for the best of all: n tests have p = 1 - 0.95^(1/n) each.
   std::nth_element(best.begin(), best.begin() + kSimulatedRepeats * 95 / 100, best.end());

@@ -127,8 +127,8 @@ class Shortlist {
     }
     add_where([&](std::size_t i) {
       const Candidate& own = ground_.candidates[i];
-      return of_material(own) && own.one_sided && own.use.effect->about().parameters.size() == 1 &&
-             !own.use.per_shot;
+      return of_material(own) && own.signs == Signs::one &&
+             own.use.effect->about().parameters.size() == 1 && !own.use.per_shot;
     });
   }
 

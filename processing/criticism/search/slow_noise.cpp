@@ -195,7 +195,8 @@ SlowNoise::Columns SlowNoise::of_model() const {
 }
 
 void SlowNoise::add_columns(const Addition& addition, Columns& columns) const {
-  const Composition composition(with(base_.model, addition.candidate, false), campaign_);
+  const Composition composition(with(base_.model, addition.candidate, Auxiliaries::held),
+                                campaign_);
   const std::vector<double> theta = carry(base_.composition, base_.fit.theta, composition);
   Eigen::Index strength = 0;
   for (std::size_t i = 0; i < theta.size(); ++i) {

@@ -153,7 +153,7 @@ class Run {
         continue;
       }
       use.values.front().value = value;
-      cases_.push_back({use, at, planted.sizes.size(), false, 0});
+      cases_.push_back({.use = use, .effect = at, .size = planted.sizes.size()});
       planted.sizes.push_back({sign * size, multiple, PlantOutcome::unseen, {}, 0.0, 0.0});
       sign = two_sided(use) ? -sign : sign;
     }
@@ -166,7 +166,7 @@ class Run {
   void add_nulls() {
     result_.nulls = options_.nulls;
     for (std::size_t i = 0; i < options_.nulls; ++i) {
-      cases_.push_back({{}, 0, 0, true, options_.seed + i});
+      cases_.push_back({.use = {}, .null = true, .seed = options_.seed + i});
     }
   }
 

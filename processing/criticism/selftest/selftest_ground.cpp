@@ -60,17 +60,17 @@ class BallGround final : public SelftestGround {
         workers_(workers),
         campaign_(read_campaign(shots)),
         runs_(std::make_shared<BallRuns>(campaign_.bench)),
-        study_(campaign_, judges_whole(model), band_limit_Hz, workers, meshes, runs_),
+        study_(campaign_, judged_stretch(model), band_limit_Hz, workers, meshes, runs_),
         studied_(study_.settled(study_.fit(model))),
         planter_(shots, study_, studied_) {}
 
   [[nodiscard]] Diagnosis untouched() const override {
-    ImpactStudy study(campaign_, judges_whole(model_), band_limit_Hz_, workers_, meshes_, runs_);
+    ImpactStudy study(campaign_, judged_stretch(model_), band_limit_Hz_, workers_, meshes_, runs_);
     return diagnose_impacts(study, model_, {});
   }
   [[nodiscard]] Diagnosis diagnosed(const std::vector<Shot>& shots) const override {
     const Campaign campaign = read_campaign(shots);
-    ImpactStudy study(campaign, judges_whole(model_), band_limit_Hz_, Workers{}, meshes_, runs_);
+    ImpactStudy study(campaign, judged_stretch(model_), band_limit_Hz_, Workers{}, meshes_, runs_);
     return diagnose_impacts(study, model_, {});
   }
   [[nodiscard]] std::string impossible_because(const EffectUse& use) const override {

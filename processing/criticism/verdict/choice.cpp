@@ -63,30 +63,41 @@ double tie_limit(const EffectUse& best, const EffectUse& rival) {
                                                                                   : kTie;
 }
 
-std::optional<Choice> Chooser::choose(Search& search, const Studied& base, bool first,
-                                      const std::vector<std::string>& barred) {
+std::optional<Choice> Chooser::choose_first(Search& search, const Studied& base,
+                                            const std::vector<std::string>& barred) {
+  Found found = found_by(search, base, barred);
+  note_all(found);
+  Places places = places_of(found);
+  if (places.best) {
+    const std::optional<double> ahead = lead_over_next(found, *places.best);
+    Choice choice = chosen(found, std::move(places));
+    choice.lead_over_next = ahead;
+    return choice;
+  }
+  if (!places.nearest || !barred.empty()) {
+    return std::nullopt;
+  }
+  // Shots may differ by what is missing beside it.
+  Refit& nearest = found.refits[*places.nearest];
+  return Choice{.id = id_of(search, nearest),
+                .candidate = nearest.candidate,
+                .studied = std::move(nearest.studied),
+                .ties = {},
+                .on_trial = true};
+}
+
+std::optional<Choice> Chooser::choose_next(Search& search, const Studied& base) {
+  const std::vector<std::string> none;
+  Found found = found_by(search, base, none);
+  Places places = places_of(found);
+  return places.best ? std::optional(chosen(found, std::move(places))) : std::nullopt;
+}
+
+Chooser::Found Chooser::found_by(Search& search, const Studied& base,
+                                 const std::vector<std::string>& barred) {
   Found found{search, search.refits(), {}, barred};
   found.held_out = certify(search, found.refits, base);
-  if (first) {
-    note_all(found);
-  }
-  Places places = places_of(found);
-  if (!places.best) {
-    if (!first || !places.nearest || !barred.empty()) {
-      return std::nullopt;
-    }
-    // Shots may differ by what is missing beside it.
-    Refit& nearest = found.refits[*places.nearest];
-    return Choice{.id = id_of(search, nearest),
-                  .candidate = nearest.candidate,
-                  .studied = std::move(nearest.studied),
-                  .ties = {},
-                  .on_trial = true};
-  }
-  const std::optional<double> ahead = first ? lead_over_next(found, *places.best) : std::nullopt;
-  Choice choice = chosen(found, std::move(places));
-  choice.lead_over_next = ahead;
-  return choice;
+  return found;
 }
 
 void Chooser::note_all(const Found& found) {

@@ -42,12 +42,14 @@ class Chooser {
   Chooser(Study& study, const DiagnosisOptions& options, Diagnosis& diagnosis)
       : study_(study), options_(options), diagnosis_(diagnosis) {}
 
-  /// @param base   the model that was searched
-  /// @param first  nothing is claimed yet: the candidates' rows take what the refits found, and
-  /// what the shots do not agree on is chosen on trial where nothing else is
+  /// Where nothing is claimed yet: the candidates' rows take what the refits found, and what the
+  /// shots do not agree on is chosen on trial where nothing else is.
+  /// @param base    the model that was searched
   /// @param barred  is not chosen, however well it does, and then nothing is on trial
-  [[nodiscard]] std::optional<Choice> choose(Search& search, const Studied& base, bool first,
-                                             const std::vector<std::string>& barred = {});
+  [[nodiscard]] std::optional<Choice> choose_first(Search& search, const Studied& base,
+                                                   const std::vector<std::string>& barred);
+  /// Beside what is claimed.
+  [[nodiscard]] std::optional<Choice> choose_next(Search& search, const Studied& base);
 
  private:
   /// What a search refitted, and how it fares on shots that were held out.
@@ -65,6 +67,8 @@ class Chooser {
     std::vector<std::size_t> confirmed;
   };
 
+  [[nodiscard]] Found found_by(Search& search, const Studied& base,
+                               const std::vector<std::string>& barred);
   void note_all(const Found& found);
   [[nodiscard]] Places places_of(const Found& found);
   void prefer_library(const Found& found, Places& places) const;

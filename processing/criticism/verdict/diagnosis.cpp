@@ -43,12 +43,12 @@ constexpr double kAllowedRest = 0.01;  ///< of a misfit that one certified effec
 /// ln of a chance that needs no search to be counted: 1e-5.
 constexpr double kSure = -11.5;
 
-HeldOut held_out(const Studied& before, const Studied& after, bool remains, Study& study) {
+HeldOut held_out(const Studied& before, const Studied& after, Left left, Study& study) {
   const auto mean = [&](const Studied& studied) {
     return held_out_misfit(held_out_squares(studied, study), studied.fit.penalty,
                            static_cast<double>(study.residuals().size()));
   };
-  return {mean(before), mean(after), floor_of(after, remains, study.campaign().shots.size())};
+  return {mean(before), mean(after), floor_of(after, left, study.campaign().shots.size())};
 }
 
 }  // namespace
@@ -190,8 +190,8 @@ class Diagnostician {
           first_order_table({search.candidates(), search.directions(), current, search.log_trials(),
                              1.0, search.known(), study_.residuals().per_shot()});
     }
-    std::optional<Choice> choice =
-        chooser_.choose(search, current, first, first ? barred_ : std::vector<std::string>{});
+    std::optional<Choice> choice = first ? chooser_.choose_first(search, current, barred_)
+                                         : chooser_.choose_next(search, current);
     if (first) {
       parting_ = parting_in_place_of(study_, current, start_, choice ? choice->studied : current);
     }
@@ -206,7 +206,7 @@ class Diagnostician {
       on_trial_ = choice->id;
     }
     diagnosis_.effects.push_back(choice->id);
-    start_ = with(start_, search.candidates()[choice->candidate], true);
+    start_ = with(start_, search.candidates()[choice->candidate], Auxiliaries::free);
     take(*choice, current);
     return !first || let_out_ || !was_astray(current) || add_one(current);
   }
@@ -265,7 +265,7 @@ class Diagnostician {
       Model start = start_;
       std::erase_if(start.effects, [&](const EffectUse& use) { return use.id() == id; });
       Search search(study_, base, start, options_.safeguards);
-      std::optional<Choice> choice = chooser_.choose(search, base, false);
+      std::optional<Choice> choice = chooser_.choose_next(search, base);
       if (!choice || std::count(diagnosis_.effects.begin(), diagnosis_.effects.end(), choice->id) >
                          (choice->id == id ? 1 : 0)) {
         continue;
@@ -285,7 +285,7 @@ class Diagnostician {
         diagnosis_.effects[i] = choice->id;
         changed = true;
       }
-      start_ = with(start, search.candidates()[choice->candidate], true);
+      start_ = with(start, search.candidates()[choice->candidate], Auxiliaries::free);
       take(*choice, current);
     }
     return changed;
@@ -435,7 +435,7 @@ class Diagnostician {
     }
     candidate.use.per_shot = use.per_shot;
     candidate.use.alike = use.alike;
-    const Direction direction = direction_of(candidate, left, study_, 0);
+    const Direction direction = direction_of(candidate, left, study_);
     const SlowNoise::Addition addition{candidate, direction};
     return slow_noise_excluded(SlowNoise(left, study_).log_chance({&addition, 1}), Claim::standing);
   }
@@ -469,8 +469,9 @@ class Diagnostician {
                        excess > allowed_rest() * std::max(0.0, explained));
     small_rest_ = their_own(current, left, more, noise);
     const bool remains = more && !small_rest_;
-    diagnosis_.held_out =
-        held_out(before, current, diagnosis_.unexplained_log_p < options_.log_alpha, study_);
+    diagnosis_.held_out = held_out(
+        before, current,
+        diagnosis_.unexplained_log_p < options_.log_alpha ? Left::more : Left::noise, study_);
     std::vector<std::string> reasons =
         doubts(before, current, remains ? std::optional(left) : std::nullopt, noise);
     if (set_aside_ && !small_rest_) {
@@ -500,7 +501,7 @@ class Diagnostician {
       }
       trail_.excess = excess;
       give_up(diagnosis_, reasons, before.model,
-              floor_of(before, true, study_.campaign().shots.size()));
+              floor_of(before, Left::more, study_.campaign().shots.size()));
       if (doubted) {
         tell_where(before);
       }
@@ -603,8 +604,9 @@ class Diagnostician {
         reasons.push_back(other_law_text(*law));
       }
     }
-    if (const auto unlisted = unlisted_in_place_of(
-            study_, before, current, beside_the_bar(diagnosis_.effects).size(), !reasons.empty())) {
+    if (const auto unlisted =
+            unlisted_in_place_of(study_, before, current, beside_the_bar(diagnosis_.effects).size(),
+                                 reasons.empty() ? InPlaceOf::claims : InPlaceOf::all)) {
       reasons.push_back(*unlisted);
     }
     return reasons;
@@ -663,7 +665,9 @@ class Diagnostician {
     if (auto one = one_modulus_in_place_of_an_effect(current, noise)) {
       reasons.push_back(*std::move(one));
     } else if (behind < (doubted ? kNearly * explained : -kBetter * noise)) {
-      reasons.push_back(other_bars_text(before.model, other.model, behind < 0.0));
+      reasons.push_back(other_bars_text(
+          before.model, other.model,
+          behind < 0.0 ? OtherBars::explain_more : OtherBars::explain_nearly_as_much));
     }
   }
 
@@ -679,7 +683,8 @@ class Diagnostician {
       const std::optional<Model> any = with_bars_of_any_moduli(left, study_.campaign().bench);
       const Studied other = changed(study_, current, any.value_or(left));
       if (any && other.fit.objective() < current.fit.objective() + kTie * noise) {
-        return other_bars_text(left, other.model, false) + one_modulus_text(id);
+        return other_bars_text(left, other.model, OtherBars::explain_nearly_as_much) +
+               one_modulus_text(id);
       }
     }
     return std::nullopt;

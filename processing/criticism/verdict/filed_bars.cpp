@@ -60,7 +60,7 @@ std::optional<Model> with_bars_of_any_moduli(const Model& model, const Bench& be
   return filed ? std::optional(std::move(any)) : std::nullopt;
 }
 
-std::string other_bars_text(const Model& model, const Model& fitted, bool more) {
+std::string other_bars_text(const Model& model, const Model& fitted, OtherBars bars) {
   std::string moduli;
   const auto add = [&](const std::string& text) { moduli += (moduli.empty() ? "" : ", ") + text; };
   for (const std::string id : kViscoelastic) {
@@ -81,7 +81,7 @@ std::string other_bars_text(const Model& model, const Model& fitted, bool more) 
   const bool identified = std::ranges::any_of(
       kViscoelastic, [&](const std::string& id) { return model.find(id) != nullptr; });
   return std::string("bars of other moduli than filed explain ") +
-         (more ? "more of it (" : "nearly as much (") + moduli + "): " +
+         (bars == OtherBars::explain_more ? "more of it (" : "nearly as much (") + moduli + "): " +
          (identified ? "identify the bars again, at the shots' temperature"
                      : "measure their wave speed (`kolsky calibrate`); a modulus or density that "
                        "is filed without a deviation counts as exact");

@@ -14,9 +14,11 @@ namespace kolsky {
 /// @return nothing where no bar's moduli are filed
 [[nodiscard]] std::optional<Model> with_bars_of_any_moduli(const Model& model, const Bench& bench);
 
+/// How much other moduli explain of what they are held against.
+enum class OtherBars { explain_more, explain_nearly_as_much };
+
 /// How far the moduli of such a fit lie from those of the model, in a sentence.
-/// @param more  they explain more than what they are held against, not nearly as much
-[[nodiscard]] std::string other_bars_text(const Model& model, const Model& fitted, bool more);
+[[nodiscard]] std::string other_bars_text(const Model& model, const Model& fitted, OtherBars bars);
 
 /// Whether an effect that changes the bars' moduli from shot to shot, by each shot's amplitude or
 /// temperature, changes them alike in all of these, to a tenth: then it is another modulus.

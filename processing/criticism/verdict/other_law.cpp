@@ -23,7 +23,7 @@ bool is_of_law(const EffectUse& use) {
 /// What the departure that explains most gains over the noise, to first order.
 double best_departure(Study& study, const Studied& studied, double noise) {
   const Departure departure(study, studied);
-  const Direction all = direction_of({null_use(departure), false, false}, studied, study, 0);
+  const Direction all = direction_of({.use = null_use(departure)}, studied, study);
   double best = 0.0;
   for (Eigen::Index i = 0; i < all.pull.size(); ++i) {
     const double power = all.information(i, i);

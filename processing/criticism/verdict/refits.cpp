@@ -36,7 +36,7 @@ double evidence(const Studied& without, const Studied& with, double noise) {
   const double gain = (without.fit.objective() - with.fit.objective()) / noise;
   const double freedom = without.fit.degrees_of_freedom(without.composition) -
                          with.fit.degrees_of_freedom(with.composition);
-  return equivalent_square(log_gain_tail(gain, std::max(1.0, freedom), false));
+  return equivalent_square(log_gain_tail(gain, std::max(1.0, freedom), Signs::both));
 }
 
 bool missed_in(const Study& study, const Studied& left, const Studied& current) {

@@ -107,11 +107,11 @@ bool hum_does_as_well(Study& study, const Studied& neither, const EffectUse& dri
       continue;
     }
     if (use.id() == drift.id()) {
-      const Direction direction = direction_of(candidate, neither, study, 0);
+      const Direction direction = direction_of(candidate, neither, study);
       of_drift = log_likelihood_of_drawn_strengths(direction.pull / noise,
                                                    direction.information.diagonal() / noise);
     } else if (use.effect->about().quadrature) {
-      const Direction direction = direction_of(candidate, neither, study, 0);
+      const Direction direction = direction_of(candidate, neither, study);
       of_hum = std::max(of_hum, log_likelihood_of_common_amplitude(
                                     parts_at(campaign, direction, noise, drift.gauge)));
     }
@@ -194,7 +194,7 @@ std::optional<HumInShares> hum_in_shares(Study& study, const Studied& current,
   const double freedom = neither.fit.degrees_of_freedom(neither.composition) -
                          alike.fit.degrees_of_freedom(alike.composition) +
                          static_cast<double>(study.campaign().gauges() - 1);
-  if (equivalent_square(log_gain_tail(gain, freedom, false)) <
+  if (equivalent_square(log_gain_tail(gain, freedom, Signs::both)) <
       evidence(neither, current, noise) - kTie) {
     return std::nullopt;
   }

@@ -74,7 +74,7 @@ Distortions unit_columns(Study& study, const Studied& studied) {
   }
   std::vector<Eigen::MatrixXd> list(uses.size());
   study.executor().run(uses.size(), [&](std::size_t i, std::size_t worker) {
-    list[i] = direction_of({uses[i], false, false}, studied, study, worker).columns;
+    list[i] = direction_of({.use = uses[i]}, studied, study, worker).columns;
   });
   Distortions out;
   Eigen::Index total = 0;

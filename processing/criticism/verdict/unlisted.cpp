@@ -86,17 +86,17 @@ Model with_changing_gauge(Study& study, const Studied& before) {
   }
   std::vector<double> gains(uses.size());
   study.executor().run(uses.size(), [&](std::size_t i, std::size_t worker) {
-    gains[i] = direction_of({uses[i], false, false}, before, study, worker).gain;
+    gains[i] = direction_of({.use = uses[i]}, before, study, worker).gain;
   });
   const auto most = std::ranges::max_element(gains) - gains.begin();
-  return with(before.model, {uses[static_cast<std::size_t>(most)], false, false}, true);
+  return with(before.model, {.use = uses[static_cast<std::size_t>(most)]}, Auxiliaries::free);
 }
 
-/// @param as_much  it explains as much as two effects and more do, not nearly all that is unknown
-std::string text_of(const Model& fitted, bool as_much) {
+std::string text_of(const Model& fitted, InPlaceOf what) {
   const EffectUse& use = use_in(fitted);
   return fmt::format("{} {}, which no effect of the library is: {}", shape_text(use),
-                     as_much ? "as much as these effects" : "nearly all of it", mend_text(use));
+                     what == InPlaceOf::claims ? "as much as these effects" : "nearly all of it",
+                     mend_text(use));
 }
 
 /// Far more than noise does, with next to nothing left, and far ahead of the others of a kind.
@@ -130,8 +130,8 @@ bool at_its_end(const Model& fitted) {
 
 std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& before,
                                                 const Studied& current, std::size_t effects,
-                                                bool unknown) {
-  if (study.campaign().gauges() < 3 || (!unknown && effects < 2)) {
+                                                InPlaceOf what) {
+  if (study.campaign().gauges() < 3 || (what == InPlaceOf::claims && effects < 2)) {
     return std::nullopt;
   }
   std::vector<Studied> fits;
@@ -142,9 +142,9 @@ std::optional<std::string> unlisted_in_place_of(Study& study, const Studied& bef
   }
   const auto best =
       std::ranges::min_element(fits, {}, [](const Studied& own) { return own.fit.objective(); });
-  const bool tells = unknown ? explains_nearly_all(study, before, *best, fits)
-                             : best->fit.objective() < current.fit.objective();
-  return tells && !at_its_end(best->model) ? std::optional(text_of(best->model, !unknown))
+  const bool tells = what == InPlaceOf::all ? explains_nearly_all(study, before, *best, fits)
+                                            : best->fit.objective() < current.fit.objective();
+  return tells && !at_its_end(best->model) ? std::optional(text_of(best->model, what))
                                            : std::nullopt;
 }
 

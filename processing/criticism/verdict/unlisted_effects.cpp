@@ -44,9 +44,11 @@ class CreepingGauge final : public Effect {
   }
 };
 
+enum class Curved { one_gauge, all_gauges };
+
 class CurvedReading final : public Effect {
  public:
-  CurvedReading(const char* id, bool of_one)
+  CurvedReading(const char* id, Curved curved)
       : Effect({
             .id = id,
             .stage = Stage::record,
@@ -58,7 +60,7 @@ class CurvedReading final : public Effect {
                             .lower = -kMostCurved,
                             .upper = kMostCurved,
                             .typical = 100.0}},
-            .per_gauge = of_one,
+            .per_gauge = curved == Curved::one_gauge,
         }) {}
 
   void apply(Scene& scene, std::span<const double> values, std::size_t gauge) const override {
@@ -124,12 +126,12 @@ const Effect& creeping_gauge() {
 }
 
 const Effect& curved_gauge() {
-  static const CurvedReading effect("curved-gauge", true);
+  static const CurvedReading effect("curved-gauge", Curved::one_gauge);
   return effect;
 }
 
 const Effect& curved_readings() {
-  static const CurvedReading effect("curved-readings", false);
+  static const CurvedReading effect("curved-readings", Curved::all_gauges);
   return effect;
 }
 

@@ -148,12 +148,12 @@ double Waterfall::closed() const {
 
 std::vector<LineageStep> lineage(const Model& first, const Model& last,
                                  const std::vector<std::string>& order) {
-  std::vector<LineageStep> steps{{{}, false, first}};
+  std::vector<LineageStep> steps{{.effect = {}, .model = first}};
   for (const EffectUse& use : first.effects) {
     if (last.find(use.id()) == nullptr && !only_filed(use)) {
       Model model = steps.back().model;
       std::erase_if(model.effects, [&](const EffectUse& own) { return own.id() == use.id(); });
-      steps.push_back({use.id(), true, std::move(model)});
+      steps.push_back({.effect = use.id(), .removed = true, .model = std::move(model)});
     }
   }
   std::vector<std::string> ids = order;
@@ -169,7 +169,7 @@ std::vector<LineageStep> lineage(const Model& first, const Model& last,
     Model model = steps.back().model;
     std::erase_if(model.effects, [&](const EffectUse& own) { return own.id() == id; });
     model.effects.push_back(*use);
-    steps.push_back({id, false, std::move(model)});
+    steps.push_back({.effect = id, .model = std::move(model)});
   }
   return steps;
 }
@@ -201,7 +201,8 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
   }
   const Misfit& rest = fall.steps.back().misfit;
   constexpr double kByChance = -5.8;  // as a diagnosis judges what remains
-  fall.floor = floor_of(last, rest.repeatable_log_p < kByChance, fall.shots);
+  fall.floor =
+      floor_of(last, rest.repeatable_log_p < kByChance ? Left::more : Left::noise, fall.shots);
   fall.signal = study.residuals().signal_energy() / all;
   fall.repeats = rest.repeatable_share * fall.signal;
   for (WaterfallStep& made : fall.steps) {

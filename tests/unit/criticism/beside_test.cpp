@@ -58,7 +58,7 @@ struct Linear {
 
 Candidate no_prior() {
   const Effect* drift = find_effect("baseline-drift");
-  return {null_use(*drift, "g1"), false, false};
+  return {.use = null_use(*drift, "g1")};
 }
 
 TEST(ShareBeside, IsWhatALeastSquaresFitOfBothStillGains) {

@@ -437,7 +437,7 @@ TEST(Search, AHumWeighsWhatItExplains) {
                                 [](const Refit& refit) { return refit.products.has_value(); });
   ASSERT_NE(hum, refits.end());
   EXPECT_EQ(search.candidates()[refits.front().candidate].id(), "mains-hum");
-  EXPECT_GE(hum->evidence, equivalent_square(log_gain_tail(hum->gain, hum->freedom, false)));
+  EXPECT_GE(hum->evidence, equivalent_square(log_gain_tail(hum->gain, hum->freedom, Signs::both)));
 }
 
 TEST(Diagnosis, CallsUnknownWhatTheLibraryDoesNotHold) {

@@ -98,7 +98,8 @@ TEST(ImpactDiagnosis, ShotsThatDifferMoreThanTheirSpeedsAreNotAdequate) {
       value *= 1.0 + 0.05 * (static_cast<double>(n % 3) - 1.0);
     }
   }
-  ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+  ImpactStudy study(campaign, JudgedStretch::to_reflection, 0.0, Workers{},
+                    testing::light_meshes());
   const Diagnosis diagnosis = diagnose_impacts(study, paper_with({}), {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
   EXPECT_TRUE(noted(diagnosis, "shots of one speed differ by")) << told(diagnosis);
@@ -115,7 +116,8 @@ TEST(ImpactDiagnosis, ShotsThatDifferOtherwiseThanBySpeedsAndNoiseAreNotAdequate
       *own *= 1.0 - 0.03 * std::min(1.0, static_cast<double>(own - peak) / 50.0);
     }
   }
-  ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+  ImpactStudy study(campaign, JudgedStretch::to_reflection, 0.0, Workers{},
+                    testing::light_meshes());
   const Diagnosis diagnosis = diagnose_impacts(study, paper_with({}), {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unknown) << told(diagnosis);
   EXPECT_TRUE(noted(diagnosis, "shots of one speed differ by")) << told(diagnosis);
@@ -144,7 +146,8 @@ Campaign with_second_gauge(Campaign campaign) {
 }
 
 Diagnosis diagnosed(const Campaign& campaign) {
-  ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+  ImpactStudy study(campaign, JudgedStretch::to_reflection, 0.0, Workers{},
+                    testing::light_meshes());
   return diagnose_impacts(study, paper_with({}), {});
 }
 

@@ -24,7 +24,7 @@ struct Planted {
   explicit Planted(std::vector<Shot> measured)
       : shots(std::move(measured)),
         campaign(read_campaign(shots)),
-        study(campaign, false, 0.0, Workers{}, testing::light_meshes()),
+        study(campaign, JudgedStretch::to_reflection, 0.0, Workers{}, testing::light_meshes()),
         studied(study.fit(paper_model(BenchKind::impact, true))),
         planter(shots, study, studied) {}
 

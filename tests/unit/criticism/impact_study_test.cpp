@@ -295,8 +295,8 @@ TEST(ImpactStudy, AnotherCodesMeshRepeatsWithinWhatIsAllowedForTheCalculation) {
 TEST(ImpactResiduals, MeshesDifferByWhatTheyDoToResiduals) {
   const Campaign campaign = read_campaign(a_few());
   const Composition paper(paper_with({}), campaign);
-  ImpactResiduals middle(campaign, false, 0.0, Workers{}, {240, 2048, 2048});
-  ImpactResiduals fine(campaign, false, 0.0, Workers{}, {240, 2048, 8192});
+  ImpactResiduals middle(campaign, JudgedStretch::to_reflection, 0.0, Workers{}, {240, 2048, 2048});
+  ImpactResiduals fine(campaign, JudgedStretch::to_reflection, 0.0, Workers{}, {240, 2048, 8192});
   middle.prepare(paper, paper.start());
   fine.prepare(paper, paper.start());
   const auto reading = [&](ImpactResiduals& residuals) -> Eigen::VectorXd {
@@ -344,13 +344,15 @@ TEST(ImpactResiduals, WhatRepeatsIsNotTakenForNoise) {
 /// itself from 3e-3 1/s on, in what the quiet parts were taken to say.
 TEST(ImpactResiduals, WhatAllShotsDriftByIsNotTakenForNoise) {
   Campaign campaign = read_campaign(testing::impact_shots(two_speeds(22, 3)));
-  const std::vector<double> still = read_impact_records(campaign, false, 0.0).noise[0];
+  const std::vector<double> still =
+      read_impact_records(campaign, JudgedStretch::to_reflection, 0.0).noise[0];
   for (CampaignShot& shot : campaign.shots) {
     for (std::size_t n = 0; n < shot.strain[0].size(); ++n) {
       shot.strain[0][n] += 3e-2 * shot.facts.time_s[n];
     }
   }
-  const std::vector<double> drifting = read_impact_records(campaign, false, 0.0).noise[0];
+  const std::vector<double> drifting =
+      read_impact_records(campaign, JudgedStretch::to_reflection, 0.0).noise[0];
   for (std::size_t lag = 0; lag < still.size(); ++lag) {
     EXPECT_NEAR(drifting[lag], still[lag], 0.02 * still[0]) << lag;
   }
@@ -361,7 +363,7 @@ TEST(ImpactResiduals, NoQuietBeforeAWaveIsNoSlope) {
   Campaign campaign = read_campaign(testing::impact_shots(two_speeds(22, 3)));
   for (const std::size_t samples : {0, 1}) {
     campaign.shots[0].quiet_samples = samples;
-    const ImpactRecords records = read_impact_records(campaign, false, 0.0);
+    const ImpactRecords records = read_impact_records(campaign, JudgedStretch::to_reflection, 0.0);
     for (const double own : records.noise[0]) {
       EXPECT_TRUE(std::isfinite(own)) << samples;
     }
@@ -432,7 +434,8 @@ TEST(ImpactResiduals, WhatDriftsIsFittedToTheNoise) {
         strain[k] += drift_per_s * campaign.period_s * (static_cast<double>(k) - quiet);
       }
     }
-    ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+    ImpactStudy study(campaign, JudgedStretch::to_reflection, 0.0, Workers{},
+                      testing::light_meshes());
     return study.fit(paper_with(effects)).misfit.chi2_reduced;
   };
   const double without = left_of(0.0, {});
@@ -452,7 +455,8 @@ TEST(ImpulseDoubt, IsOfReadingsThatDoNotGrowWithTheForceAndOfNoBall) {
         value = std::min(value, most_strain);
       }
     }
-    ImpactStudy study(campaign, false, 0.0, Workers{}, testing::light_meshes());
+    ImpactStudy study(campaign, JudgedStretch::to_reflection, 0.0, Workers{},
+                      testing::light_meshes());
     return impulse_doubt(study, study.as_it_is(paper_with({})));
   };
   EXPECT_EQ(said_of(1.0), std::nullopt) << "a core that stiffens";

@@ -50,7 +50,8 @@ inline BallMeshes light_meshes() {
 /// Shots under study.
 struct ThrownBalls {
   explicit ThrownBalls(const std::vector<Shot>& shots, const BallMeshes& meshes = light_meshes())
-      : campaign(read_campaign(shots)), study(campaign, false, 0.0, Workers{}, meshes) {}
+      : campaign(read_campaign(shots)),
+        study(campaign, JudgedStretch::to_reflection, 0.0, Workers{}, meshes) {}
 
   Campaign campaign;
   ImpactStudy study;
