@@ -117,7 +117,7 @@ void Controller::fill_channels(v1::Status& status) {
   const std::shared_ptr<const ShotSettings> settings = station_.settings();
   for (std::size_t i = 0; i < settings->blank.channels.size(); ++i) {
     const ChannelRecord& channel = settings->blank.channels[i];
-    const Acquirer::Level level = station_.acquirer().level(i);
+    const SignalLevel level = station_.acquirer().level(i);
     v1::ChannelStatus& shown = *status.add_channels();
     shown.set_gauge(channel.gauge);
     shown.set_unit(channel.unit);
@@ -162,7 +162,7 @@ PreflightFacts Controller::facts() {
   facts.ring_samples = station_.ring().capacity_samples();
   facts.block_samples = station_.stream().max_block_samples;
   for (std::size_t i = 0; i < settings->blank.channels.size(); ++i) {
-    const Acquirer::Level level = station_.acquirer().level(i);
+    const SignalLevel level = station_.acquirer().level(i);
     facts.channels.push_back({.baseline_codes = level.baseline_codes,
                               .noise_codes = level.noise_codes,
                               .constant_samples = level.constant_samples,

@@ -109,7 +109,7 @@ TEST_F(AcquirerTest, KnowsBaselineAndNoiseOfEveryChannel) {
   begin();
   wait_for_script();
   for (std::size_t channel = 0; channel < 2; ++channel) {
-    const Acquirer::Level level = acquirer_->level(channel);
+    const SignalLevel level = acquirer_->level(channel);
     EXPECT_TRUE(level.learned);
     EXPECT_NEAR(level.baseline_codes, 99.5, 1.0);  // codes are truncated
     EXPECT_NEAR(level.noise_codes, 4.0, 0.3);
