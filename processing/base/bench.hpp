@@ -11,7 +11,7 @@ namespace kolsky {
 /// What the apparatus is: a bar to characterise, a split Hopkinson bar, a ball on an elastic bar.
 enum class BenchKind { bar, shpb, impact };
 
-/// Which strain the stored samples count as positive.
+/// Which strain the stored samples count as positive; or an incident pulse is.
 enum class PositiveSense { compression, tension };
 
 enum class Section { round, square };
@@ -72,6 +72,7 @@ struct Gauge {
   /// Of samples that are strain already: over what made them so, as well as gauge factor,
   /// excitation and gain filed beside them say that it is known.
   Measured strain_gain{1.0, 0.0};
+  bool inverted = false;  ///< its readings have the other sign, as with exchanged leads
 };
 
 /// Relative standard deviation of what turns a gauge's reading into strain.
@@ -124,6 +125,7 @@ struct Bench {
   BenchKind kind = BenchKind::shpb;
   double sampling_frequency_Hz = 0.0;
   PositiveSense positive = PositiveSense::compression;
+  PositiveSense loading = PositiveSense::compression;  ///< what the incident pulse is
   Bar input{};
   std::optional<Bar> output{};  ///< shpb only
   std::vector<Gauge> gauges{};

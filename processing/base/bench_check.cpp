@@ -149,11 +149,22 @@ void check_gauge_factor_growth(const std::string& place, const Bridge& bridge) {
   require_tolerance(place, growth, std::abs(bridge.gauge_factor) / kFurthestStrain);
 }
 
-void check_bridge(const std::string& place, const Bridge& bridge) {
-  check_factor(place + ".gauge_factor", bridge.gauge_factor, kGaugeFactor);
+// A bridge's factors have no sign: what its leads make of it belongs to the gauge.
+void check_unsigned_factor(const std::string& place, const std::string& gauge,
+                           const Measured& number, const Range& range) {
+  if (number.value < 0.0) {
+    throw InputError(place, in_words(number, "") + " is negative, of gauge " + gauge,
+                     "give it without the sign, and inverted = true where the channel reads with "
+                     "the other sign");
+  }
+  check_number(place, number, range);
+}
+
+void check_bridge(const std::string& place, const std::string& gauge, const Bridge& bridge) {
+  check_unsigned_factor(place + ".gauge_factor", gauge, bridge.gauge_factor, kGaugeFactor);
   check_gauge_factor_growth(place + ".gauge_factor_per_strain", bridge);
   check_number(place + ".excitation_V", bridge.excitation_V, kExcitation);
-  check_factor(place + ".gain", bridge.gain, kGain);
+  check_unsigned_factor(place + ".gain", gauge, bridge.gain, kGain);
   check_leads_and_shunt(place, bridge);
   if (bridge.lead_wires != 2 && bridge.lead_wires != 3) {
     throw InputError(place + ".lead_wires", std::to_string(bridge.lead_wires) + " is not known",
@@ -236,7 +247,7 @@ void check_gauge(const std::string& place, const Gauge& gauge, const Bench& benc
                      "give the standard deviation in the same unit as the number");
   }
   if (gauge.bridge) {
-    check_bridge(place, *gauge.bridge);
+    check_bridge(place, gauge.name, *gauge.bridge);
   }
   if (gauge.strain_per_V) {
     check_factor(place + ".strain_per_V", *gauge.strain_per_V, kStrainPerVolt);

@@ -96,7 +96,7 @@ double gain_from_shunt(const Bridge& bridge) {
 }  // namespace
 
 BridgeConversion::BridgeConversion(const Gauge& gauge, const Bar& bar, PositiveSense positive)
-    : sign_(positive == PositiveSense::compression ? -1.0 : 1.0) {
+    : sign_((positive == PositiveSense::compression) != gauge.inverted ? -1.0 : 1.0) {
   if (gauge.unit == "strain") {
     full_scale_ = 1.0 / gauge.strain_gain;
   } else if (gauge.strain_per_V) {

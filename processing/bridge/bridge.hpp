@@ -10,8 +10,8 @@ namespace kolsky {
 /// Turns one gauge's readings into axial strain of the bar, compression positive.
 ///
 /// The exact bridge equations are inverted; the reading before the shot is taken as the unstrained
-/// bridge. For volts v per excitation volt and per gain, e tensile strain, K gauge factor, n
-/// Poisson's ratio:
+/// bridge; readings of an inverted channel are taken with the other sign. For volts v per
+/// excitation volt and per gain, e tensile strain, K gauge factor, n Poisson's ratio:
 ///   quarter      v = K e / (4 + 2 K e)
 ///   half         v = K e / (2 + K e)               (opposite arms)
 ///   half_poisson v = K e (1 + n) / (4 + 2 K e (1 - n))

@@ -29,8 +29,9 @@ std::optional<double> passes(std::span<const double> strain, const FirstPulse& p
                        : std::nullopt;
 }
 
-/// Strain of one gauge; empty where no pulse is seen.
-std::vector<double> strain_of(const Shot& shot, std::size_t gauge) {
+}  // namespace
+
+std::vector<double> strain_of_gauge(const Shot& shot, std::size_t gauge) {
   const Station own{.channels = {gauge}};
   std::vector<double> record(shot.samples());
   read_raw_station(shot, own, record);
@@ -41,8 +42,6 @@ std::vector<double> strain_of(const Shot& shot, std::size_t gauge) {
   read_station(shot, own, pulse->quiet, record);
   return record;
 }
-
-}  // namespace
 
 std::vector<std::size_t> in_filed_order(const Bench& bench) {
   std::vector<std::size_t> order(bench.gauges.size());
@@ -75,7 +74,7 @@ std::optional<Check> gauge_order(const Shot& shot) {
   const std::vector<std::size_t> order = in_filed_order(shot.bench);
   std::vector<std::vector<double>> strain;
   for (const std::size_t gauge : order) {
-    strain.push_back(strain_of(shot, gauge));
+    strain.push_back(strain_of_gauge(shot, gauge));
   }
   for (std::size_t i = 0; i + 1 < order.size(); ++i) {
     if (strain[i].empty() || strain[i + 1].empty()) {

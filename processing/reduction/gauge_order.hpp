@@ -14,6 +14,9 @@ namespace kolsky {
 /// So much later is later [samples]: noise and a delay of one do not make it up.
 inline constexpr double kClearlyLater = 3.0;
 
+/// Strain of one gauge, less what it read before its first pulse; empty where none is seen.
+[[nodiscard]] std::vector<double> strain_of_gauge(const Shot& shot, std::size_t gauge);
+
 /// A bench's gauges as a pulse from the struck end comes to them.
 [[nodiscard]] std::vector<std::size_t> in_filed_order(const Bench& bench);
 

@@ -1,13 +1,16 @@
 #include "processing/reduction/reducer.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
 #include "processing/reduction/gauge_order.hpp"
+#include "processing/reduction/gauge_sign.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/recent.hpp"
 #include "processing/reduction/requested.hpp"
@@ -36,20 +39,34 @@ void require_reducible_bench(const Shot& shot) {
   }
 }
 
-/// A bench whose gauges are exchanged spoils every number and names none: where the bars' work does
-/// not add up, or nothing can be reduced, the order in which the pulse comes to them is looked at.
-void ask_for_gauge_order(const Shot& shot, Quality& quality) {
+/// A check of how the gauges are connected, into a quality that something is wrong with.
+void tell(std::optional<Check> check, Quality& quality) {
+  if (check && quality.reducible) {
+    quality.checks.push_back(*std::move(check));
+  } else if (check) {
+    quality.mend = check->text + (check->text.ends_with('?') ? " Else " : "; else ") + quality.mend;
+  }
+}
+
+/// A bench whose gauges are exchanged or read with the other sign spoils every number and names
+/// none: where the bars' work does not add up, forces have a sign that they cannot have, or nothing
+/// can be reduced, the first pulse is looked at, at every gauge.
+void ask_how_gauges_are_connected(const Shot& shot, Reduction& reduction) {
+  Quality& quality = reduction.quality;
+  if (!quality.reducible || signs_in_doubt(shot, reduction)) {
+    tell(gauge_sign(shot), quality);
+  }
   const Check* energy = quality.find("energy_balance");
   const bool adds_up = energy != nullptr && energy->verdict == Verdict::pass;
-  if (adds_up && quality.verdict() != Verdict::fail) {
-    return;
+  if (!adds_up || quality.verdict() == Verdict::fail) {
+    tell(gauge_order(shot), quality);
   }
-  std::optional<Check> order = gauge_order(shot);
-  if (order && quality.reducible) {
-    quality.checks.push_back(*std::move(order));
-  } else if (order) {
-    quality.mend = order->text + " Else " + quality.mend;
-  }
+}
+
+/// What fails is read first.
+void put_failures_first(std::vector<Check>& checks) {
+  std::stable_partition(checks.begin(), checks.end(),
+                        [](const Check& c) { return c.verdict == Verdict::fail; });
 }
 
 }  // namespace
@@ -139,7 +156,8 @@ Reduction Reducer::State::reduce(const Shot& shot) {
                                             material, in, out);
       });
   Reduction reduction = shpb_pass(shot, in, out, told, own_plans, own_tables);
-  ask_for_gauge_order(shot, reduction.quality);
+  ask_how_gauges_are_connected(shot, reduction);
+  put_failures_first(reduction.quality.checks);
   reduction.bar_model =
       all_elastic(shot.bench)
           ? "elastic bars, moduli from the bench"

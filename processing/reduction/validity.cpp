@@ -47,8 +47,12 @@ std::string quote_text(const Quotable& part) {
 
 /// Why the curve must not be quoted at all; empty where it may.
 std::string curve_in_doubt(const Reduction& r) {
-  if (const Check* order = r.quality.find("gauge_order"); order != nullptr) {
-    return order->text;
+  // Causes before what follows from them.
+  for (const char* name : {"gauge_sign", "gauge_order"}) {
+    const Check* check = r.quality.find(name);
+    if (check != nullptr && check->verdict == Verdict::fail) {
+      return check->text;
+    }
   }
   const Check* overlap = r.quality.find("window_overlap");
   if (overlap != nullptr && overlap->verdict != Verdict::pass &&

@@ -158,7 +158,7 @@ Gauge read_gauge(const TomlTable& table) {
   table.expect({"name", "bar", "position_m", "unit", "length_m", "delay_s", "strain_per_V",
                 "bridge", "gauge_factor", "gauge_factor_per_strain", "excitation_V", "gain",
                 "gauge_resistance_ohm", "lead_resistance_ohm", "lead_wires", "gauges_in_series",
-                "shunt_resistance_ohm", "shunt_reading_V"});
+                "shunt_resistance_ohm", "shunt_reading_V", "inverted"});
   Gauge gauge;
   gauge.name = table.text("name");
   gauge.bar = table.text("bar");
@@ -170,6 +170,7 @@ Gauge read_gauge(const TomlTable& table) {
   }
   gauge.length_m = table.optional_measured("length_m");
   gauge.delay_s = read_delay(table);
+  gauge.inverted = table.optional_flag("inverted").value_or(false);
   gauge.strain_per_V = table.optional_measured("strain_per_V");
   if (table.has("bridge")) {
     gauge.bridge = read_bridge(table);
@@ -234,12 +235,15 @@ Bench read_all(const TomlTable& table) {
   constexpr std::array kKinds{BenchKind::bar, BenchKind::shpb, BenchKind::impact};
   constexpr std::array kSenses{PositiveSense::compression, PositiveSense::tension};
   table.expect({"kind", "sampling_frequency_Hz", "positive", "bars", "gauges", "specimen", "ball",
-                "photo_sensors", "striker", "temperature_K"});
+                "photo_sensors", "striker", "temperature_K", "loading"});
   Bench bench;
   bench.kind = kKinds.at(table.choice("kind", {"bar", "shpb", "impact"}));
   bench.sampling_frequency_Hz = table.measured("sampling_frequency_Hz");
   if (table.has("positive")) {
     bench.positive = kSenses.at(table.choice("positive", {"compression", "tension"}));
+  }
+  if (table.has("loading")) {
+    bench.loading = kSenses.at(table.choice("loading", {"compression", "tension"}));
   }
   const TomlTable bars = table.table("bars");
   bars.expect({"input", "output"});

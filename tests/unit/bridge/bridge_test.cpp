@@ -198,6 +198,22 @@ TEST(Bridge, StrainPassesThrough) {
   EXPECT_EQ(BridgeConversion(gauge, pmma_bar(), PositiveSense::tension).strain(1e-3), -1e-3);
 }
 
+// Signal or excitation leads exchanged: the circuit's output with the other sign.
+TEST(Bridge, OfAnInvertedChannelIsTheCircuitWithItsSignTurned) {
+  Gauge gauge = gauge_with({.wiring = BridgeWiring::quarter});
+  gauge.inverted = true;
+  const BridgeConversion bridge(gauge, pmma_bar(), PositiveSense::tension);
+  for (const double tensile : {-0.02, -1e-4, 1e-4, 0.02}) {
+    const double exchanged_V = -circuit_V(stretched(tensile), kOhm, kOhm, kOhm);
+    EXPECT_NEAR(bridge.strain(exchanged_V), -tensile, 1e-14);
+    EXPECT_NEAR(bridge.reading(-tensile), exchanged_V, 1e-12);
+  }
+  Gauge strain;
+  strain.unit = "strain";
+  strain.inverted = true;
+  EXPECT_EQ(BridgeConversion(strain, pmma_bar(), PositiveSense::compression).strain(1e-3), -1e-3);
+}
+
 TEST(Bridge, RefusesWhatCannotConvertAndNamesTheKey) {
   const auto place_of = [](const Gauge& gauge) -> std::string {
     try {
