@@ -1,11 +1,10 @@
 #include "processing/calibration/pulse_areas.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
-#include "processing/base/error.hpp"
+#include "processing/base/striker.hpp"
 #include "processing/identification/known_unknowns.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/waves/bar_modes.hpp"
@@ -96,24 +95,6 @@ double scatter_of_mean(const std::vector<Measured>& values, double mean, double 
   return chi2 > freedom && freedom > 0.0 ? std::sqrt(squares / (weight * freedom)) : 0.0;
 }
 
-std::optional<Measured> striker_speed(const Shot& shot) {
-  const auto found = shot.meta.find("striker_speed_m_per_s");
-  if (found != shot.meta.end()) {
-    double value = 0.0;
-    const char* end = found->second.data() + found->second.size();
-    if (std::from_chars(found->second.data(), end, value).ptr != end || !(value > 0.0) ||
-        !std::isfinite(value)) {
-      throw InputError("capture " + shot.id + ": meta striker_speed_m_per_s",
-                       "\"" + found->second + "\" is no speed", "give metres per second, as 12.5");
-    }
-    const double sd = shot.bench.striker && shot.bench.striker->speed_m_per_s
-                          ? relative_sd(*shot.bench.striker->speed_m_per_s) * value
-                          : 0.0;
-    return Measured{value, sd};
-  }
-  return shot.bench.striker ? shot.bench.striker->speed_m_per_s : std::nullopt;
-}
-
 double modulus_at_rest(const Bar& bar, const BarPrior& bars) {
   if (bar.youngs_modulus_Pa) {
     return *bar.youngs_modulus_Pa;
@@ -133,19 +114,6 @@ double relative_sd_at_rest(const Bar& bar, const BarPrior& bars) {
     }
   }
   return most;
-}
-
-/// Of the striker's impedance in the bar's, for equal sections; nothing where it is not known. Of a
-/// viscoelastic bar it depends on frequency but for a striker of the same material.
-std::optional<double> impedance_share(const Striker& striker, const Bar& bar) {
-  const double of_density = *striker.density_kg_m3 / bar.density_kg_m3;
-  if (striker.of_material(bar)) {
-    return of_density;
-  }
-  if (striker.youngs_modulus_Pa && bar.youngs_modulus_Pa) {
-    return std::sqrt(of_density * *striker.youngs_modulus_Pa / *bar.youngs_modulus_Pa);
-  }
-  return std::nullopt;
 }
 
 /// Absolute gain of the first gauge from its areas and the strikers' momenta.
@@ -185,7 +153,7 @@ std::optional<MomentumCheck> momentum(const CalibrationPart& part, const Bench& 
   }
   double of_speed = 0.0;
   for (std::size_t n = 0; n < part.shots.size(); ++n) {
-    const auto speed = striker_speed(part.shots[n]);
+    const auto speed = filed_striker_speed(part.shots[n]);
     if (speed && areas[n].over) {
       const double strain_s =
           passed * mass_kg * *speed / (bench.input.area_m2() * modulus_at_rest(bench.input, bars));

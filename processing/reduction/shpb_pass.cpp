@@ -11,6 +11,7 @@
 #include "processing/reduction/corrections.hpp"
 #include "processing/reduction/formatted.hpp"
 #include "processing/reduction/loop_summary.hpp"
+#include "processing/reduction/plausibility.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/requested.hpp"
@@ -620,6 +621,23 @@ class Pass {
     }
     reduction_.quality.reducible = true;
     judge(q, reduction_);
+    judge_sizes(q.input_peak);
+  }
+
+  /// What cannot be, whatever the specimen is.
+  void judge_sizes(double incident_peak) {
+    auto& checks = reduction_.quality.checks;
+    const auto add = [&](std::optional<Check> check) {
+      if (check) {
+        checks.push_back(*std::move(check));
+      }
+    };
+    // One check of a name: the bar that is further off.
+    auto input = impossible_bar_strain(shot_, in_, t_.input_strain);
+    auto output = impossible_bar_strain(shot_, out_, t_.output_strain);
+    add(input && !(output && output->value > input->value) ? std::move(input) : std::move(output));
+    add(impossible_specimen_strain(reduction_));
+    add(striker_speed(shot_, in_, incident_peak, wave_speed_m_per_s()));
   }
 
   SeparationJudgement separation_judgement() const {
