@@ -409,6 +409,14 @@ Check quiet_start(const Reduction& r) {
               .limit = kFewQuietSamples,
               .unit = "samples",
               .text = {}};
+  if (r.quiet_samples == 0) {
+    check.verdict = Verdict::fail;
+    check.text = std::string(
+                     "the record begins within the pulse, or less than 10 us before it, so that "
+                     "baseline, noise and arrival are not known: ") +
+                 kRecordFromBefore;
+    return check;
+  }
   check.verdict = samples >= kFewQuietSamples ? Verdict::pass : Verdict::warn;
   check.text = formatted("baseline and noise are from %.0f samples before the pulse (wanted: %.0f)",
                          samples, kFewQuietSamples);
@@ -512,6 +520,7 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
   const Check agree = equilibrium(reduction, end);
   const Check lag = front_back_lag(reduction, end);
   const Check energy = energy_balance(inputs, reduction, end);
+  const Check start = quiet_start(reduction);
   reduction.quality.checks = {assumed ? untested(agree, Verdict::warn) : agree,
                               signal_to_noise(inputs),
                               inputs.separated ? separated_overlap(inputs) : window_overlap(inputs),
@@ -522,7 +531,11 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
                               assumed ? untested(separation, Verdict::pass) : separation,
                               assumed ? untested(energy, Verdict::pass) : energy,
                               band(inputs, reduction),
-                              quiet_start(reduction)};
+                              start};
+  if (start.verdict == Verdict::fail) {  // what else fails may follow from that
+    auto& checks = reduction.quality.checks;
+    std::rotate(checks.begin(), checks.end() - 1, checks.end());
+  }
   if (inputs.moved_by_lateral_inertia > kLateralLimit) {
     reduction.quality.checks.push_back(wave_theory(inputs));
   }

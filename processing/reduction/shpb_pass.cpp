@@ -54,6 +54,25 @@ class Pass {
         period_s_(shot.rate.period_s()) {}
 
   Reduction run() {
+    Reduction reduction = reduced();
+    if (incident_found_ && quiet_ == 0) {
+      tell_late_record(reduction.quality);
+    }
+    return reduction;
+  }
+
+ private:
+  /// Without a sample before the pulse neither baseline nor arrival is known: every other reason
+  /// may follow from that.
+  void tell_late_record(Quality& quality) const {
+    if (!quality.reducible) {
+      quality.reason = "the record begins within the pulse at " + first_gauge() +
+                       ", or less than 10 us before it, and " + quality.reason;
+      quality.mend = std::string(kRecordFromBefore) + "; else " + quality.mend;
+    }
+  }
+
+  Reduction reduced() {
     if (!find_incident()) {
       return not_reducible("no incident pulse stands out of the noise on " + first_gauge(),
                            "give a shot's whole record, from before the impact, with that gauge's "
@@ -93,7 +112,6 @@ class Pass {
     return std::move(reduction_);
   }
 
- private:
   /// The push still rises when it is hidden: of a short bar, or after an arrival that is not its
   /// foot.
   [[nodiscard]] Reduction push_not_seen() const {
@@ -164,6 +182,7 @@ class Pass {
     }
     const auto clearance = kFootClearance_s * rate_Hz_;
     quiet_ = static_cast<std::size_t>(std::max(0.0, foot - clearance));
+    incident_found_ = true;
     // Only now is it known how long the gauges are unstrained, which the bridges' equations start
     // from.
     read_station(shot_, in_, quiet_, t_.input_strain);
@@ -703,6 +722,7 @@ class Pass {
   double input_noise_ = 0.0;
   double output_noise_ = 0.0;
   std::size_t quiet_ = 0;
+  bool incident_found_ = false;
   std::size_t split_ = 0;
   std::size_t first_ = 0;
   std::size_t count_ = 0;

@@ -9,6 +9,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/reducer.hpp"
+#include "processing/reduction/validity.hpp"
 #include "tests/generators/elastic_shpb.hpp"
 #include "tests/generators/linear_shpb.hpp"
 #include "tests/unit/reduction/ball_bench.hpp"
@@ -134,6 +135,51 @@ TEST(RecordEnd, SaysWhatAnAskedDurationLacks) {
   const Reduction r = Reducer(options).reduce(shot);
   EXPECT_EQ(check_of(r, "record_end").verdict, Verdict::warn);
   EXPECT_NE(check_of(r, "record_end").text.find("too soon"), std::string::npos);
+}
+
+Shot begun_late(Shot shot, std::ptrdiff_t samples) {
+  for (ChannelRecord& channel : shot.channels) {
+    channel.codes.erase(channel.codes.begin(), channel.codes.begin() + samples);
+  }
+  return shot;
+}
+
+// A trigger that came late: what follows from that is not what is said first.
+TEST(RecordBeginning, WithinThePulseLeadsAllReasons) {
+  const testing::ElasticShpb elastic;
+  int judged = 0;
+  int behind = 0;
+  for (const Shot& whole : {elastic.shot(elastic.solve(), 4e-6, 16, 0.01, 1), bar_shot()}) {
+    // The pulse's foot is at the gauge a front's way before it is at the specimen.
+    const Reduction all = Reducer().reduce(whole);
+    const Bar& bar = whole.bench.input;
+    const double speed = std::sqrt((bar.youngs_modulus_Pa ? bar.youngs_modulus_Pa->value : 5.66e9) /
+                                   bar.density_kg_m3);
+    const double foot_s =
+        all.arrival_s - whole.bench.distance_to_specimen_m(whole.bench.gauges.front()) / speed;
+    const auto foot = static_cast<std::ptrdiff_t>(foot_s * whole.rate.Hz());
+    for (std::ptrdiff_t late = foot - 5; late < foot + 60; ++late) {
+      const Reduction r = Reducer().reduce(begun_late(whole, late));
+      if (r.quality.reducible && r.quiet_samples == 0) {
+        ++judged;
+        EXPECT_EQ(r.quality.checks.front().name, "quiet_start") << late;
+        EXPECT_EQ(r.quality.checks.front().verdict, Verdict::fail);
+        EXPECT_EQ(quotable_part(r).text.find("no part of the curve: the record begins within"), 0U);
+      } else if (r.quality.reducible && r.quiet_samples < 32) {
+        // Its slow beginning is left out; a few samples of that are taken for the baseline.
+        EXPECT_EQ(check_of(r, "quiet_start").verdict, Verdict::warn) << late - foot;
+      } else {
+        // Its fall, or what comes back, is taken for the pulse: of the other sign.
+        ++behind;
+        const Check* sign = r.quality.find("gauge_sign");
+        const std::string& told = sign != nullptr ? sign->text : r.quality.mend;
+        EXPECT_NE(told.find("begins within"), std::string::npos)
+            << late - foot << ": " << r.quality.reason << "; " << told;
+      }
+    }
+  }
+  EXPECT_GT(judged, 4);
+  EXPECT_GT(behind, 20);
 }
 
 Shot as_a_table(Shot shot, std::int32_t cut_at) {
