@@ -137,6 +137,29 @@ TEST(RecordEnd, SaysWhatAnAskedDurationLacks) {
   EXPECT_NE(check_of(r, "record_end").text.find("too soon"), std::string::npos);
 }
 
+// A wave under a gauge where the record ends is cut there, and the low-pass looks ahead.
+TEST(RecordEnd, CutsNoStepIntoTheHistories) {
+  testing::ElasticShpb model;
+  model.sampling_frequency_Hz = 2e6;
+  const auto records = model.solve();
+  const Shot whole = model.shot(records, 0.0, 24, 0.01, 1);
+  const double peak_N =
+      *std::max_element(records.truth.force_N.begin(), records.truth.force_N.begin() + 20'000);
+  int ends = 0;
+  // The reflected pulse is under the input gauge from 492 to 592 us.
+  for (std::size_t samples = 1080; samples < 1180; samples += 3) {
+    const Reduction r = Reducer().reduce(first_samples(whole, samples));
+    if (!r.quality.reducible) continue;
+    ++ends;
+    for (std::size_t n = r.time_s.size() - 8; n < r.time_s.size(); ++n) {
+      const double t = r.time_s[n] + r.arrival_s - records.truth.arrival_s;
+      EXPECT_NEAR(r.force_front_N[n], records.truth.at(records.truth.force_N, t), 0.02 * peak_N)
+          << samples;
+    }
+  }
+  EXPECT_GT(ends, 20);
+}
+
 Shot begun_late(Shot shot, std::ptrdiff_t samples) {
   for (ChannelRecord& channel : shot.channels) {
     channel.codes.erase(channel.codes.begin(), channel.codes.begin() + samples);
