@@ -45,6 +45,8 @@ struct SeparationJudgement {
   std::string gauges;            ///< as "g1 and g2"
   double noise_share = 0.0;      ///< of the front force's peak, one sigma, at the histories' end
   std::vector<double> blind_Hz;  ///< of the input bar, within the band
+  /// Of the front force, one sigma, as long as the histories; empty where it is not known.
+  std::vector<double> front_noise_N;
   bool assumes_equilibrium = false;  ///< front and back force are one
   bool ends_in_loading = false;      ///< the record does, so nothing after it is known
 };

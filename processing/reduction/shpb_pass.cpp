@@ -666,6 +666,8 @@ class Pass {
     judgement.gauges = faces_->gauges;
     judgement.noise_share = peak > 0.0 ? faces_->front_noise_N[last] / peak : 1.0;
     judgement.blind_Hz = faces_->blind_Hz;
+    const auto begin = faces_->front_noise_N.begin() + static_cast<std::ptrdiff_t>(first_);
+    judgement.front_noise_N.assign(begin, begin + static_cast<std::ptrdiff_t>(count_));
     judgement.assumes_equilibrium = reduction_.separation == Separation::equilibrium;
     judgement.ends_in_loading = first_loading_end(*faces_, first_) >= faces_->known;
     return judgement;
