@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clients/figure/layout.hpp"
+#include "clients/figure/text_columns.hpp"
 #include "clients/report/polyline.hpp"
 
 namespace kolsky {
@@ -231,6 +232,26 @@ constexpr std::string_view kRules =
     ".line{fill:none;stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}"
     ".shaded{fill:#f0e6c8}";
 
+/// Of the text above the panels; what continues a note is indented.
+struct NoteLine {
+  double indent = 0.0;
+  std::string text;
+};
+
+std::vector<NoteLine> note_lines(const std::vector<std::string>& notes, double width) {
+  constexpr double kIndent = 16.0;
+  const auto columns = static_cast<std::size_t>((width - kIndent) / kCharacterWidth);
+  std::vector<NoteLine> lines;
+  for (const std::string& note : notes) {
+    double indent = 0.0;
+    for (std::string& line : wrapped(note, columns)) {
+      lines.push_back({indent, std::move(line)});
+      indent = kIndent;
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -272,9 +293,9 @@ std::string panel_svg(const Panel& panel, double width, double height, std::size
 std::string render_svg(const Figure& figure) {
   const std::size_t across = figure.panels.size() > 1 ? 2 : 1;
   const std::size_t down = (figure.panels.size() + across - 1) / across;
-  const double head =
-      kPageMargin + kTitleHeight + kNoteHeight * static_cast<double>(figure.notes.size());
   const double width = 2.0 * kPageMargin + kPanelWidth * static_cast<double>(across);
+  const std::vector<NoteLine> notes = note_lines(figure.notes, width - 2.0 * kPageMargin);
+  const double head = kPageMargin + kTitleHeight + kNoteHeight * static_cast<double>(notes.size());
   const double height = head + kPageMargin + kPanelHeight * static_cast<double>(down);
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -284,10 +305,10 @@ std::string render_svg(const Figure& figure) {
       width, height, escaped(figure.title), kRules);
   out += fmt::format("<text class=\"page\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n", kPageMargin,
                      kPageMargin + 14.0, escaped(figure.title));
-  for (std::size_t i = 0; i < figure.notes.size(); ++i) {
-    out += fmt::format("<text class=\"note\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n", kPageMargin,
-                       kPageMargin + kTitleHeight + kNoteHeight * static_cast<double>(i),
-                       escaped(figure.notes[i]));
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    out += fmt::format(
+        "<text class=\"note\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n", kPageMargin + notes[i].indent,
+        kPageMargin + kTitleHeight + kNoteHeight * static_cast<double>(i), escaped(notes[i].text));
   }
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const std::size_t row = i / across;

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <sstream>
 
 namespace kolsky {
 namespace {
@@ -64,21 +63,6 @@ std::string inked(std::string_view text, Ink ink, bool colour) {
   return std::string(escape_of(ink)).append(text).append("\x1b[0m");
 }
 
-std::size_t columns_of(std::string_view text) {
-  std::size_t columns = 0;
-  bool escaping = false;
-  for (const char character : text) {
-    if (escaping) {
-      escaping = character != 'm';
-    } else if (character == '\x1b') {
-      escaping = true;
-    } else if ((static_cast<unsigned char>(character) & 0xC0U) != 0x80U) {
-      ++columns;
-    }
-  }
-  return columns;
-}
-
 std::string padded_right(std::string_view text, std::size_t columns) {
   const std::size_t taken = columns_of(text);
   return std::string(text).append(columns > taken ? columns - taken : 0, ' ');
@@ -95,19 +79,6 @@ std::string joined(const std::vector<std::string>& words) {
     list += (list.empty() ? "" : ", ") + word;
   }
   return list;
-}
-
-std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string word; stream >> word;) {
-    if (!lines.empty() && columns_of(lines.back()) + 1 + columns_of(word) <= columns) {
-      lines.back() += " " + word;
-    } else {
-      lines.push_back(word);
-    }
-  }
-  return lines;
 }
 
 }  // namespace kolsky

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "clients/figure/text_columns.hpp"
+
 namespace kolsky {
 
 /// What text goes to.
@@ -25,18 +27,11 @@ enum class Ink { plain, dim, bold, good, doubtful, bad, first, second, third };
 /// `text` in ink where colour is wanted, else as it is.
 [[nodiscard]] std::string inked(std::string_view text, Ink ink, bool colour);
 
-/// Columns that a UTF-8 text takes, escape sequences not counted. Every character is taken as one
-/// column wide.
-[[nodiscard]] std::size_t columns_of(std::string_view text);
-
 /// The text padded with blanks on the right (or left) to a width.
 [[nodiscard]] std::string padded_right(std::string_view text, std::size_t columns);
 [[nodiscard]] std::string padded_left(std::string_view text, std::size_t columns);
 
 /// Words as a list, with commas between.
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);
-
-/// The words of a text in lines of at most so many columns; a longer word has a line of its own.
-[[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
 
 }  // namespace kolsky

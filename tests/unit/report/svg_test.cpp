@@ -112,6 +112,36 @@ TEST(Svg, ALegendThatHasNoRoomBesideTheTitleStandsBelowIt) {
   EXPECT_LT(at["full"].x, at["exact"].x);
 }
 
+// At 12 px a character is 6.6 px wide at most on average.
+TEST(Svg, WrapsItsNotesWithinThePage) {
+  Figure figure;
+  figure.title = "shot";
+  figure.panels.resize(2);
+  std::string note = "wave_theory:";
+  for (int word = 0; word < 80; ++word) {
+    note += " word" + std::to_string(word);
+  }
+  figure.notes = {"short", note};
+  const Tree page = parsed(render_svg(figure));
+  std::string joined;
+  std::map<double, int> lines;
+  for (const Tree& text : all(page, "text")) {
+    if (text.get<std::string>("<xmlattr>.class", "") != "note") {
+      continue;
+    }
+    const double right =
+        text.get<double>("<xmlattr>.x") + 6.6 * static_cast<double>(text.data().size());
+    EXPECT_LE(right, page.get<double>("svg.<xmlattr>.width") - 20.0) << text.data();
+    ++lines[text.get<double>("<xmlattr>.y")];
+    joined += (joined.empty() ? "" : " ") + text.data();
+  }
+  EXPECT_EQ(joined, "short " + note);
+  EXPECT_GT(lines.size(), 3U);
+  for (const auto& [y, count] : lines) {
+    EXPECT_EQ(count, 1) << y;
+  }
+}
+
 TEST(Svg, DrawsValuesWhereTheAxisSaysTheyAre) {
   const Tree svg = parsed(render_svg(two_forces()));
   const auto paths = all(svg, "path");
