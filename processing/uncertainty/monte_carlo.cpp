@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "processing/reduction/loop_summary.hpp"
 #include "processing/uncertainty/noisy_shot.hpp"
@@ -95,14 +96,15 @@ class Worker {
         sources_(sources) {}
 
   /// @param moves  one per source
-  /// @param random draws the noise; none: the samples as they are
-  Draw draw(const std::vector<double>& moves, RandomStream* random) {
+  /// @param noise  draws it; none: the samples as they are
+  /// @param steps  likewise what the converters' steps hide
+  Draw draw(const std::vector<double>& moves, RandomStream* noise, RandomStream* steps) {
     ShotNumbers numbers{shot_.bench, *options_.bar_model, 0.0, nominal_.band_limit_Hz};
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       sources_[i].move(numbers, moves[i]);
     }
     moved_.set_bench(std::move(numbers.bench));
-    moved_.record(random);
+    moved_.record(noise, steps);
     reducer_.set_bar_model(numbers.bars);
     reducer_.set_push_goes_on(numbers.push_goes_on);
     reducer_.set_band_limit_Hz(numbers.band_limit_Hz);
@@ -145,7 +147,7 @@ Band band_of(const std::vector<Draw>& draws, std::size_t history, std::size_t sa
   return band;
 }
 
-std::vector<double> figure_values(const std::vector<Draw>& draws, std::size_t figure) {
+std::vector<double> figure_values(std::span<const Draw> draws, std::size_t figure) {
   std::vector<double> values;
   for (const Draw& draw : draws) {
     if (draw.good) {
@@ -155,52 +157,64 @@ std::vector<double> figure_values(const std::vector<Draw>& draws, std::size_t fi
   return values;
 }
 
-/// All work as numbered draws: the joint ones, those with noise alone, and two per source.
+/// All work as numbered draws: the joint ones, those with noise alone, those with the converters'
+/// steps alone where these matter, and two per source.
 class Campaign {
  public:
-  Campaign(std::size_t joint, std::size_t sources)
+  Campaign(std::size_t joint, std::size_t sources, bool steps)
       : joint_(joint),
         noise_only_(std::max<std::size_t>(2, joint / kNoiseOnlyShare)),
+        steps_only_(steps ? noise_only_ : 0),
         sources_(sources) {}
 
-  [[nodiscard]] std::size_t count() const { return joint_ + noise_only_ + 2 * sources_; }
+  [[nodiscard]] std::size_t count() const { return first_of_sources() + 2 * sources_; }
 
   void run(std::size_t number, std::uint64_t seed, Worker& worker, Draw& draw) const {
     RandomStream random(seed, number);
     std::vector<double> moves(sources_, 0.0);
     if (number < joint_) {
       std::generate(moves.begin(), moves.end(), [&] { return random.normal(); });
-      draw = worker.draw(moves, &random);
+      draw = worker.draw(moves, &random, steps_only_ > 0 ? &random : nullptr);
     } else if (number < joint_ + noise_only_) {
-      draw = worker.draw(moves, &random);
+      draw = worker.draw(moves, &random, nullptr);
+    } else if (number < first_of_sources()) {
+      draw = worker.draw(moves, nullptr, &random);
     } else {
-      const std::size_t of_source = number - joint_ - noise_only_;
+      const std::size_t of_source = number - first_of_sources();
       moves[of_source / 2] = of_source % 2 == 0 ? 1.0 : -1.0;
-      draw = worker.draw(moves, nullptr);
+      draw = worker.draw(moves, nullptr, nullptr);
     }
   }
 
   [[nodiscard]] std::span<const Draw> noise_only(const std::vector<Draw>& draws) const {
     return std::span(draws).subspan(joint_, noise_only_);
   }
+  /// Empty where no converter's steps matter.
+  [[nodiscard]] std::span<const Draw> steps_only(const std::vector<Draw>& draws) const {
+    return std::span(draws).subspan(joint_ + noise_only_, steps_only_);
+  }
   [[nodiscard]] const Draw& moved(const std::vector<Draw>& draws, std::size_t source,
                                   bool up) const {
-    return draws[joint_ + noise_only_ + 2 * source + (up ? 0 : 1)];
+    return draws[first_of_sources() + 2 * source + (up ? 0 : 1)];
   }
 
  private:
+  [[nodiscard]] std::size_t first_of_sources() const { return joint_ + noise_only_ + steps_only_; }
+
   std::size_t joint_;
   std::size_t noise_only_;
+  std::size_t steps_only_;
   std::size_t sources_;
 };
 
 std::vector<BudgetLine> budget_of(const Campaign& campaign, const std::vector<Draw>& draws,
                                   const std::vector<UncertaintySource>& sources) {
   std::map<std::string, Figures> variances;
-  const auto noise = campaign.noise_only(draws);
-  const std::vector<Draw> noise_draws(noise.begin(), noise.end());
   for (std::size_t f = 0; f < kFigures.size(); ++f) {
-    variances["noise"][f] = std::pow(sd_of(figure_values(noise_draws, f)), 2);
+    variances["noise"][f] = std::pow(sd_of(figure_values(campaign.noise_only(draws), f)), 2);
+    if (const auto steps = campaign.steps_only(draws); !steps.empty()) {
+      variances["converter"][f] = std::pow(sd_of(figure_values(steps, f)), 2);
+    }
   }
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Draw& up = campaign.moved(draws, i, true);
@@ -267,7 +281,8 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   if (widest_Hz > kWider * reduction.band_limit_Hz) {
     result.sources.push_back(band_limit_source(reduction.band_limit_Hz, widest_Hz));
   }
-  const Campaign campaign(wanted.draws, result.sources.size());
+  const Campaign campaign(wanted.draws, result.sources.size(),
+                          NoisyShot(shot, reduction.quiet_samples).has_steps());
   std::vector<Draw> draws(campaign.count());
   workers.run((draws.size() + kChunk - 1) / kChunk, [&](std::size_t chunk, std::size_t) {
     Worker worker(shot, told, reduction, result.sources);

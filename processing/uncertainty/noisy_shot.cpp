@@ -45,17 +45,29 @@ NoisyShot::NoisyShot(const Shot& shot, std::size_t quiet_samples)
     const std::vector<double> quiet(
         channel.codes.begin(), channel.codes.begin() + static_cast<std::ptrdiff_t>(quiet_samples));
     makers_.emplace_back(quiet, shot.samples());
+    steps_.emplace_back(channel.codes, quiet_samples);
   }
 }
 
-void NoisyShot::record(RandomStream* random) {
+bool NoisyShot::has_steps() const {
+  return std::ranges::any_of(steps_, [](const ConverterSteps& own) { return own.matters(); });
+}
+
+void NoisyShot::record(RandomStream* noise, RandomStream* steps) {
   for (std::size_t c = 0; c < as_recorded_.size(); ++c) {
     auto& codes = shot_.channels[c].codes;
-    if (random == nullptr) {
+    const bool stepped = steps != nullptr && steps_[c].matters();
+    if (noise == nullptr && !stepped) {
       codes = as_recorded_[c].codes;
       continue;
     }
-    makers_[c].make(*random, noise_);
+    std::ranges::fill(noise_, 0.0);
+    if (noise != nullptr) {
+      makers_[c].make(*noise, noise_);
+    }
+    if (stepped) {
+      steps_[c].add(*steps, noise_);
+    }
     for (std::size_t n = 0; n < codes.size(); ++n) {
       codes[n] = as_recorded_[c].codes[n] + static_cast<std::int32_t>(std::lrint(noise_[n]));
     }

@@ -348,6 +348,45 @@ TEST(Uncertainty, IntervalsHoldTheTruth) {
   EXPECT_GE(inside, 33);  // 38 expected
 }
 
+/// A shot through a converter of so wide steps [strain], its zero anywhere within one.
+Shot coarse(const ElasticShpb& model, const ElasticShpb::Records& records, double noise_rms,
+            double step, unsigned seed) {
+  Shot shot = model.shot(records, noise_rms, 24, 0.01, seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> offset(0.0, 1.0);
+  for (ChannelRecord& channel : shot.channels) {
+    const double codes = step / channel.scale;
+    const double zero = offset(random);
+    for (std::int32_t& code : channel.codes) {
+      code = static_cast<std::int32_t>(std::lround(codes * std::round(code / codes + zero)));
+    }
+  }
+  return shot;
+}
+
+TEST(Uncertainty, HoldsWhatAQuietConvertersStepsHide) {
+  const ElasticShpb model;
+  const auto records = model.solve();
+  const double truth =
+      *std::max_element(records.truth.strain.begin(), records.truth.strain.begin() + 30'000);
+  int inside = 0;
+  constexpr unsigned kRepeats = 30;
+  for (unsigned repeat = 1; repeat <= kRepeats; ++repeat) {
+    const Uncertainty u = propagated(coarse(model, records, 0.5e-6, 40e-6, repeat), 80);
+    const UncertainFigure strain = figure(u, "peak_strain");
+    inside += truth > strain.low && truth < strain.high ? 1 : 0;
+    EXPECT_EQ(u.budget.front().source, "converter");
+  }
+  EXPECT_GE(inside, 26);  // 28 or 29 expected
+}
+
+TEST(Uncertainty, LeavesOutStepsThatNoiseDithers) {
+  const ElasticShpb model;
+  const Uncertainty u = propagated(coarse(model, model.solve(), 12e-6, 12e-6, 1), 40);
+  EXPECT_TRUE(std::ranges::none_of(
+      u.budget, [](const BudgetLine& line) { return line.source == "converter"; }));
+}
+
 TEST(Uncertainty, IsTheSameHoweverTheWorkIsSpread) {
   const ElasticShpb model;
   const Shot shot = model.shot(model.solve(), 4e-6, 16, 0.01, 1);
