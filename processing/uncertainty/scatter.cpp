@@ -25,6 +25,14 @@ double sd_of(const std::vector<double>& values) {
   return values.size() > 1 ? std::sqrt(squares / static_cast<double>(values.size() - 1)) : 0.0;
 }
 
+void reach_as_far_down(UncertainFigure& figure) {
+  if (figure.value >= 0.0) {
+    figure.low = std::min(figure.low, 2.0 * figure.value - figure.high);
+  } else {
+    figure.high = std::max(figure.high, 2.0 * figure.value - figure.low);
+  }
+}
+
 UncertainFigure uncertain_figure(std::string name, double value, std::vector<double> draws) {
   UncertainFigure figure{std::move(name), value, sd_of(draws), 0.0, 0.0};
   figure.low = quantile(draws, kLow);

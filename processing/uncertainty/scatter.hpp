@@ -24,6 +24,11 @@ struct UncertainFigure {
   double high = 0.0;
 };
 
+/// Of the largest of noisy samples: what noise adds to it in the draws, the shot's own noise has
+/// added to it already, so that the truth may lie as far below it. The interval then goes at least
+/// as far towards zero as the draws go away from it.
+void reach_as_far_down(UncertainFigure& figure);
+
 /// @param draws  its values in the draws, at least one
 [[nodiscard]] UncertainFigure uncertain_figure(std::string name, double value,
                                                std::vector<double> draws);
