@@ -11,6 +11,7 @@
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/record_faults.hpp"
 #include "processing/waves/bar_modes.hpp"
 #include "processing/waves/incident_tail.hpp"
 
@@ -345,7 +346,7 @@ std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPr
       throw InputError("capture " + shot.id, "has not one channel per gauge",
                        "file one gauge per channel, in their order");
     }
-    if (const std::string reason = unusable_because(shot); !reason.empty()) {
+    if (const std::string reason = spoiled_because(shot); !reason.empty()) {
       throw InputError("capture " + shot.id, reason, kRepeatOrLeaveOut);
     }
     part_of(parts, lay_of(shot)).shots.push_back(shot);

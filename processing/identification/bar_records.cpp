@@ -12,6 +12,7 @@
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 
+#include "processing/reduction/record_faults.hpp"
 namespace kolsky {
 
 namespace {
@@ -28,9 +29,7 @@ FirstPulse require_pulse(const std::vector<double>& readings, double rate_Hz,
 
 void require_quiet(std::size_t samples) {
   if (samples < kFewestQuiet) {
-    throw InputError(
-        "samples", "are too few before the pulse: " + std::to_string(samples),
-        "record at least " + std::to_string(kFewestQuiet) + " quiet samples before it");
+    throw InputError("samples", too_few_quiet(samples), kRecordFromBefore);
   }
 }
 
@@ -44,9 +43,8 @@ void require_bar(const Shot& shot) {
     throw InputError("gauges", "are not those of the capture's channels",
                      "give the bench file that the shot was recorded with");
   }
-  const std::string unusable = unusable_because(shot);
-  if (!unusable.empty()) {
-    throw InputError("samples", unusable, kRepeatOrLeaveOut);
+  if (const std::string spoiled = spoiled_because(shot); !spoiled.empty()) {
+    throw InputError("samples", spoiled, kRepeatOrLeaveOut);
   }
 }
 

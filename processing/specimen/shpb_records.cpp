@@ -11,6 +11,7 @@
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/record_faults.hpp"
 
 namespace kolsky {
 
@@ -49,9 +50,8 @@ void require_serving(const Shot& shot, const Shot& first) {
     throw InputError(place, "is of another bench or rate than " + first.id,
                      "identify a specimen from shots on one bench");
   }
-  const std::string unusable = unusable_because(shot);
-  if (!unusable.empty()) {
-    throw InputError(place, unusable, kRepeatOrLeaveOut);
+  if (const std::string spoiled = spoiled_because(shot); !spoiled.empty()) {
+    throw InputError(place, spoiled, kRepeatOrLeaveOut);
   }
 }
 
@@ -64,9 +64,7 @@ FirstPulse pulse_of(const Shot& shot, const ShpbStation& station) {
                      "give the shot's whole record, from before the impact");
   }
   if (pulse->quiet < kFewestQuiet) {
-    throw InputError("capture " + shot.id,
-                     "has " + std::to_string(pulse->quiet) + " quiet samples before the pulse",
-                     "record at least " + std::to_string(kFewestQuiet));
+    throw InputError("capture " + shot.id, too_few_quiet(pulse->quiet), kRecordFromBefore);
   }
   return *pulse;
 }

@@ -1,15 +1,10 @@
 #include "processing/criticism/records/campaign.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <optional>
-#include <span>
 
-#include "processing/algebra/algebra.hpp"
 #include "processing/base/error.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/criticism/records/ball_gate.hpp"
@@ -17,10 +12,11 @@
 #include "processing/criticism/records/lost_samples.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/ball/ball_flight.hpp"
+#include "processing/reduction/code_steps.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/formatted.hpp"
 #include "processing/reduction/pulse.hpp"
-#include "processing/reduction/quality.hpp"
+#include "processing/reduction/record_faults.hpp"
 
 namespace kolsky {
 
@@ -36,136 +32,6 @@ std::size_t reference_of(const Bench& bench) {
     }
   }
   return reference;
-}
-
-/// A record's values, each once, in order; none where they are more than so many.
-std::vector<double> values_of(const std::vector<double>& record, std::size_t most) {
-  // By its bits a value has a place in a table, or the next that is free: half of them stay so.
-  const auto bits = static_cast<int>(std::bit_width(2 * most + 1));
-  std::vector<std::uint32_t> known(std::size_t{1} << bits);  // 1 + the index of a value, or 0
-  std::vector<double> values;
-  for (const double value : record) {
-    const double signless_zero = value + 0.0;
-    std::size_t place =
-        (std::bit_cast<std::uint64_t>(signless_zero) * 0x9e3779b97f4a7c15U) >> (64 - bits);
-    while (known[place] != 0 && values[known[place] - 1] != value) {
-      place = (place + 1) % known.size();
-    }
-    if (known[place] == 0) {
-      if (values.size() == most) {
-        return {};
-      }
-      values.push_back(value);
-      known[place] = static_cast<std::uint32_t>(values.size());
-    }
-  }
-  std::sort(values.begin(), values.end());
-  return values;
-}
-
-/// From one value that a record takes to the next, in rising order; none where it takes too many to
-/// show its codes.
-std::vector<double> steps_of(const std::vector<double>& strain) {
-  constexpr std::size_t kSamplesPerValue = 4;
-  const std::vector<double> values = values_of(strain, strain.size() / kSamplesPerValue);
-  if (values.size() < 3) {
-    return {};
-  }
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    steps.push_back(values[i] - values[i - 1]);
-  }
-  std::ranges::sort(steps);
-  return steps;
-}
-
-/// The step between neighbouring codes where the record takes few enough values to show it.
-double step_of(const std::vector<double>& strain) {
-  const std::vector<double> steps = steps_of(strain);
-  return steps.empty() ? 0.0 : steps[steps.size() / 4];
-}
-
-/// Samples in a row, [first, first + count).
-struct Run {
-  std::size_t first = 0;
-  std::size_t count = 0;
-};
-
-/// How far a parabola through the record on either side of a run goes beyond it: of a
-/// smooth top less than a step between codes, of one that was cut off what is missing.
-double beyond_run(const std::vector<double>& readings, const Run& run) {
-  const std::size_t side = std::clamp<std::size_t>(run.count, 8, 16);
-  const std::size_t end = run.first + run.count;
-  if (run.first < side || end + side > readings.size()) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const double centre = static_cast<double>(run.first) + 0.5 * static_cast<double>(run.count - 1);
-  const auto rows = static_cast<Eigen::Index>(2 * side);
-  Eigen::MatrixXd powers(rows, 3);
-  Eigen::VectorXd values(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const std::size_t at = k < side ? run.first - side + k : end + k - side;
-    const double x = (static_cast<double>(at) - centre) / static_cast<double>(side);
-    powers.row(i) << 1.0, x, x * x;
-    values[i] = readings[at];
-  }
-  const double extreme = readings[run.first];
-  return std::copysign(1.0, extreme) * (least_squares(powers, values)[0] - extreme);
-}
-
-/// Whether a record comes to a run, or leaves it, within a few steps between codes: a pulse that
-/// was cut off comes and leaves steeply.
-bool level_beside(const std::vector<double>& readings, const Run& run, double most) {
-  constexpr std::size_t kSide = 8;
-  const std::size_t end = run.first + run.count;
-  const auto near = [&](std::size_t first) {
-    return std::ranges::all_of(std::span(readings).subspan(first, kSide), [&](double value) {
-      return std::abs(value - readings[run.first]) <= most;
-    });
-  };
-  return (run.first >= kSide && near(run.first - kSide)) ||
-         (end + kSide <= readings.size() && near(end));
-}
-
-/// A record that stays at its extreme far longer than it stays anywhere else near it has been cut
-/// off there, wherever its codes end: a table does not tell the converter's range. Where the steps
-/// are coarse and the noise is less, a smooth top stays at one code too: as the quiet record does.
-std::size_t flat_top(const std::vector<double>& readings) {
-  const auto [least, most] = std::minmax_element(readings.begin(), readings.end());
-  const double extreme = std::abs(*most) >= std::abs(*least) ? *most : *least;
-  /// Longest run of one code, of those that are asked for.
-  const auto longest_run = [&](const auto& asked) {
-    Run longest;
-    std::size_t run = 0;
-    for (std::size_t n = 0; n < readings.size(); ++n) {
-      run = n > 0 && readings[n] == readings[n - 1] ? run + 1 : 1;
-      if (run > longest.count && asked(readings[n])) {
-        longest = {n + 1 - run, run};
-      }
-    }
-    return longest;
-  };
-  constexpr std::size_t kLongRun = 8;
-  constexpr double kSteps = 2.0;
-  const Run top = longest_run([&](double value) { return value == extreme; });
-  const std::size_t at_extreme = top.count;
-  if (at_extreme < kLongRun || level_beside(readings, top, kSteps * least_step(readings))) {
-    return 0;
-  }
-  const std::vector<double> steps = steps_of(readings);
-  if (!steps.empty() && beyond_run(readings, top) < kSteps * steps.front()) {
-    return 0;
-  }
-  const auto cut_off = [&](double from) {
-    const std::size_t elsewhere =
-        longest_run([&](double value) { return value != extreme && std::abs(value) > from; }).count;
-    return at_extreme > 3 * elsewhere ? at_extreme : 0;
-  };
-  const std::size_t found = cut_off(0.5 * std::abs(extreme));
-  constexpr double kCoarse = 1.0 / 300.0;
-  constexpr double kAnywhere = -1.0;
-  return found > 0 && step_of(readings) > kCoarse * std::abs(extreme) ? cut_off(kAnywhere) : found;
 }
 
 std::optional<double> logged(const Shot& shot, const std::string& key) {
@@ -292,9 +158,8 @@ bool holds_pulse(const Shot& shot, std::size_t gauge) {
 }
 
 std::string bad_data(const Shot& shot) {
-  std::string unusable = unusable_because(shot);
-  if (!unusable.empty()) {
-    return unusable;
+  if (std::string spoiled = spoiled_because(shot); !spoiled.empty()) {
+    return spoiled;
   }
   const std::size_t reference = reference_of(shot.bench);
   if (reference == shot.bench.gauges.size()) {
@@ -304,14 +169,6 @@ std::string bad_data(const Shot& shot) {
     return std::to_string(shot.channels.size()) + " channels where the bench files " +
            std::to_string(filed);
   }
-  // A photo-sensor stays at its levels by nature.
-  for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
-    const ChannelRecord& channel = shot.channels[j];
-    if (const std::size_t flat = flat_top(readings_of(channel)); flat > 0) {
-      return "gauge " + channel.gauge + " stays at its extreme for " + std::to_string(flat) +
-             " samples: it was cut off there";
-    }
-  }
   // Behind a soft specimen there may be none; along one bar it comes to every gauge.
   for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
     if ((j == reference || shot.bench.kind == BenchKind::bar) && !holds_pulse(shot, j)) {
@@ -320,8 +177,7 @@ std::string bad_data(const Shot& shot) {
   }
   const auto pulse = first_pulse(readings_of(shot.channels[reference]), shot.rate.Hz());
   if (pulse->quiet < kFewestQuiet) {
-    return "too few quiet samples before the pulse: " + std::to_string(pulse->quiet) +
-           " of at least " + std::to_string(kFewestQuiet);
+    return too_few_quiet(pulse->quiet);
   }
   for (std::size_t j = 0; j < shot.bench.gauges.size(); ++j) {
     if (const auto lost = lost_samples(readings_of(shot.channels[j]), pulse->quiet)) {
@@ -363,7 +219,7 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
     double step = 0.0;
     for (const CampaignShot& shot : campaign.shots) {
-      step = std::max(step, step_of(shot.strain[j]));
+      step = std::max(step, code_step(shot.strain[j]));
     }
     campaign.step.push_back(step);
   }

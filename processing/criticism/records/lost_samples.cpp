@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "processing/reduction/code_steps.hpp"
 #include "processing/reduction/pulse.hpp"
 
 namespace kolsky {
@@ -52,19 +52,9 @@ bool jumps_and_is_back(std::span<const double> readings, const LostSamples& run,
 
 }  // namespace
 
-double least_step(std::vector<double> readings) {
-  std::ranges::sort(readings);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t n = 1; n < readings.size(); ++n) {
-    const double step = readings[n] - readings[n - 1];
-    least = step > 0.0 ? std::min(least, step) : least;
-  }
-  return least;
-}
-
 std::optional<LostSamples> lost_samples(std::span<const double> readings, std::size_t quiet) {
   const Quiet before = quiet_before(readings, quiet);
-  const double step = least_step({readings.begin(), readings.end()});
+  const double step = least_step(readings);
   LostSamples run{0, 1};
   for (std::size_t n = 1; n + kSide <= readings.size(); ++n) {
     if (readings[n] == readings[n - 1]) {

@@ -3,13 +3,8 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace kolsky {
-
-/// The least by which two of a record's values differ: a step of its converter. Infinite where none
-/// do.
-[[nodiscard]] double least_step(std::vector<double> readings);
 
 /// Samples that a digitiser lost without saying so.
 struct LostSamples {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <ranges>
 #include <thread>
@@ -384,6 +385,28 @@ TEST(IdentifyBar, WhatCannotServeIsRefusedWithWhatWouldBeNeeded) {
   }
   EXPECT_THROW((void)identify_bar(one_place, {}), InputError);
   EXPECT_THROW((void)identify_bar(draw(paper_bar(), 1, 8), {.band_limit_Hz = 400e3}), InputError);
+}
+
+// A table does not tell its converter's range: the record does, where it stays at an end.
+TEST(IdentifyBar, ARecordThatWasCutOffIsRefusedAtEitherEnd) {
+  for (const bool top : {true, false}) {
+    std::vector<Shot> shots = draw(paper_bar(), 2, 8);
+    std::vector<std::int32_t>& codes = shots[1].channels[2].codes;
+    const auto [least, most] = std::ranges::minmax(codes);
+    for (std::int32_t& code : codes) {
+      code = top ? std::min(code, most / 10 * 7) : std::max(code, least / 10 * 7);
+    }
+    try {
+      (void)identify_bar(shots, {});
+      ADD_FAILURE() << "a record that was cut off is none of the bar's, top: " << top;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("capture " + shots[1].id), std::string::npos);
+      EXPECT_NE(std::string(error.what())
+                    .find("gauge " + shots[1].channels[2].gauge + " stays at its extreme"),
+                std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 /// Cramer and Rao: information on the logarithms of E1, E2, eta2 from whole records with the source

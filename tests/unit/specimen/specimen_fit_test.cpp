@@ -624,6 +624,20 @@ TEST(FitSpecimen, RefusesWhatCannotServe) {
   auto clipped = shots;
   clipped[1].channels[0].codes[700] = clipped[1].channels[0].code_max;
   EXPECT_THROW((void)fit_specimen(clipped, bars, {}), InputError);
+  // At a range that a table does not tell.
+  auto cut = shots;
+  std::vector<std::int32_t>& codes = cut[1].channels[0].codes;
+  const auto [least, most] = std::ranges::minmax(codes);
+  for (std::int32_t& code : codes) {
+    code = std::clamp(code, least / 10 * 7, most / 10 * 7);
+  }
+  try {
+    (void)fit_specimen(cut, bars, {});
+    ADD_FAILURE() << "a record that was cut off is none of the specimen's";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "capture " + cut[1].id);
+    EXPECT_NE(error.problem().find("it was cut off there"), std::string::npos) << error.what();
+  }
   auto silent = shots;
   for (ChannelRecord& channel : silent[0].channels) {
     std::fill(channel.codes.begin(), channel.codes.end(), 0);
