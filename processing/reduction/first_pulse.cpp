@@ -43,6 +43,7 @@ std::optional<FirstPulse> first_pulse(std::span<const double> record, double rat
   }
   FirstPulse pulse;
   pulse.rise = rise->index;
+  pulse.sense = rise->sense;
   pulse.height =
       *std::max_element(shifted.begin() + static_cast<std::ptrdiff_t>(pulse.rise), shifted.end());
   pulse.half = passage(shifted, pulse.rise, 0.5 * pulse.height);

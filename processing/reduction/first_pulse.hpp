@@ -15,6 +15,7 @@ struct FirstPulse {
   double half = 0.0;      ///< where it passes half of the height [samples]
   double foot = 0.0;      ///< where it begins [samples]
   double height = 0.0;    ///< in its own sense, above what was before it
+  double sense = 1.0;     ///< sign of the pulse as it is read
   std::size_t quiet = 0;  ///< samples before it, clear of its foot
 };
 

@@ -9,6 +9,7 @@
 
 #include "processing/reduction/formatted.hpp"
 #include "processing/reduction/loop_summary.hpp"
+#include "processing/reduction/record_faults.hpp"
 
 namespace kolsky {
 

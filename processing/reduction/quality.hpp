@@ -30,10 +30,6 @@ struct FlatTop {
 /// A pass, or a warning where a record of unknown ends stands at its largest value for long.
 [[nodiscard]] Check clipping(const FlatTop& flat_top);
 
-/// What to do about a record that begins within its pulse.
-inline constexpr const char* kRecordFromBefore =
-    "trigger earlier, or record for longer before the trigger";
-
 /// What to do about a shot that is `unusable_because`.
 inline constexpr const char* kRepeatOrLeaveOut = "repeat the shot, or leave this capture out";
 

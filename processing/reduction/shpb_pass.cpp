@@ -1,4 +1,5 @@
 #include "processing/reduction/shpb_pass.hpp"
+#include "processing/reduction/record_faults.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string>
+#include <tuple>
 
 #include "processing/base/error.hpp"
 #include "processing/calibration/calibration.hpp"
@@ -242,6 +244,27 @@ std::vector<Shot> shots_of_four_gauges(double second_late_s, unsigned seed) {
     shots.push_back(testing::digitise(bench, records, 2e-6, kBits, kRange, 2 * seed + n));
   }
   return shots;
+}
+
+/// The same shots as a trigger has them that came so many samples later.
+std::vector<Shot> begun_later(std::vector<Shot> shots, std::ptrdiff_t samples) {
+  for (Shot& shot : shots) {
+    for (ChannelRecord& channel : shot.channels) {
+      channel.codes.erase(channel.codes.begin(), channel.codes.begin() + samples);
+    }
+  }
+  return shots;
+}
+
+// The front is at 200 us plus its way to the first gauge, 78 us: the record begins on its rise.
+TEST(BarsTogether, ATriggerThatCameTooLateIsSaidAndNothingIsMadeOfIt) {
+  try {
+    (void)calibrate(begun_later(shots_of_four_gauges(0.0, 1), 286), {});
+    ADD_FAILURE() << "what begins within a pulse has no baseline";
+  } catch (const InputError& error) {
+    EXPECT_NE(error.problem().find("gauge g1 has no quiet part"), std::string::npos)
+        << error.what();
+  }
 }
 
 // Once the face has parted nothing more is judged, so that the pulse passes once and what is late

@@ -409,6 +409,26 @@ TEST(IdentifyBar, ARecordThatWasCutOffIsRefusedAtEitherEnd) {
   }
 }
 
+TEST(IdentifyBar, ARecordThatBeginsWithinItsPulseHasNoQuietPart) {
+  std::vector<Shot> shots = draw(paper_bar(), 2, 8);
+  const auto& codes = shots[0].channels[0].codes;
+  const auto most = *std::ranges::max_element(codes);
+  const auto risen =
+      std::ranges::find_if(codes, [&](std::int32_t code) { return 3 * code > most; });
+  const auto late = risen - codes.begin();
+  for (Shot& shot : shots) {
+    for (ChannelRecord& channel : shot.channels) {
+      channel.codes.erase(channel.codes.begin(), channel.codes.begin() + late);
+    }
+  }
+  try {
+    (void)identify_bar(shots, {});
+    ADD_FAILURE() << "what begins within a pulse has no baseline";
+  } catch (const InputError& error) {
+    EXPECT_NE(error.problem().find("has no quiet part"), std::string::npos) << error.what();
+  }
+}
+
 /// Cramer and Rao: information on the logarithms of E1, E2, eta2 from whole records with the source
 /// unknown at every frequency, gains and positions exact, by finite differences of the elementary
 /// wave on the imaginary axis. Shares nothing with the fit.
