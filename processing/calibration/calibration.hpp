@@ -28,13 +28,28 @@ enum class Standing {
 
 /// A number of the bench or of its bars under calibration, as a change of what is filed.
 struct CalibratedNumber {
-  enum class Of { gain, position, delay, bar_length, way_to_end, elastic_modulus, E1, E2, eta2 };
+  enum class Of {
+    gain,
+    position,
+    delay,
+    bar_length,
+    way_to_end,
+    diameter,
+    density,
+    elastic_modulus,
+    E1,
+    E2,
+    eta2
+  };
   Of of = Of::gain;
   /// As the effect that would name it: "gauge-position:g3". "E1_Pa" is the bar's or the input
-  /// bar's, "output:E1_Pa" that of a viscoelastic output bar lying behind another. "way-to-end:g1"
-  /// is what the two passes at one gauge have between them, twice: the bar's length less the place.
+  /// bar's, "output:E1_Pa" that of a viscoelastic output bar lying behind another. Of elastic bars
+  /// together "bar-modulus" is off for both alike, "input:bar-modulus" for one alone.
+  /// "way-to-end:g1" is what the two passes at one gauge have between them, twice: the bar's length
+  /// less the place.
   std::string id;
   std::string gauge;  ///< of gain, position, delay and way to the end
+  std::string bar;    ///< "input" or "output", of what is one bar's alone
   Measured filed;     ///< gain: 1, delay: 0, else the number itself; sd 0 where filed as exact
   Measured measured;  ///< by the shots and all other filed numbers, without its own
   Measured combined;  ///< by shots and its own filed number; where it differs, `measured`

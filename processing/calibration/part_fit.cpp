@@ -29,7 +29,7 @@ constexpr double kTie = 9.0;
 /// Tolerances while waves and far end are chosen, so that a misfiled bench does not choose them.
 constexpr double kLoosely = 5.0;
 constexpr double kClearlyBetter = 10.0;
-constexpr std::size_t kMostRefits = 8;
+constexpr std::size_t kMostRefits = 12;
 /// Shots that are enough to tell waves and far end.
 constexpr std::size_t kShotsToChoose = 2;
 constexpr double kSpeedAt_Hz = 1e4;
@@ -330,6 +330,7 @@ class PartFit {
     out.of = number.of;
     out.id = number.id;
     out.gauge = number.gauge;
+    out.bar = number.bar;
     out.filed = number.filed;
     const auto& [composition, fit] = std::tie(fitted_->studied.composition, fitted_->studied.fit);
     const std::size_t place = place_of(composition, number);
@@ -405,12 +406,12 @@ class PartFit {
     Material material = bars_.material;
     const auto places = three_element_places(material.solid);
     for (std::size_t i = 0, m = 0; i < numbers_.size(); ++i) {
-      if (numbers_[i].of_output_bar) {
+      if (numbers_[i].bar == "output") {
         continue;
       }
       switch (numbers_[i].of) {
         case CalibratedNumber::Of::elastic_modulus:
-          bar.youngs_modulus_Pa->value = values[m++];
+          bar.youngs_modulus_Pa->value *= values[m++] / numbers_[i].filed.value;
           break;
         case CalibratedNumber::Of::E1:
         case CalibratedNumber::Of::E2:
@@ -438,7 +439,7 @@ class PartFit {
     const auto& composition = fitted_->studied.composition;
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const ModelNumber& number = numbers_[i];
-      if (number.of < CalibratedNumber::Of::elastic_modulus || number.of_output_bar) {
+      if (number.of < CalibratedNumber::Of::elastic_modulus || number.bar == "output") {
         continue;
       }
       const std::size_t place = place_of(composition, number);
@@ -480,17 +481,20 @@ class PartFit {
     const ModelFit& fit = fitted_->studied.fit;
     const auto& composition = fitted_->studied.composition;
     const Eigen::MatrixXd all = fit.jacobian.transpose() * fit.jacobian;
-    const auto count = static_cast<Eigen::Index>(numbers_.size());
-    Eigen::MatrixXd information(count, count);
     std::vector<std::string> names;
     std::vector<Eigen::Index> places;
     std::vector<double> steps;
     for (const ModelNumber& number : numbers_) {
+      if (number.of_both) {
+        continue;  // both bars' own numbers moved alike
+      }
       const std::size_t place = place_of(composition, number);
       places.push_back(static_cast<Eigen::Index>(place));
       steps.push_back(number.step / composition.numbers()[place].scale);
       names.push_back(number.id);
     }
+    const auto count = static_cast<Eigen::Index>(places.size());
+    Eigen::MatrixXd information(count, count);
     for (Eigen::Index a = 0; a < count; ++a) {
       for (Eigen::Index b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(a);

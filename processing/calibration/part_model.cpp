@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "processing/identification/known_unknowns.hpp"
 #include "processing/models/material_effects.hpp"
@@ -18,10 +19,6 @@ constexpr double kModulusStep = 0.01;
 constexpr double kExactly = 1e-4;
 /// Stiffness of a specimen that is not there, Pa.
 constexpr double kRigid_Pa = 1e16;
-
-bool trusted(const CalibrationOptions& options, const std::string& gauge) {
-  return std::find(options.trusted.begin(), options.trusted.end(), gauge) != options.trusted.end();
-}
 
 ModelNumber of_gauge(CalibratedNumber::Of of, const std::string& effect, const Gauge& gauge,
                      const Measured& filed, double step) {
@@ -58,7 +55,7 @@ ModelNumber of_material(CalibratedNumber::Of of, std::size_t parameter, const st
   number.of = of;
   number.id = id;
   number.effect = effect;
-  number.of_output_bar = effect == kOutputBar;
+  number.bar = effect == kOutputBar ? "output" : "";
   number.parameter = parameter;
   number.filed = filed;
   number.origin = filed.value;
@@ -90,6 +87,57 @@ void add_moduli(const std::string& effect, const std::string& prefix, const Mate
                                prefix + parameters_of(material.solid)[places.at(i)].name,
                                three.parameters[i], believed));
   }
+}
+
+ModelNumber of_elastic_bars(CalibratedNumber::Of of, const std::string& id,
+                            const std::string& effect, const std::string& bar,
+                            const Measured& filed) {
+  ModelNumber number;
+  number.of = of;
+  number.id = id;
+  number.effect = effect;
+  number.bar = bar;
+  number.filed = filed;
+  number.relative = true;
+  number.step = kModulusStep;
+  number.least_sd = kExactly * kModulusStep;
+  return number;
+}
+
+/// Bars that are filed alike may be of one stock, off together, and each may be off by itself.
+bool filed_alike(const Bench& bench) {
+  constexpr double kAlike = 1e-6;
+  return std::abs(*bench.input.youngs_modulus_Pa / *bench.output->youngs_modulus_Pa - 1.0) < kAlike;
+}
+
+/// What makes waves of one bar faster also passes and returns them otherwise at the joint, and
+/// modulus and density do that in opposite senses: each bar's own are told apart from a gauge that
+/// is filed elsewhere, and from a diameter, which the joint alone shows.
+void add_elastic_bars(const Bench& bench, std::vector<ModelNumber>& list) {
+  using Of = CalibratedNumber::Of;
+  constexpr const char* kBoth = "bar-modulus";
+  if (!bench.output) {
+    list.push_back(
+        of_elastic_bars(Of::elastic_modulus, kBoth, kBoth, "", *bench.input.youngs_modulus_Pa));
+    return;
+  }
+  if (filed_alike(bench)) {
+    list.push_back(
+        of_elastic_bars(Of::elastic_modulus, kBoth, kBoth, "", *bench.input.youngs_modulus_Pa));
+    list.back().of_both = true;
+  }
+  list.push_back(of_elastic_bars(Of::elastic_modulus, "input:bar-modulus", "input-bar-modulus",
+                                 "input", *bench.input.youngs_modulus_Pa));
+  list.push_back(of_elastic_bars(Of::elastic_modulus, "output:bar-modulus", "output-bar-modulus",
+                                 "output", *bench.output->youngs_modulus_Pa));
+  list.push_back(of_elastic_bars(Of::density, "input:bar-density", "bar-density", "input",
+                                 bench.input.density_kg_m3));
+  list.push_back(of_elastic_bars(Of::density, "output:bar-density", "output-bar-density", "output",
+                                 bench.output->density_kg_m3));
+  list.push_back(of_elastic_bars(Of::diameter, "input:bar-diameter", "bar-diameter", "input",
+                                 bench.input.diameter_m));
+  list.push_back(of_elastic_bars(Of::diameter, "output:bar-diameter", "output-bar-diameter",
+                                 "output", bench.output->diameter_m));
 }
 
 void hold(EffectUse& use) {
@@ -138,6 +186,10 @@ void add_specimen(const Bench& bench, const Material& material, Model& model) {
 
 }  // namespace
 
+bool trusted(const CalibrationOptions& options, const std::string& gauge) {
+  return std::find(options.trusted.begin(), options.trusted.end(), gauge) != options.trusted.end();
+}
+
 double ModelNumber::filed_sd() const {
   return (relative ? relative_sd(filed) : filed.sd) / per_value;
 }
@@ -167,14 +219,7 @@ std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& be
     list.push_back(number);
   }
   if (all_elastic(bench)) {
-    ModelNumber number;
-    number.of = Of::elastic_modulus;
-    number.id = number.effect = "bar-modulus";
-    number.filed = *bench.input.youngs_modulus_Pa;
-    number.relative = true;
-    number.step = kModulusStep;
-    number.least_sd = kExactly * kModulusStep;
-    list.push_back(number);
+    add_elastic_bars(bench, list);
   } else {
     const bool believed = options.bars.has_value();
     const Material& material = material_of(part, options);
@@ -193,6 +238,11 @@ Model part_model(const CalibrationPart& part, const Bench& bench, const Calibrat
   model.kind = bench.kind;
   if (!all_elastic(bench)) {
     add_bars(bench, options, material_of(part, options), model);
+  }
+  if (all_elastic(bench) && bench.output && !filed_alike(bench)) {
+    // Each bar has its own number: none is off with the other.
+    model.effects.push_back(use_named("bar-modulus"));
+    hold(model.effects.back());
   }
   model.effects.push_back(use_named("elementary-waves"));
   if (variant.exact_waves) {

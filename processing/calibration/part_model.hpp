@@ -15,8 +15,8 @@ struct ModelNumber {
   CalibratedNumber::Of of = CalibratedNumber::Of::gain;
   std::string id;
   std::string gauge;
-  bool of_output_bar = false;  ///< a modulus of the output bar alone
-  std::string effect;          ///< id of the effect's use
+  std::string bar;     ///< as CalibratedNumber
+  std::string effect;  ///< id of the effect's use
   std::size_t parameter = 0;
   Measured filed;          ///< as CalibratedNumber
   double origin = 0.0;     ///< of the effect's value where the number is as filed
@@ -25,6 +25,7 @@ struct ModelNumber {
   bool believed = true;    ///< something is filed of it
   double step = 0.0;       ///< of the effect's value, that matters
   double least_sd = 0.0;   ///< stands for exact
+  bool of_both = false;    ///< what each bar's own number does, done to both
 
   /// What is filed of the number, as a deviation of the effect's value.
   [[nodiscard]] double filed_sd() const;
@@ -35,6 +36,9 @@ struct PartVariant {
   bool exact_waves = false;
   bool far_end_seen = false;
 };
+
+/// Whether a gauge's numbers count as right.
+[[nodiscard]] bool trusted(const CalibrationOptions& options, const std::string& gauge);
 
 /// Numbers that a part of the shots can be held against.
 [[nodiscard]] std::vector<ModelNumber> numbers_of(const CalibrationPart& part, const Bench& bench,

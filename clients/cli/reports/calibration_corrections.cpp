@@ -74,9 +74,21 @@ void exchange(const Bench& bench, const std::pair<std::string, std::string>& nam
   }
 }
 
-bool worth_filing(const CalibratedNumber& number) {
+/// Elastic bars together have a modulus of both beside their own, and densities go with them, and
+/// one's diameter with the other's:
+/// none by itself is known better than filed.
+bool part_of_a_whole(const CalibratedNumber& number, BarsLay lay) {
+  using Of = CalibratedNumber::Of;
+  return lay == BarsLay::together && (number.of == Of::elastic_modulus ||
+                                      number.of == Of::density || number.of == Of::diameter);
+}
+
+/// What leaves nearly all of the records says nothing of the numbers that it seems to agree with.
+bool worth_filing(const CalibratedNumber& number, const PartResult& part) {
+  constexpr double kFarOff = 20.0;
   return number.standing == Standing::differs ||
-         (number.standing == Standing::agrees && number.filed.sd > 0.0 &&
+         (number.standing == Standing::agrees && part.chi2_reduced < kFarOff &&
+          !part_of_a_whole(number, part.lay) && number.filed.sd > 0.0 &&
           number.combined.sd < kKnownBetter * number.filed.sd);
 }
 
@@ -84,7 +96,8 @@ bool worth_filing(const CalibratedNumber& number) {
 
 std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay, const Bench& bench) {
   using Of = CalibratedNumber::Of;
-  const std::string bar = lay == BarsLay::output_alone ? "bars.output" : "bars.input";
+  const bool of_output = lay == BarsLay::output_alone || number.bar == "output";
+  const std::string bar = of_output ? "bars.output" : "bars.input";
   switch (number.of) {
     case Of::gain: {
       const std::size_t index = index_of(bench, number.gauge);
@@ -98,6 +111,13 @@ std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay, c
                     number.combined);
     case Of::bar_length:
       return key_of(bar, 0, bar, "length_m", number.combined);
+    case Of::diameter: {
+      const Bar& filed = number.bar == "output" ? *bench.output : bench.input;
+      return filed.side_m ? std::nullopt
+                          : std::optional(key_of(bar, 0, bar, "diameter_m", number.combined));
+    }
+    case Of::density:
+      return key_of(bar, 0, bar, "density_kg_m3", number.combined);
     case Of::elastic_modulus:
       return key_of(bar, 0, bar, "youngs_modulus_Pa", number.combined);
     default:
@@ -114,7 +134,7 @@ std::vector<BenchEdit> corrections(const Calibration& calibration, const Bench& 
     }
     for (const CalibratedNumber& number : part.numbers) {
       const auto key = bench_key(number, part.lay, bench);
-      if (!key || !worth_filing(number)) {
+      if (!key || !worth_filing(number, part)) {
         continue;
       }
       const auto before = filed.find(key->name);
@@ -123,7 +143,8 @@ std::vector<BenchEdit> corrections(const Calibration& calibration, const Bench& 
       }
       filed[key->name] = key->value;
       add_edits(*key, bench, edits);
-      if (number.of == CalibratedNumber::Of::elastic_modulus && part.lay == BarsLay::together) {
+      if (number.of == CalibratedNumber::Of::elastic_modulus && number.bar.empty() &&
+          part.lay == BarsLay::together) {
         BenchKey output = *key;
         output.edit.table = "bars.output";
         add_edits(output, bench, edits);

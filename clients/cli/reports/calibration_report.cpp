@@ -23,11 +23,14 @@ std::string unit_of(CalibratedNumber::Of of) {
     case Of::gain:
       return "-";
     case Of::position:
+    case Of::diameter:
     case Of::bar_length:
     case Of::way_to_end:
       return "m";
     case Of::delay:
       return "s";
+    case Of::density:
+      return "kg/m3";
     case Of::eta2:
       return "Pa s";
     default:

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 namespace kolsky::cli {
 namespace {
 
@@ -25,6 +28,57 @@ TEST(CalibrationReport, ASpeedThatMayBeAnythingIsNoResult) {
   EXPECT_EQ(text.find("16.49"), std::string::npos) << text;
   EXPECT_NE(to_text(describe(open, {})).find("\"wave_speed_m_per_s\":null"), std::string::npos)
       << to_text(describe(open, {}));
+}
+
+/// One gauge whose bridge is amplified 200 times, one with a plain factor, one with a shunt.
+Bench three_gauges() {
+  Bench bench;
+  for (const char* const name : {"bridge", "factor", "shunt"}) {
+    bench.gauges.emplace_back().name = name;
+  }
+  bench.gauges[0].bridge = Bridge{.gain = {200.0, 1.0}};
+  bench.gauges[1].strain_per_V = Measured{0.002, 1e-5};
+  bench.gauges[2].bridge = Bridge{.shunt_resistance_ohm = 1e5, .shunt_reading_V = 0.5};
+  return bench;
+}
+
+Calibration with_part(const PartResult& part) {
+  Calibration calibration;
+  calibration.parts.push_back(part);
+  return calibration;
+}
+
+TEST(CalibrationReport, NothingIsFiledOfAFitThatDescribesNothing) {
+  CalibratedNumber place;
+  place.of = CalibratedNumber::Of::position;
+  place.id = "gauge-position:bridge";
+  place.gauge = "bridge";
+  place.filed = {0.5, 3e-4};
+  place.measured = place.combined = {0.5001, 1e-4};
+  PartResult part;
+  part.numbers.push_back(place);
+  part.chi2_reduced = 1.0;
+  EXPECT_FALSE(corrections(with_part(part), three_gauges()).empty());
+  part.chi2_reduced = 3e4;
+  EXPECT_TRUE(corrections(with_part(part), three_gauges()).empty());
+}
+
+TEST(CalibrationReport, EachBarsOwnModulusGoesToThatBar) {
+  CalibratedNumber modulus;
+  modulus.of = CalibratedNumber::Of::elastic_modulus;
+  modulus.id = "output:bar-modulus";
+  modulus.bar = "output";
+  modulus.standing = Standing::differs;
+  modulus.filed = {220e9, 0.4e9};
+  modulus.measured = modulus.combined = {207e9, 0.2e9};
+  PartResult part;
+  part.lay = BarsLay::together;
+  part.numbers.push_back(modulus);
+  const std::vector<BenchEdit> edits = corrections(with_part(part), three_gauges());
+  ASSERT_EQ(edits.size(), 2U);
+  for (const BenchEdit& edit : edits) {
+    EXPECT_EQ(edit.table, "bars.output");
+  }
 }
 
 }  // namespace
