@@ -103,6 +103,42 @@ std::vector<std::pair<std::string, std::string>> set_in_order(Bench& bench, cons
   return swapped;
 }
 
+/// Of a gauge's first pulse, compression positive; 0 where there is none.
+double sense_of(const Shot& shot, std::size_t gauge) {
+  const Gauge& own = shot.bench.gauges[gauge];
+  const auto pulse = pulse_of(shot, gauge);
+  if (!pulse) {
+    return 0.0;
+  }
+  const BridgeConversion bridge(own, shot.bench.bar_of(own), shot.bench.positive);
+  return std::copysign(1.0, bridge.strain(pulse->sense * pulse->height));
+}
+
+/// Gauges whose pulse pulls in every shot, where another's pushes: one wave comes to all.
+std::vector<std::size_t> inverted_in(const std::vector<Shot>& shots) {
+  std::vector<std::size_t> inverted;
+  bool some_push = false;
+  for (std::size_t j = 0; j < shots.front().bench.gauges.size(); ++j) {
+    const auto sense = [&](const Shot& shot) { return sense_of(shot, j); };
+    some_push = some_push ||
+                std::ranges::all_of(shots, [&](const Shot& shot) { return sense(shot) > 0.0; });
+    if (std::ranges::all_of(shots, [&](const Shot& shot) { return sense(shot) < 0.0; })) {
+      inverted.push_back(j);
+    }
+  }
+  return some_push ? inverted : std::vector<std::size_t>{};
+}
+
+/// Gives gauges that read with the other sign the one that is filed.
+void set_senses(CalibrationPart& part) {
+  for (const std::size_t gauge : inverted_in(part.shots)) {
+    part.inverted.push_back(part.shots.front().bench.gauges[gauge].name);
+    for (Shot& shot : part.shots) {
+      shot.channels[gauge].scale = -shot.channels[gauge].scale;
+    }
+  }
+}
+
 void cut(Shot& shot, std::size_t samples) {
   for (ChannelRecord& channel : shot.channels) {
     channel.codes.resize(std::min(channel.codes.size(), samples));
@@ -251,11 +287,14 @@ std::optional<double> pulse_speed_m_per_s(const Shot& shot) {
          (seen_far->half - seen_near->half);
 }
 
-void prepare(CalibrationPart& part, const BarPrior& bars) {
+void prepare(CalibrationPart& part, const BarPrior& bars, Channels channels) {
   for (Shot& shot : part.shots) {
     if (part.lay == BarsLay::input_alone || part.lay == BarsLay::output_alone) {
       leave_one_bar(shot, part.lay == BarsLay::input_alone ? "input" : "output");
     }
+  }
+  if (channels == Channels::as_they_read) {
+    set_senses(part);
   }
   Bench bench = part.shots.front().bench;
   part.two_passes = bench.gauges.size() == 1;
@@ -263,7 +302,9 @@ void prepare(CalibrationPart& part, const BarPrior& bars) {
     throw InputError("gauges", "are too few: one on a bar to be characterised",
                      "record the pulse with two gauges");
   }
-  part.swapped = set_in_order(bench, part.shots.front());
+  if (channels == Channels::as_they_read) {
+    part.swapped = set_in_order(bench, part.shots.front());
+  }
   for (Shot& shot : part.shots) {
     shot.bench = bench;
     if (part.two_passes) {
@@ -328,7 +369,8 @@ BarPrior bars_to_begin_with(const std::vector<Shot>& shots) {
   return bars;
 }
 
-std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPrior& bars) {
+std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPrior& bars,
+                                     Channels channels) {
   if (shots.empty()) {
     throw InputError("captures", "are none", "give at least one shot");
   }
@@ -353,7 +395,7 @@ std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots, const BarPr
   }
   for (CalibrationPart& part : parts) {
     part.bars = bars;
-    prepare(part, bars);
+    prepare(part, bars, channels);
   }
   return parts;
 }

@@ -22,16 +22,23 @@ struct CalibrationPart {
   bool two_passes = false;
   /// Gauges whose pulses arrive in each other's order: by name, on the part's bench exchanged.
   std::vector<std::pair<std::string, std::string>> swapped;
+  /// Gauges whose pulse pulls where another's pushes: by name, in the part's shots inverted.
+  std::vector<std::string> inverted;
   /// What viscoelastic bars were taken to be where records were cut, and where a fit begins.
   BarPrior bars{paper_pmma()};
 };
+
+/// How channels are taken: exchanged and inverted where their first pulses say so, or as the bench
+/// files them.
+enum class Channels { as_they_read, as_filed };
 
 /// Sorts shots by how the bars lay, which the records show: a bar that stays silent was not
 /// touched. A bar by itself becomes a bench of kind "bar"; bars together stay a split bar, with the
 /// records cut before faces can part.
 /// @throws InputError where the shots are of different benches or kinds, or hold no pulse
 [[nodiscard]] std::vector<CalibrationPart> arrange(const std::vector<Shot>& shots,
-                                                   const BarPrior& bars);
+                                                   const BarPrior& bars,
+                                                   Channels channels = Channels::as_they_read);
 
 /// What viscoelastic bars are taken to be before anything of them is known: the paper's PMMA, and
 /// of bars that touch one as much stiffer as the pulse is faster from gauge to gauge.

@@ -62,7 +62,8 @@ BarPrior as_found(const PartResult& part, BarPrior bars) {
 /// Where one gauge stands for two, what its record is parted by depends on the moduli, and so does
 /// where the records of bars together end: they are parted and cut again by those they gave.
 PartResult fitted_part(const std::vector<Shot>& shots, const std::vector<CalibrationPart>& parts,
-                       std::size_t index, const BarPrior& bars, const CalibrationOptions& options) {
+                       std::size_t index, const BarPrior& bars, const CalibrationOptions& options,
+                       Channels channels) {
   PartResult fitted = fit_part(parts[index], options);
   const CalibrationPart& part = parts[index];
   const bool elastic = part.shots.front().bench.input.youngs_modulus_Pa.has_value();
@@ -70,7 +71,62 @@ PartResult fitted_part(const std::vector<Shot>& shots, const std::vector<Calibra
   if (elastic || !(part.two_passes || cut_by_guess)) {
     return fitted;
   }
-  return fit_part(arrange(shots, as_found(fitted, bars))[index], options);
+  return fit_part(arrange(shots, as_found(fitted, bars), channels)[index], options);
+}
+
+bool unexplained(const PartResult& part) {
+  return std::ranges::any_of(part.numbers, [](const CalibratedNumber& number) {
+    return number.standing == Standing::unexplained;
+  });
+}
+
+/// Whether channels taken as they read leave so much less than as filed that this is what was
+/// wrong. Numbers that were set free do not count for what is filed: a place that may go anywhere
+/// does what an exchange does.
+bool explains_records(const PartResult& as_they_read, const PartResult& as_filed) {
+  constexpr double kFarOff = 20.0;
+  const double left = as_they_read.chi2_reduced - 1.0;
+  const double most = as_they_read.chi2_reduced > kFarOff ? 0.1 : 0.5;
+  return !unexplained(as_they_read) && left < most * (as_filed.chi2_reduced_as_filed - 1.0);
+}
+
+std::string exchanged(const std::pair<std::string, std::string>& gauges) {
+  return "gauges " + gauges.first + " and " + gauges.second;
+}
+
+/// The order and the sense in which pulses come are what made a claim of exchanged or inverted
+/// channels; it stands where the fit bears it out.
+PartResult believed_part(const std::vector<Shot>& shots, const std::vector<CalibrationPart>& parts,
+                         std::size_t index, const BarPrior& bars, const CalibrationOptions& options,
+                         Calibration& result) {
+  PartResult read = fitted_part(shots, parts, index, bars, options, Channels::as_they_read);
+  if (read.swapped.empty() && read.inverted.empty()) {
+    return read;
+  }
+  const std::vector<CalibrationPart> as_filed = arrange(shots, bars, Channels::as_filed);
+  PartResult filed = fitted_part(shots, as_filed, index, bars, options, Channels::as_filed);
+  if (explains_records(read, filed)) {
+    for (const auto& gauges : read.swapped) {
+      result.reasons.push_back(exchanged(gauges) +
+                               " are exchanged: the pulse arrives in the other order");
+    }
+    for (const std::string& gauge : read.inverted) {
+      result.reasons.push_back(
+          "gauge " + gauge + " reads with the other sign: its pulse pulls where the others' push");
+    }
+    return read;
+  }
+  for (const auto& gauges : read.swapped) {
+    result.reasons.push_back("the pulse comes to " + exchanged(gauges) +
+                             " in the other order than filed, and exchanged they explain the "
+                             "records no better");
+  }
+  for (const std::string& gauge : read.inverted) {
+    result.reasons.push_back("the pulse at gauge " + gauge +
+                             " pulls where the others' push, and with the other sign it explains "
+                             "the records no better: did the trigger come too late?");
+  }
+  return filed;
 }
 
 }  // namespace
@@ -125,7 +181,8 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
   bool undecided = false;
   for (std::size_t index = 0; index < parts.size(); ++index) {
     const CalibrationPart& part = parts[index];
-    PartResult fitted = fitted_part(shots, parts, index, bars, options);
+    PartResult fitted = believed_part(shots, parts, index, bars, options, result);
+    differs = differs || !fitted.swapped.empty() || !fitted.inverted.empty();
     for (const CalibratedNumber& number : fitted.numbers) {
       differs = differs || number.standing == Standing::differs;
       undecided = undecided || number.standing == Standing::tied;
@@ -135,14 +192,7 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
                                   " deviations off, which among so many numbers may be chance");
       }
     }
-    for (const auto& [one, other] : fitted.swapped) {
-      differs = true;
-      result.reasons.push_back("gauges " + one + " and " + other +
-                               " are exchanged: the pulse arrives in the other order");
-    }
-    const bool something_else =
-        std::any_of(fitted.numbers.begin(), fitted.numbers.end(),
-                    [](const auto& number) { return number.standing == Standing::unexplained; });
+    const bool something_else = unexplained(fitted);
     if (something_else || fitted.chi2_reduced > kMoreThanNoise) {
       undecided = true;
       result.reasons.push_back(

@@ -70,7 +70,8 @@ struct PartResult {
   Measured wave_speed_m_per_s;  ///< phase speed at `wave_speed_at_Hz`
   double wave_speed_at_Hz = 0.0;
   std::vector<CalibratedNumber> numbers;
-  std::vector<std::pair<std::string, std::string>> swapped;
+  std::vector<std::pair<std::string, std::string>> swapped;  ///< gauges that were exchanged
+  std::vector<std::string> inverted;  ///< gauges that read with the other sign than filed
   PulseAreas areas;
   std::vector<std::string> cannot_tell;  ///< combinations of numbers that leave no trace
 };

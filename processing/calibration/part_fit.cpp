@@ -77,6 +77,7 @@ class PartFit {
     result_.two_passes = part.two_passes;
     result_.shots = part.shots.size();
     result_.swapped = part.swapped;
+    result_.inverted = part.inverted;
     result_.areas = pulse_areas(part, campaign_, bars_);
   }
 

@@ -37,13 +37,22 @@ std::optional<BenchKey> gain_key(const Gauge& gauge, std::size_t index, const Me
   const double relative = gain.sd / gain.value;
   if (gauge.strain_per_V) {
     const double value = gauge.strain_per_V->value / gain.value;
-    return key_of("gauges", index, shown, "strain_per_V", {value, value * relative});
+    return key_of("gauges", index, shown, "strain_per_V", {value, std::abs(value) * relative});
   }
   if (gauge.bridge) {
     const double value = gauge.bridge->gauge_factor.value * gain.value;
-    return key_of("gauges", index, shown, "gauge_factor", {value, value * relative});
+    return key_of("gauges", index, shown, "gauge_factor", {value, std::abs(value) * relative});
   }
   return std::nullopt;
+}
+
+/// The number whose sign turns a gauge's readings round; null where it has none.
+template <typename AnyGauge>
+auto number_with_sign(AnyGauge& gauge) -> decltype(&*gauge.strain_per_V) {
+  if (gauge.strain_per_V) {
+    return &*gauge.strain_per_V;
+  }
+  return gauge.bridge && !gauge.bridge->shunt_reading_V ? &gauge.bridge->gain : nullptr;
 }
 
 void add_edits(const BenchKey& key, const Bench& bench, std::vector<BenchEdit>& edits) {
@@ -125,6 +134,27 @@ std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay, c
   }
 }
 
+std::optional<BenchKey> inverting_key(const std::string& gauge, const Bench& bench) {
+  const std::size_t index = index_of(bench, gauge);
+  const Gauge& filed = bench.gauges[index];
+  const std::string shown = "gauges." + gauge;
+  if (const Measured* number = number_with_sign(filed)) {
+    return key_of("gauges", index, shown, filed.strain_per_V ? "strain_per_V" : "gain",
+                  {-number->value, number->sd});
+  }
+  return std::nullopt;
+}
+
+Bench with_signs_as_found(const PartResult& part, Bench bench) {
+  for (const std::string& gauge : part.inverted) {
+    Gauge& filed = bench.gauges[index_of(bench, gauge)];
+    if (Measured* number = number_with_sign(filed)) {
+      number->value = -number->value;
+    }
+  }
+  return bench;
+}
+
 std::vector<BenchEdit> corrections(const Calibration& calibration, const Bench& bench) {
   std::vector<BenchEdit> edits;
   std::map<std::string, Measured> filed;  // by key: the best of several parts counts
@@ -132,8 +162,14 @@ std::vector<BenchEdit> corrections(const Calibration& calibration, const Bench& 
     for (const auto& names : part.swapped) {
       exchange(bench, names, edits);
     }
+    for (const std::string& gauge : part.inverted) {
+      if (const auto key = inverting_key(gauge, bench)) {
+        edits.push_back(key->edit);
+      }
+    }
+    const Bench found = with_signs_as_found(part, bench);
     for (const CalibratedNumber& number : part.numbers) {
-      const auto key = bench_key(number, part.lay, bench);
+      const auto key = bench_key(number, part.lay, found);
       if (!key || !worth_filing(number, part)) {
         continue;
       }

@@ -89,8 +89,9 @@ JsonValue describe_momentum(const PulseAreas& areas) {
 
 JsonValue describe_part(const PartResult& part, const Bench& bench) {
   JsonList numbers;
+  const Bench found = with_signs_as_found(part, bench);
   for (const CalibratedNumber& number : part.numbers) {
-    numbers.push_back(describe_number(number, part.lay, bench));
+    numbers.push_back(describe_number(number, part.lay, found));
   }
   JsonList swapped;
   for (const auto& [one, other] : part.swapped) {
@@ -111,6 +112,7 @@ JsonValue describe_part(const PartResult& part, const Bench& bench) {
                                  : nullptr},
       {"numbers", numbers},
       {"swapped", swapped},
+      {"inverted", part.inverted},
       {"areas", describe_areas(part.areas)},
       {"momentum", describe_momentum(part.areas)},
       {"cannot_tell", part.cannot_tell}};
@@ -149,6 +151,14 @@ std::string row(const CalibratedNumber& number, BarsLay lay, const Bench& bench)
   return text + "\n";
 }
 
+/// Of a gauge that reads with the other sign.
+std::string how_to_invert(const std::string& gauge, const Bench& bench) {
+  const auto key = inverting_key(gauge, bench);
+  return key ? fmt::format("put {} = {:.10g}", key->name, key->value.value)
+             : "no number of the bench file has its sign, exchange the bridge's output leads or "
+               "change it on import";
+}
+
 std::string areas_text(const PulseAreas& areas) {
   std::string text = "  pulse areas, no model: ";
   if (!areas.none_because.empty()) {
@@ -182,8 +192,12 @@ std::string part_text(const PartResult& part, const Bench& bench) {
               : "  wave speed: these shots do not tell it; it takes gauges further apart, or bars "
                 "that are longer for this pulse\n";
   text += "  number                       filed                   by the shots        deviations\n";
+  const Bench found = with_signs_as_found(part, bench);
   for (const CalibratedNumber& number : part.numbers) {
-    text += row(number, part.lay, bench);
+    text += row(number, part.lay, found);
+  }
+  for (const std::string& gauge : part.inverted) {
+    text += "  gauge " + gauge + ": " + how_to_invert(gauge, bench) + "\n";
   }
   text += areas_text(part.areas);
   if (!part.cannot_tell.empty()) {

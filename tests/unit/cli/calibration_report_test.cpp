@@ -48,6 +48,40 @@ Calibration with_part(const PartResult& part) {
   return calibration;
 }
 
+const BenchEdit* edit_of(const std::vector<BenchEdit>& edits, std::size_t gauge,
+                         const std::string& key) {
+  const BenchEdit* last = nullptr;
+  for (const BenchEdit& edit : edits) {
+    last = edit.index == gauge && edit.key == key ? &edit : last;
+  }
+  return last;
+}
+
+TEST(CalibrationReport, AGaugeOfTheOtherSignIsFiledByTheNumberThatHasOne) {
+  PartResult part;
+  part.inverted = {"bridge", "factor", "shunt"};
+  // Beside the sign the plain factor is off by 1 %.
+  CalibratedNumber gain;
+  gain.of = CalibratedNumber::Of::gain;
+  gain.id = "gauge-factor:factor";
+  gain.gauge = "factor";
+  gain.standing = Standing::differs;
+  gain.filed = {1.0, 0.001};
+  gain.measured = gain.combined = {1.01, 0.001};
+  part.numbers.push_back(gain);
+  const Bench bench = three_gauges();
+  const std::string text = report(with_part(part), bench);
+  EXPECT_NE(text.find("gauge bridge: put gauges.bridge.gain = -200"), std::string::npos) << text;
+  EXPECT_NE(text.find("gauge shunt: no number of the bench file has its sign"), std::string::npos);
+  const std::vector<BenchEdit> edits = corrections(with_part(part), bench);
+  ASSERT_TRUE(edit_of(edits, 0, "gain"));
+  EXPECT_EQ(edit_of(edits, 0, "gain")->text, "-200");
+  ASSERT_TRUE(edit_of(edits, 1, "strain_per_V"));
+  EXPECT_NEAR(std::stod(*edit_of(edits, 1, "strain_per_V")->text), -0.002 / 1.01, 1e-12);
+  EXPECT_GT(std::stod(*edit_of(edits, 1, "strain_per_V_sd")->text), 0.0);
+  EXPECT_FALSE(edit_of(edits, 2, "gain"));
+}
+
 TEST(CalibrationReport, NothingIsFiledOfAFitThatDescribesNothing) {
   CalibratedNumber place;
   place.of = CalibratedNumber::Of::position;
