@@ -207,9 +207,11 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
       const Measured& gain = fitted.areas.momentum->gain;
       if (std::abs(fitted.areas.momentum_left) > kDeviations) {
         undecided = true;
-        result.reasons.push_back(
-            "the striker's momentum gives gauge " + fitted.areas.momentum->gauge + " the gain " +
-            std::to_string(gain.value) + ": all gains together, or the striker's numbers, are off");
+        result.reasons.push_back("the striker's momentum gives gauge " +
+                                 fitted.areas.momentum->gauge + " the gain " +
+                                 std::to_string(gain.value) +
+                                 (fitted.two_passes ? ": its gain" : ": all gains together") +
+                                 ", or the striker's numbers, are off");
       }
     }
     compare_areas(fitted, result.warnings);

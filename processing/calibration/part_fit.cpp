@@ -245,6 +245,9 @@ class PartFit {
     }
     double gain = 1.0;
     double sd = result_.areas.momentum->gain.sd;
+    if (part_.two_passes && !trusted(options_, result_.areas.momentum->gauge)) {
+      sd = std::hypot(sd, gain_sd(campaign_.bench.gauges[campaign_.reference]));
+    }
     for (const ModelNumber& number : numbers_) {
       if (number.of == CalibratedNumber::Of::gain &&
           number.gauge == result_.areas.momentum->gauge) {
@@ -504,6 +507,9 @@ class PartFit {
       }
     }
     result_.cannot_tell = null_directions(information, names);
+    if (part_.two_passes && !result_.areas.momentum) {
+      result_.cannot_tell.push_back("gauge-factor:" + campaign_.bench.gauges.front().name);
+    }
   }
 
   const CalibrationPart& part_;

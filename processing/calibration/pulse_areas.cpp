@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "processing/base/striker.hpp"
 #include "processing/identification/known_unknowns.hpp"
@@ -29,6 +30,9 @@ double way_s(const Bench& bench, const Gauge& gauge, const std::vector<double>& 
 /// How long a gauge sees the first pulse alone.
 double alone_s(const CalibrationPart& part, const Bench& bench, const Gauge& gauge,
                const std::vector<double>& speeds) {
+  if (part.two_passes) {
+    return (bench.gauges[1].position_m - bench.gauges[0].position_m) / speeds[0];
+  }
   if (part.lay != BarsLay::together) {
     return 2.0 * (bench.input.length_m - gauge.position_m) / speeds[0];
   }
@@ -40,6 +44,11 @@ double alone_s(const CalibrationPart& part, const Bench& bench, const Gauge& gau
   }
   return 2.0 * (bench.input.length_m - gauge.position_m) / speeds[0] +
          2.0 * bench.output->length_m / speeds[1];
+}
+
+/// Gauges whose pulses are. Of two passes at one gauge the second is over when the record is.
+std::span<const Gauge> compared(const CalibrationPart& part, const Bench& bench) {
+  return std::span(bench.gauges).first(part.two_passes ? 1 : bench.gauges.size());
 }
 
 struct Area {
@@ -180,7 +189,6 @@ PulseAreas pulse_areas(const CalibrationPart& part, const Campaign& campaign,
   result.first_gauge = bench.gauges[campaign.reference].name;
   if (part.two_passes) {
     result.none_because = "one gauge has nothing to be compared with";
-    return result;
   }
   std::vector<double> speeds{
       front_speed_m_per_s(bench.input, *compliance_of(bench.input, bars.material))};
@@ -195,7 +203,7 @@ PulseAreas pulse_areas(const CalibrationPart& part, const Campaign& campaign,
   }
   double window_s = std::numeric_limits<double>::infinity();
   const double first_way_s = way_s(bench, bench.gauges[campaign.reference], speeds);
-  for (const Gauge& gauge : bench.gauges) {
+  for (const Gauge& gauge : compared(part, bench)) {
     const double delay_s = way_s(bench, gauge, speeds) - first_way_s;
     window_s = std::min(window_s, alone_s(part, bench, gauge, speeds));
     for (const CampaignShot& shot : campaign.shots) {
@@ -206,12 +214,12 @@ PulseAreas pulse_areas(const CalibrationPart& part, const Campaign& campaign,
   }
   result.window_s = window_s - 2.0 * kMargin_s;
   if (result.window_s < 4.0 * kMargin_s) {
-    result.none_because = "waves come back before a pulse has passed";
+    result.none_because = result.no_momentum_because = "waves come back before a pulse has passed";
     return result;
   }
   const auto samples = static_cast<std::size_t>(result.window_s / campaign.period_s);
-  std::vector<std::vector<Area>> areas(bench.gauges.size());
-  for (std::size_t j = 0; j < bench.gauges.size(); ++j) {
+  std::vector<std::vector<Area>> areas(compared(part, bench).size());
+  for (std::size_t j = 0; j < areas.size(); ++j) {
     const double delay_s = way_s(bench, bench.gauges[j], speeds) - first_way_s;
     for (const CampaignShot& shot : campaign.shots) {
       const auto first = static_cast<std::size_t>(
@@ -222,7 +230,7 @@ PulseAreas pulse_areas(const CalibrationPart& part, const Campaign& campaign,
     }
   }
   const auto& reference = areas[campaign.reference];
-  for (std::size_t j = 0; j < bench.gauges.size() && result.none_because.empty(); ++j) {
+  for (std::size_t j = 0; j < areas.size() && result.none_because.empty(); ++j) {
     std::vector<Measured> ratios;
     for (std::size_t n = 0; n < reference.size(); ++n) {
       if (areas[j][n].over && reference[n].over) {

@@ -38,7 +38,7 @@ struct PulseAreas {
 /// density is: with Z its impedance over the bar's it leaves 2 m v / (1 + Z) in the bar where it
 /// rebounds (Z below 1), all of m v else. A bar's strain area stands for its stress by the modulus
 /// at rest.
-/// @param part  with two passes there is nothing to compare
+/// @param part  with two passes there is nothing to compare, and the momentum alone tells the gain
 [[nodiscard]] PulseAreas pulse_areas(const CalibrationPart& part, const Campaign& campaign,
                                      const BarPrior& bars);
 

@@ -598,5 +598,38 @@ TEST(InputBarAlone, OfAnElasticBarTheWayIsTiedWithTheModulus) {
   EXPECT_EQ(standing(told, Standing::differs), std::vector<std::string>{"bar-modulus"});
 }
 
+// The pulse's area, 5e-4 times 100 us, is that of 0.25 m of the bar at 5.25 m/s. One gauge has no
+// other to be compared with: of its gain the striker alone tells.
+TEST(InputBarAlone, TheStrikersMomentumTellsTheGainOfOneGauge) {
+  constexpr double kStriker_m = 0.25;
+  constexpr double kSpeed_m_per_s = 5e-8 * 206e9 / (7850.0 * kStriker_m);
+  for (const double gain : {1.0, 1.03}) {
+    Bench bench = testing::ElasticShpb{}.bench();
+    bench.output->youngs_modulus_Pa = bench.input.youngs_modulus_Pa;
+    bench.gauges.front().strain_gain.sd = 0.006;
+    bench.striker = Striker{Measured{kStriker_m}, bench.input.diameter_m, Measured{7850.0},
+                            Measured{kSpeed_m_per_s, 0.002 * kSpeed_m_per_s}};
+    const double speed = std::sqrt(206e9 / 7850.0);
+    const double place_m = bench.gauges.front().position_m;
+    std::vector<std::vector<double>> records(2, std::vector<double>(800, 0.0));
+    for (int n = 0; n < 800; ++n) {
+      const double time_s = 1e-6 * n - 200e-6;
+      records[0][n] = gain * (pulse_of_120_us(time_s - place_m / speed) -
+                              pulse_of_120_us(time_s - (2.0 - place_m) / speed));
+    }
+    const Calibration calibration = calibrate(shots_of(bench, records, 5), {});
+    const PartResult& part = calibration.parts.front();
+    ASSERT_TRUE(part.two_passes);
+    ASSERT_TRUE(part.areas.momentum) << part.areas.no_momentum_because;
+    EXPECT_NEAR(part.areas.momentum->gain.value, gain, 4.0 * part.areas.momentum->gain.sd);
+    EXPECT_LT(part.areas.momentum->gain.sd, 0.003);
+    EXPECT_EQ(calibration.certificate, gain == 1.0 ? Certificate::pass : Certificate::undecided);
+    bench.striker.reset();
+    const Calibration untold = calibrate(shots_of(bench, records, 5), {});
+    EXPECT_NE(std::ranges::find(untold.parts.front().cannot_tell, "gauge-factor:g1"),
+              untold.parts.front().cannot_tell.end());
+  }
+}
+
 }  // namespace
 }  // namespace kolsky
