@@ -286,8 +286,8 @@ void BarData::weigh(BarNoise& noise) const {
     auto& of_mean = noise.variance_of_baseline.emplace_back();
     for (const BarRecords& records : records_) {
       const auto quiet_samples = static_cast<double>(records.quiet_samples);
-      of_mean.push_back(
-          std::max(spectrum.variance_of_mean(records.quiet_samples), floor / quiet_samples));
+      const double least = records.stays_at_a_code(j) ? floor : floor / quiet_samples;
+      of_mean.push_back(std::max(spectrum.variance_of_mean(records.quiet_samples), least));
     }
   }
 }

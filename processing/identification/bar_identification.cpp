@@ -191,6 +191,20 @@ void warn_of_choices(const BarIdentification& result, std::vector<std::string>& 
   }
 }
 
+/// Rounding is noise only where there is some: shots alike are rounded alike.
+void warn_of_steps(const BarData& data, std::vector<std::string>& warnings) {
+  const BarRecords& records = data.records().front();
+  const std::size_t gauges = data.two_passes() ? 1 : data.gauges();
+  for (std::size_t j = 0; j < gauges; ++j) {
+    if (records.stays_at_a_code(j)) {
+      warnings.push_back("gauge " + data.bench().gauges[records.channel[j]].name +
+                         " reads in steps of " + in_words(1e6 * records.step[j], "microstrain") +
+                         ", more than its noise: what rounding leaves counts as noise, but may be "
+                         "more than that, and shots that are alike repeat it");
+    }
+  }
+}
+
 void warn_of_bench(const BarData& data, const BarFit& fit, std::vector<std::string>& warnings) {
   const auto unknowns = known_unknowns(data.bench(), data.records().front());
   for (std::size_t i = 0; i < fit.bench.size(); ++i) {
@@ -539,6 +553,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   for (const Shot& shot : shots) {
     result.shot_ids.push_back(shot.id);
   }
+  warn_of_steps(data, result.warnings);
   take_temperatures(shots, result);
   warn_of_fit(result, result.warnings);
   warn_of_choices(result, result.warnings);

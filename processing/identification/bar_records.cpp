@@ -8,11 +8,12 @@
 #include "processing/base/range.hpp"
 #include "processing/bridge/bridge.hpp"
 #include "processing/bridge/channel_delay.hpp"
+#include "processing/reduction/code_steps.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
-
 #include "processing/reduction/record_faults.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -69,13 +70,22 @@ std::vector<std::size_t> along_the_bar(const Bench& bench) {
   return order;
 }
 
+/// Of the converter, in the gauge's unit. A table's codes are the file's; the converter's own,
+/// which are coarser, show where a record takes few of them.
+double step_of(const ChannelRecord& channel, const std::vector<double>& readings) {
+  return std::max(std::abs(channel.scale), code_step(readings));
+}
+
+/// @param code  step of the converter, in the gauge's unit
 void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readings,
-                  const FirstPulse& pulse, BarRecords& records) {
+                  const FirstPulse& pulse, double code, BarRecords& records) {
   const Gauge& gauge = shot.bench.gauges[index];
   const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
   std::vector<double> strain(readings.size());
   bridge.convert(readings, quiet_before(readings, records.quiet_samples).baseline, strain);
-  records.noise_rms.push_back(quiet_before(strain, records.quiet_samples).noise_rms);
+  const double step = std::abs(bridge.sensitivity() * code);
+  records.noise_rms.push_back(
+      std::max(quiet_before(strain, records.quiet_samples).noise_rms, step / std::sqrt(12.0)));
   records.rise_s.push_back(pulse.half * records.period_s);
   records.position_m.push_back(gauge.position_m);
   const auto rise = static_cast<std::size_t>(pulse.half);
@@ -84,7 +94,7 @@ void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readi
   records.peak.push_back(
       std::abs(*std::max_element(strain.begin() + static_cast<std::ptrdiff_t>(rise),
                                  strain.begin() + static_cast<std::ptrdiff_t>(end), larger)));
-  records.step.push_back(std::abs(bridge.sensitivity() * shot.channels[index].scale));
+  records.step.push_back(step);
   records.strain.push_back(std::move(strain));
 }
 
@@ -105,8 +115,10 @@ BarRecords read_bar_records(const Shot& shot) {
   const double rate_Hz = shot.rate.Hz();
   std::vector<std::vector<double>> readings;
   std::vector<FirstPulse> pulses;
+  std::vector<double> codes;
   for (const std::size_t index : records.channel) {
     readings.push_back(readings_of(shot.channels[index]));
+    codes.push_back(step_of(shot.channels[index], readings.back()));
     take_out_delay(shot.bench.gauges[index].delay_s, rate_Hz, readings.back());
     pulses.push_back(require_pulse(readings.back(), rate_Hz, shot.bench.gauges[index].name));
   }
@@ -114,7 +126,7 @@ BarRecords read_bar_records(const Shot& shot) {
   require_quiet(records.quiet_samples);
   records.foot_s = pulses.front().foot * records.period_s;
   for (std::size_t j = 0; j < readings.size(); ++j) {
-    append_gauge(shot, records.channel[j], std::move(readings[j]), pulses[j], records);
+    append_gauge(shot, records.channel[j], std::move(readings[j]), pulses[j], codes[j], records);
   }
   return records;
 }

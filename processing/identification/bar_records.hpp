@@ -11,11 +11,11 @@ namespace kolsky {
 struct BarRecords {
   std::vector<double> position_m;
   std::vector<std::vector<double>>
-      strain;                        ///< compression positive, less the baseline before the pulse
-  std::vector<double> noise_rms;     ///< of each gauge, before the pulse
-  std::vector<double> step;          ///< of strain from code to code
-  std::vector<double> rise_s;        ///< when the first pulse passes half of its peak
-  std::vector<double> peak;          ///< of the first pulse
+      strain;                     ///< compression positive, less the baseline before the pulse
+  std::vector<double> noise_rms;  ///< of each gauge, before the pulse; at least that of its codes
+  std::vector<double> step;       ///< of strain from code to code, the converter's
+  std::vector<double> rise_s;     ///< when the first pulse passes half of its peak
+  std::vector<double> peak;       ///< of the first pulse
   std::vector<std::size_t> channel;  ///< each one's place in the bench's list of gauges
   std::size_t quiet_samples = 0;     ///< before the pulse
   double foot_s = 0.0;               ///< of the pulse at the first gauge, from the first sample
@@ -30,6 +30,11 @@ struct BarRecords {
   /// From the first gauge's rise to another one's, each in its own record.
   [[nodiscard]] double rise_behind_first_s(std::size_t gauge) const {
     return rise_s[gauge] - rise_s[0] - late_of_s(gauge);
+  }
+  /// Whether a gauge's quiet part stays at one code or two: its mean is known no better than a code
+  /// then, however long it lasts, for what rounding makes of it averages out only over noise.
+  [[nodiscard]] bool stays_at_a_code(std::size_t gauge) const {
+    return noise_rms[gauge] < 0.5 * step[gauge];
   }
   [[nodiscard]] double late_of_s(std::size_t gauge) const { return gauge > 0 ? late_s : 0.0; }
 };

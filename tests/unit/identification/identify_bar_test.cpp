@@ -429,6 +429,48 @@ TEST(IdentifyBar, ARecordThatBeginsWithinItsPulseHasNoQuietPart) {
   }
 }
 
+/// Codes of a file that are finer than those of the converter that it was made from, which has
+/// steps of so many of the finer ones, and an offset of less than one.
+void coarsen(ChannelRecord& channel, double step, double offset) {
+  constexpr std::int32_t kFiner = 1000;
+  for (std::int32_t& code : channel.codes) {
+    code = static_cast<std::int32_t>(
+        std::lround(kFiner * step * std::round(static_cast<double>(code) / step + offset)));
+  }
+  channel.scale /= kFiner;
+  channel.code_min = std::numeric_limits<std::int32_t>::min();
+  channel.code_max = std::numeric_limits<std::int32_t>::max();
+}
+
+// While nothing moves such a converter stays at one code: that is neither a record without noise
+// nor a baseline without a deviation.
+TEST(IdentifyBar, AQuietConverterOfCoarseStepsHasTheNoiseOfItsSteps) {
+  constexpr double kStep_codes = 100.0;  // of 0.3 microstrain
+  const double truth[3] = {paper_bar().setup().material.E1_Pa, paper_bar().setup().material.E2_Pa,
+                           paper_bar().setup().material.eta2_Pa_s};
+  unsigned within = 0;
+  constexpr unsigned kSets = 6;
+  for (unsigned seed = 1; seed <= kSets; ++seed) {
+    std::vector<Shot> shots = draw(paper_bar(), 5, 40 + seed, {.noise_rms = 2e-6});
+    for (std::size_t n = 0; n < shots.size(); ++n) {
+      for (std::size_t j = 0; j < shots[n].channels.size(); ++j) {
+        coarsen(shots[n].channels[j], kStep_codes,
+                0.07 * static_cast<double>((7 * n + 3 * j + seed) % 10) - 0.32);
+      }
+    }
+    const BarIdentification result = identify_bar(shots, {.compare_solids = false});
+    // Smooth pulses leave more of their rounding in the band than noise would; without a step: 6e4.
+    EXPECT_LT(result.three_element.chi2_reduced, 10.0) << seed;
+    EXPECT_TRUE(says(result, "reads in steps of 30.5176 microstrain")) << seed;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const FittedNumber& number = result.three_element.parameters[i];
+      EXPECT_TRUE(number.sd > 0.0 && number.sd < 0.2 * number.value) << number.name << seed;
+      within += std::abs(number.value - truth[i]) < 2.0 * number.sd ? 1 : 0;
+    }
+  }
+  EXPECT_GE(within, 14U) << "of 18 within two deviations";
+}
+
 /// Cramer and Rao: information on the logarithms of E1, E2, eta2 from whole records with the source
 /// unknown at every frequency, gains and positions exact, by finite differences of the elementary
 /// wave on the imaginary axis. Shares nothing with the fit.
