@@ -12,6 +12,7 @@
 #include "processing/identification/bar_judge.hpp"
 #include "processing/identification/better_solid.hpp"
 #include "processing/identification/explanations.hpp"
+#include "processing/reduction/formatted.hpp"
 
 namespace kolsky {
 
@@ -183,8 +184,11 @@ void warn_of_choices(const BarIdentification& result, std::vector<std::string>& 
     warnings.push_back("nothing comes back from the far end, though the bench's bar ends there");
   }
   if (result.fit.far_end == FarEndReturn::partial) {
-    warnings.push_back("the far end is neither free nor silent: it returns " +
-                       rounded(result.fit.reflection->value) + " of the stress");
+    const FittedNumber& returned = *result.fit.reflection;
+    warnings.push_back(
+        "the far end is neither free, which would return -1 of the stress, nor "
+        "silent: it returns " +
+        formatted("%.4f ± %.2g", returned.value, returned.sd));
   }
   if (const auto better = better_solid(result)) {
     warnings.push_back(cost_of_filing(fit_to_file(result), *better));
@@ -314,13 +318,23 @@ void look_at_all(const Open& open, Explanations& explanations) {
   }
 }
 
+/// Whether what a far end returns is told from all and from nothing. Where the model lacks
+/// something, one number more may take up some of that and be far ahead, though it says that all
+/// comes back: such an end is free.
+bool is_a_share(const BarFit& partial) {
+  constexpr double kApart = 3.0;
+  const FittedNumber& returned = *partial.reflection;
+  return std::min(std::abs(returned.value + 1.0), std::abs(returned.value)) > kApart * returned.sd;
+}
+
 /// Of an end that returns a share nobody knows: believed where it is far ahead, and where it is,
 /// those that return all or nothing are searched once more from there.
 const BarFit* or_of_partial_end(const BarFit* best, const Open& open, Explanations& explanations) {
   const BarFit* partial =
       explanations.at_if_better({best->theory, best->solid, FarEndReturn::partial});
   const auto far_ahead = [&] {
-    return partial != nullptr && partial->log_evidence > best->log_evidence + kPartialAhead;
+    return partial != nullptr && partial->log_evidence > best->log_evidence + kPartialAhead &&
+           is_a_share(*partial);
   };
   if (!far_ahead()) {
     return best;
@@ -389,7 +403,8 @@ const BarFit* choose_three_elements(const BarIdentificationOptions& options, con
   const std::vector<const BarFit*> over_ends = explanations.at(open.with_waves(theory.fit->theory));
   Best end = best_of(over_ends);
   if (over_ends.front() != nullptr && open.ends.back() == FarEndReturn::partial &&
-      end.choice.ahead < kPartialAhead) {
+      (end.choice.ahead < kPartialAhead ||
+       (end.fit->far_end == FarEndReturn::partial && !is_a_share(*end.fit)))) {
     end.fit = over_ends.front();
   }
   result.far_end = end.choice;

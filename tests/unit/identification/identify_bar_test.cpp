@@ -471,6 +471,19 @@ TEST(IdentifyBar, AQuietConverterOfCoarseStepsHasTheNoiseOfItsSteps) {
   EXPECT_GE(within, 14U) << "of 18 within two deviations";
 }
 
+// A channel that is filed on time and is late leaves what one number more takes up; what it then
+// says of the end is that all comes back.
+TEST(IdentifyBar, AnEndThatReturnsAllIsFreeWhateverElseIsOff) {
+  std::vector<Shot> shots = draw(paper_bar(), 5, 12);
+  for (Shot& shot : shots) {
+    auto& codes = shot.channels[1].codes;
+    std::rotate(codes.begin(), codes.end() - 2, codes.end());
+  }
+  const BarIdentification result = identify_bar(shots, {.compare_solids = false});
+  EXPECT_EQ(result.fit.far_end, FarEndReturn::free);
+  EXPECT_FALSE(says(result, "neither free"));
+}
+
 /// Cramer and Rao: information on the logarithms of E1, E2, eta2 from whole records with the source
 /// unknown at every frequency, gains and positions exact, by finite differences of the elementary
 /// wave on the imaginary axis. Shares nothing with the fit.
