@@ -13,6 +13,7 @@
 #include "processing/identification/better_solid.hpp"
 #include "processing/identification/explanations.hpp"
 #include "processing/reduction/formatted.hpp"
+#include "processing/reduction/gauge_order.hpp"
 
 namespace kolsky {
 
@@ -193,6 +194,18 @@ void warn_of_choices(const BarIdentification& result, std::vector<std::string>& 
   if (const auto better = better_solid(result)) {
     warnings.push_back(cost_of_filing(fit_to_file(result), *better));
   }
+}
+
+/// First of all: what is exchanged spoils every number.
+void warn_of_order(const std::vector<Shot>& shots, std::vector<std::string>& warnings) {
+  std::optional<Check> said;
+  for (const Shot& shot : shots) {
+    said = gauge_order(shot);
+    if (!said) {
+      return;
+    }
+  }
+  warnings.push_back(said->text);
 }
 
 /// Rounding is noise only where there is some: shots alike are rounded alike.
@@ -568,6 +581,7 @@ BarIdentification identify_bar(const std::vector<Shot>& shots,
   for (const Shot& shot : shots) {
     result.shot_ids.push_back(shot.id);
   }
+  warn_of_order(shots, result.warnings);
   warn_of_steps(data, result.warnings);
   take_temperatures(shots, result);
   warn_of_fit(result, result.warnings);

@@ -429,6 +429,17 @@ TEST(IdentifyBar, ARecordThatBeginsWithinItsPulseHasNoQuietPart) {
   }
 }
 
+TEST(IdentifyBar, ExchangedGaugesAreSaidFirst) {
+  std::vector<Shot> shots = draw(paper_bar(), 3, 8);
+  for (Shot& shot : shots) {
+    std::swap(shot.channels[1].codes, shot.channels[2].codes);
+  }
+  const BarIdentification result = identify_bar(shots, {.compare_solids = false});
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings.front().find("were the two exchanged"), std::string::npos)
+      << result.warnings.front();
+}
+
 /// Codes of a file that are finer than those of the converter that it was made from, which has
 /// steps of so many of the finer ones, and an offset of less than one.
 void coarsen(ChannelRecord& channel, double step, double offset) {
