@@ -179,6 +179,13 @@ std::string place_text(const Told& told, const WavesAtPlace& place) {
                   noise_Pa > 0.0 ? "; stress in the end to " + with_unit(noise_Pa, "Pa") : ""));
 }
 
+/// Gauges that see the same of both ways' waves tell nothing, by whatever number.
+std::string how_blind(double noise_gain) {
+  constexpr double kNothingElse = 1000.0;
+  return noise_gain < kNothingElse ? fmt::format("{:.0f} times the noise", noise_gain)
+                                   : std::string("noise and nothing else");
+}
+
 std::string blind_text(const RecordedWaves& waves) {
   if (waves.blind.empty()) {
     return report_row("blind", "nowhere in the band");
@@ -186,9 +193,8 @@ std::string blind_text(const RecordedWaves& waves) {
   std::string text;
   constexpr std::size_t kMostNamed = 4;
   for (std::size_t i = 0; i < std::min(waves.blind.size(), kMostNamed); ++i) {
-    text += (text.empty() ? "" : ", ") + fmt::format("{} ({:.0f} times the noise)",
-                                                     with_unit(waves.blind[i].frequency_Hz, "Hz"),
-                                                     waves.blind[i].noise_gain);
+    text += (text.empty() ? "" : ", ") + with_unit(waves.blind[i].frequency_Hz, "Hz") + " (" +
+            how_blind(waves.blind[i].noise_gain) + ")";
   }
   if (waves.blind.size() > kMostNamed) {
     text += fmt::format(" and {} more", waves.blind.size() - kMostNamed);

@@ -123,13 +123,17 @@ std::string row(const CalibratedNumber& number, BarsLay lay, const Bench& bench)
   std::string text = fmt::format("  {:<20}", number.id);
   text += filed ? fmt::format("{:>14.7g} ± {:<9.2g}", number.filed.value, number.filed.sd)
                 : fmt::format("{:>14}   {:<9}", "-", "");
-  // What explains nothing was not measured by it either.
-  text +=
-      number.standing == Standing::unexplained
-          ? fmt::format("{:>14}   {:<9}{:>8}  ", "-", "", "")
-          : fmt::format("{:>14.7g} ± {:<9.2g}{:>8}  ", number.measured.value, number.measured.sd,
-                        filed ? fmt::format("{:.1f}", number.deviations) : "-");
+  // What explains nothing was not measured by it either, nor what the shots do not show.
+  const bool measured =
+      number.standing != Standing::unexplained && number.standing != Standing::unseen;
+  text += !measured ? fmt::format("{:>14}   {:<9}{:>8}  ", "-", "", "")
+                    : fmt::format("{:>14.7g} ± {:<9.2g}{:>8}  ", number.measured.value,
+                                  number.measured.sd,
+                                  filed ? fmt::format("{:.1f}", number.deviations) : "-");
   text += name_of(number.standing);
+  if (number.standing == Standing::unseen) {
+    text += fmt::format(": the shots tell it to ± {:.2g} only", number.measured.sd);
+  }
   if (number.standing == Standing::tied) {
     text += fmt::format(" with {}", fmt::join(number.tied_with, ", "));
   }

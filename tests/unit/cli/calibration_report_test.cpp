@@ -115,5 +115,21 @@ TEST(CalibrationReport, EachBarsOwnModulusGoesToThatBar) {
   }
 }
 
+// What the shots do not show of a number is no measurement of it.
+TEST(CalibrationReport, WhatIsUnseenIsSaidToBeToldOnlySoWell) {
+  CalibratedNumber gain;
+  gain.of = CalibratedNumber::Of::gain;
+  gain.id = "gauge-factor:bridge";
+  gain.gauge = "bridge";
+  gain.standing = Standing::unseen;
+  gain.filed = {1.0, 0.006};
+  gain.measured = {9.718551, 98.0};
+  PartResult part;
+  part.numbers.push_back(gain);
+  const std::string text = report(with_part(part), three_gauges());
+  EXPECT_EQ(text.find("9.718551"), std::string::npos) << text;
+  EXPECT_NE(text.find("unseen: the shots tell it to ± 98 only"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace kolsky::cli
