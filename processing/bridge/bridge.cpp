@@ -62,8 +62,7 @@ void check(const Bridge& bridge) {
           "give the factor of the gauge's data sheet, about 2 for foil");
   require(bridge.excitation_V > 0.0, "excitation_V", "is not positive",
           "give the bridge's supply in volts");
-  require(bridge.gain != 0.0, "gain", "is zero",
-          "give the amplifier's gain, 1 for none; negative where it inverts");
+  require(bridge.gain > 0.0, "gain", "is not positive", "give the amplifier's gain, 1 for none");
   require(bridge.gauges_in_series >= 1, "gauges_in_series", "is less than one",
           "give 1, or 2 for a pair across the bar");
   require(bridge.lead_wires == 2 || bridge.lead_wires == 3, "lead_wires", "is neither 2 nor 3",

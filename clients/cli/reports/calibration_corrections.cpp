@@ -46,15 +46,6 @@ std::optional<BenchKey> gain_key(const Gauge& gauge, std::size_t index, const Me
   return std::nullopt;
 }
 
-/// The number whose sign turns a gauge's readings round; null where it has none.
-template <typename AnyGauge>
-auto number_with_sign(AnyGauge& gauge) -> decltype(&*gauge.strain_per_V) {
-  if (gauge.strain_per_V) {
-    return &*gauge.strain_per_V;
-  }
-  return gauge.bridge && !gauge.bridge->shunt_reading_V ? &gauge.bridge->gain : nullptr;
-}
-
 void add_edits(const BenchKey& key, const Bench& bench, std::vector<BenchEdit>& edits) {
   edits.push_back(key.edit);
   BenchEdit sd = key.edit;
@@ -134,25 +125,9 @@ std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay, c
   }
 }
 
-std::optional<BenchKey> inverting_key(const std::string& gauge, const Bench& bench) {
+BenchEdit inverting_edit(const std::string& gauge, const Bench& bench) {
   const std::size_t index = index_of(bench, gauge);
-  const Gauge& filed = bench.gauges[index];
-  const std::string shown = "gauges." + gauge;
-  if (const Measured* number = number_with_sign(filed)) {
-    return key_of("gauges", index, shown, filed.strain_per_V ? "strain_per_V" : "gain",
-                  {-number->value, number->sd});
-  }
-  return std::nullopt;
-}
-
-Bench with_signs_as_found(const PartResult& part, Bench bench) {
-  for (const std::string& gauge : part.inverted) {
-    Gauge& filed = bench.gauges[index_of(bench, gauge)];
-    if (Measured* number = number_with_sign(filed)) {
-      number->value = -number->value;
-    }
-  }
-  return bench;
+  return {"gauges", index, "inverted", bench.gauges[index].inverted ? "false" : "true"};
 }
 
 std::vector<BenchEdit> corrections(const Calibration& calibration, const Bench& bench) {
@@ -163,13 +138,10 @@ std::vector<BenchEdit> corrections(const Calibration& calibration, const Bench& 
       exchange(bench, names, edits);
     }
     for (const std::string& gauge : part.inverted) {
-      if (const auto key = inverting_key(gauge, bench)) {
-        edits.push_back(key->edit);
-      }
+      edits.push_back(inverting_edit(gauge, bench));
     }
-    const Bench found = with_signs_as_found(part, bench);
     for (const CalibratedNumber& number : part.numbers) {
-      const auto key = bench_key(number, part.lay, found);
+      const auto key = bench_key(number, part.lay, bench);
       if (!key || !worth_filing(number, part)) {
         continue;
       }

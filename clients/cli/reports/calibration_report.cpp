@@ -89,9 +89,8 @@ JsonValue describe_momentum(const PulseAreas& areas) {
 
 JsonValue describe_part(const PartResult& part, const Bench& bench) {
   JsonList numbers;
-  const Bench found = with_signs_as_found(part, bench);
   for (const CalibratedNumber& number : part.numbers) {
-    numbers.push_back(describe_number(number, part.lay, found));
+    numbers.push_back(describe_number(number, part.lay, bench));
   }
   JsonList swapped;
   for (const auto& [one, other] : part.swapped) {
@@ -155,14 +154,6 @@ std::string row(const CalibratedNumber& number, BarsLay lay, const Bench& bench)
   return text + "\n";
 }
 
-/// Of a gauge that reads with the other sign.
-std::string how_to_invert(const std::string& gauge, const Bench& bench) {
-  const auto key = inverting_key(gauge, bench);
-  return key ? fmt::format("put {} = {:.10g}", key->name, key->value.value)
-             : "no number of the bench file has its sign, exchange the bridge's output leads or "
-               "change it on import";
-}
-
 std::string areas_text(const PulseAreas& areas) {
   std::string text = "  pulse areas, no model: ";
   if (!areas.none_because.empty()) {
@@ -196,12 +187,12 @@ std::string part_text(const PartResult& part, const Bench& bench) {
               : "  wave speed: these shots do not tell it; it takes gauges further apart, or bars "
                 "that are longer for this pulse\n";
   text += "  number                       filed                   by the shots        deviations\n";
-  const Bench found = with_signs_as_found(part, bench);
   for (const CalibratedNumber& number : part.numbers) {
-    text += row(number, part.lay, found);
+    text += row(number, part.lay, bench);
   }
   for (const std::string& gauge : part.inverted) {
-    text += "  gauge " + gauge + ": " + how_to_invert(gauge, bench) + "\n";
+    const BenchEdit edit = inverting_edit(gauge, bench);
+    text += fmt::format("  gauge {0}: put gauges.{0}.{1} = {2}\n", gauge, edit.key, *edit.text);
   }
   text += areas_text(part.areas);
   if (!part.cannot_tell.empty()) {

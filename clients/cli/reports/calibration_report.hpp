@@ -22,12 +22,8 @@ struct BenchKey {
 [[nodiscard]] std::optional<BenchKey> bench_key(const CalibratedNumber& number, BarsLay lay,
                                                 const Bench& bench);
 
-/// The number of a gauge whose sign turns its readings round. Nothing where the bench file holds
-/// none: samples that are strain already, a shunt in the gain's place.
-[[nodiscard]] std::optional<BenchKey> inverting_key(const std::string& gauge, const Bench& bench);
-
-/// The bench with the signs that a part's gauges read with.
-[[nodiscard]] Bench with_signs_as_found(const PartResult& part, Bench bench);
+/// What files that a gauge reads with the other sign than filed.
+[[nodiscard]] BenchEdit inverting_edit(const std::string& gauge, const Bench& bench);
 
 /// Lines of the bench file that the calibration changes: what differs, gauges that are exchanged or
 /// read with the other sign, and what is known better by now than filed. What the shots cannot tell

@@ -146,18 +146,6 @@ TEST(Bridge, CompressionPositiveTurnsTheSignOnce) {
   EXPECT_NEAR(compression.strain(-volts), 1000e-6, 1e-14);
 }
 
-// As leads of the bridge that are exchanged do.
-TEST(Bridge, AGainThatInvertsTurnsTheReadingsAlone) {
-  const double volts = circuit_V(stretched(-1000e-6), kOhm, kOhm, kOhm);
-  Gauge gauge = gauge_with({});
-  gauge.bridge->gain.value = -gauge.bridge->gain.value;
-  const BridgeConversion bridge(gauge, pmma_bar(), PositiveSense::tension);
-  EXPECT_NEAR(bridge.strain(-volts), 1000e-6, 1e-14);
-  EXPECT_NEAR(bridge.reading(1000e-6), -volts, 1e-10);
-  gauge.bridge->gain.value = 0.0;
-  EXPECT_THROW(BridgeConversion(gauge, pmma_bar(), PositiveSense::tension), InputError);
-}
-
 TEST(Bridge, ARawQuarterBridgeReadsCompressionHighByHalfTheGaugeFactor) {
   // reading = e (1 + b e) with b = GF / 2, in compression positive.
   const BridgeConversion bridge(gauge_with({}), pmma_bar(), PositiveSense::compression);

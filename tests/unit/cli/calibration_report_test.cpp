@@ -57,7 +57,7 @@ const BenchEdit* edit_of(const std::vector<BenchEdit>& edits, std::size_t gauge,
   return last;
 }
 
-TEST(CalibrationReport, AGaugeOfTheOtherSignIsFiledByTheNumberThatHasOne) {
+TEST(CalibrationReport, AGaugeOfTheOtherSignIsFiledAsInverted) {
   PartResult part;
   part.inverted = {"bridge", "factor", "shunt"};
   // Beside the sign the plain factor is off by 1 %.
@@ -71,15 +71,17 @@ TEST(CalibrationReport, AGaugeOfTheOtherSignIsFiledByTheNumberThatHasOne) {
   part.numbers.push_back(gain);
   const Bench bench = three_gauges();
   const std::string text = report(with_part(part), bench);
-  EXPECT_NE(text.find("gauge bridge: put gauges.bridge.gain = -200"), std::string::npos) << text;
-  EXPECT_NE(text.find("gauge shunt: no number of the bench file has its sign"), std::string::npos);
+  for (const std::string gauge : {"bridge", "factor", "shunt"}) {
+    EXPECT_NE(text.find("put gauges." + gauge + ".inverted = true"), std::string::npos) << text;
+  }
   const std::vector<BenchEdit> edits = corrections(with_part(part), bench);
-  ASSERT_TRUE(edit_of(edits, 0, "gain"));
-  EXPECT_EQ(edit_of(edits, 0, "gain")->text, "-200");
+  for (const std::size_t gauge : {0U, 1U, 2U}) {
+    ASSERT_TRUE(edit_of(edits, gauge, "inverted"));
+    EXPECT_EQ(edit_of(edits, gauge, "inverted")->text, "true");
+  }
   ASSERT_TRUE(edit_of(edits, 1, "strain_per_V"));
-  EXPECT_NEAR(std::stod(*edit_of(edits, 1, "strain_per_V")->text), -0.002 / 1.01, 1e-12);
+  EXPECT_NEAR(std::stod(*edit_of(edits, 1, "strain_per_V")->text), 0.002 / 1.01, 1e-12);
   EXPECT_GT(std::stod(*edit_of(edits, 1, "strain_per_V_sd")->text), 0.0);
-  EXPECT_FALSE(edit_of(edits, 2, "gain"));
 }
 
 TEST(CalibrationReport, NothingIsFiledOfAFitThatDescribesNothing) {
