@@ -160,8 +160,9 @@ class Diagnostician {
       return false;
     }
     const double noise = noise_of(current.misfit, study_.campaign().shots.size());
-    const double explained =
-        (study_.refit(first).fit.objective() - current.fit.objective()) / noise;
+    // In the noise that is frozen, which is that of what was found.
+    const Studied before = changed(study_, first, first.model);
+    const double explained = (before.fit.objective() - current.fit.objective()) / noise;
     return explained < repeated_excess(study_, current);
   }
 
