@@ -114,6 +114,7 @@ PartResult believed_part(const std::vector<Shot>& shots, const std::vector<Calib
       result.reasons.push_back(
           "gauge " + gauge + " reads with the other sign: its pulse pulls where the others' push");
     }
+    read.chi2_reduced_as_filed = filed.chi2_reduced_as_filed;
     return read;
   }
   for (const auto& gauges : read.swapped) {

@@ -165,6 +165,7 @@ TEST(BarCalibration, ExchangedGaugesAreSeen) {
   const PartResult& part = calibration.parts.front();
   ASSERT_EQ(part.swapped.size(), 1U);
   EXPECT_EQ(part.swapped.front(), (std::pair<std::string, std::string>{"g2", "g3"}));
+  EXPECT_GT(part.chi2_reduced_as_filed, 20.0);
   EXPECT_EQ(named(calibration), std::vector<std::string>{});
 }
 

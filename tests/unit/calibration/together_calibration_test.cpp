@@ -278,6 +278,8 @@ TEST(BarsTogether, AChannelOfTheOtherSignIsNamedAsThat) {
   EXPECT_EQ(calibration.certificate, Certificate::fail);
   EXPECT_EQ(calibration.parts.front().inverted, std::vector<std::string>{"g3"});
   EXPECT_TRUE(calibration.parts.front().swapped.empty());
+  EXPECT_LT(calibration.parts.front().chi2_reduced, 1.2);
+  EXPECT_GT(calibration.parts.front().chi2_reduced_as_filed, 20.0);
   EXPECT_TRUE(standing(calibration, Standing::differs).empty());
   EXPECT_TRUE(standing(calibration, Standing::unexplained).empty());
   ASSERT_FALSE(calibration.reasons.empty());
