@@ -88,23 +88,23 @@ Window OpenWindows::whole(const TriggerEvent& mark) const {
           .trigger_monotonic_ns = monotonic_at(mark.tick)};
 }
 
-void OpenWindows::tell_triggered(const Window& window) {
-  triggers_.fetch_add(1, std::memory_order_relaxed);
+void OpenWindows::tell(AcquisitionEvent::Kind kind, const Window& window) {
   AcquisitionEvent event;
-  event.kind = AcquisitionEvent::Kind::triggered;
+  event.kind = kind;
   event.tick = window.trigger.tick;
   event.window = window;
   teller_.tell(event);
 }
 
+void OpenWindows::tell_triggered(const Window& window) {
+  triggers_.fetch_add(1, std::memory_order_relaxed);
+  tell(AcquisitionEvent::Kind::triggered, window);
+}
+
 void OpenWindows::open(const Window& window) {
   if (opened_ == kMost) {
     refused_.fetch_add(1, std::memory_order_relaxed);
-    AcquisitionEvent event;
-    event.kind = AcquisitionEvent::Kind::window_refused;
-    event.tick = window.trigger.tick;
-    event.window = window;
-    teller_.tell(event);
+    tell(AcquisitionEvent::Kind::window_refused, window);
     return;
   }
   open_[opened_++] = window;

@@ -54,6 +54,7 @@ class OpenWindows {
   [[nodiscard]] bool fits_ring(Tick length) const;
   [[nodiscard]] Window about(const TriggerEvent& trigger, const AcquisitionPlan& plan) const;
   [[nodiscard]] Window whole(const TriggerEvent& mark) const;
+  void tell(AcquisitionEvent::Kind kind, const Window& window);
   void tell_triggered(const Window& window);
   void open(const Window& window);
   void end_all(WindowEnd end);
