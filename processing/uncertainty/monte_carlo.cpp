@@ -315,8 +315,9 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   for (std::size_t f = 0; f < kFigures.size(); ++f) {
     UncertainFigure figure =
         uncertain_figure(kFigures[f].name, nominal[f], figure_values(joint, f));
-    if (kFigures[f].is_extreme) {
-      reach_as_far_down(figure);
+    const auto noisier = figure_values(campaign.noise_only(draws), f);
+    if (kFigures[f].is_extreme && !noisier.empty()) {
+      free_of_noise_added(figure, noisier);
     }
     result.figures.push_back(std::move(figure));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace kolsky {
@@ -13,11 +14,16 @@ double quantile(std::vector<double>& values, double p) {
   return *at;
 }
 
-double sd_of(const std::vector<double>& values) {
+double mean_of(const std::vector<double>& values) {
   double mean = 0.0;
   for (const double value : values) {
     mean += value / static_cast<double>(values.size());
   }
+  return mean;
+}
+
+double sd_of(const std::vector<double>& values) {
+  const double mean = mean_of(values);
   double squares = 0.0;
   for (const double value : values) {
     squares += (value - mean) * (value - mean);
@@ -25,11 +31,16 @@ double sd_of(const std::vector<double>& values) {
   return values.size() > 1 ? std::sqrt(squares / static_cast<double>(values.size() - 1)) : 0.0;
 }
 
-void reach_as_far_down(UncertainFigure& figure) {
-  if (figure.value >= 0.0) {
-    figure.low = std::min(figure.low, 2.0 * figure.value - figure.high);
+void free_of_noise_added(UncertainFigure& figure, const std::vector<double>& noisier) {
+  const double sign = figure.value < 0.0 ? -1.0 : 1.0;
+  const double lifted = sign * (mean_of(noisier) - figure.value);
+  figure.lifted_by_noise = (1.0 + std::numbers::sqrt2) * std::max(0.0, lifted);
+  const double nearest_zero =
+      sign * figure.value - figure.lifted_by_noise - kDeviationsOf95 * figure.sd;
+  if (sign > 0.0) {
+    figure.low = std::min(figure.low, nearest_zero);
   } else {
-    figure.high = std::max(figure.high, 2.0 * figure.value - figure.low);
+    figure.high = std::max(figure.high, -nearest_zero);
   }
 }
 

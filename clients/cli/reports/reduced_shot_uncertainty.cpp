@@ -86,6 +86,13 @@ std::string uncertainty_report(const Uncertainty& uncertainty) {
     text += fmt::format("    {:<16}{}, {} to {}\n", short_name(figure.name),
                         with_deviation(figure.value, figure.sd, unit), with_unit(figure.low, unit),
                         with_unit(figure.high, unit));
+    if (figure.lifted_by_noise > figure.sd) {
+      text += fmt::format(
+          "                    some {} of it is noise, as it is the largest of noisy samples: of "
+          "a\n"
+          "                    plateau quote the mean\n",
+          with_unit(figure.lifted_by_noise, unit));
+    }
   }
   if (uncertainty.figures.empty()) {
     text += "    of the curve alone: there is no loading to give numbers of\n";

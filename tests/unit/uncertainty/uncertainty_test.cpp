@@ -348,27 +348,41 @@ TEST(Uncertainty, IntervalsHoldTheTruth) {
   EXPECT_GE(inside, 33);  // 38 expected
 }
 
-// White noise on a rounded peak: what it adds to the largest sample it adds in every draw again.
-TEST(Uncertainty, OfAPeakHoldsItThoughNoiseAddsToIt) {
-  ElasticShpb model;
-  model.pulse_s = 100e-6;
-  model.rise_s = 50e-6;  // a half sine, nearly
-  model.sampling_frequency_Hz = 2e6;
-  model.duration_s = 1.1e-3;
+/// Of 40 shots in white noise, the intervals of the peak stress that hold it.
+int intervals_that_hold_the_peak(const ElasticShpb& model, double noise_rms) {
   const auto records = model.solve();
   const auto& force = records.truth.force_N;
   const double area_m2 =
       0.25 * 3.14159265358979 * model.specimen_diameter_m * model.specimen_diameter_m;
   const double truth_Pa = *std::max_element(force.begin(), force.begin() + 30'000) / area_m2;
   int inside = 0;
-  constexpr unsigned kRepeats = 40;
-  for (unsigned repeat = 1; repeat <= kRepeats; ++repeat) {
-    const Shot shot = model.shot(records, 20e-6, 16, 0.01, 500 + repeat);
+  for (unsigned repeat = 1; repeat <= 40; ++repeat) {
+    const Shot shot = model.shot(records, noise_rms, 16, 0.01, 500 + repeat);
     const UncertainFigure peak = figure(propagated(shot, 60), "peak_stress_Pa");
-    EXPECT_GE(peak.value - peak.low, (1.0 - 1e-9) * (peak.high - peak.value));
     inside += truth_Pa > peak.low && truth_Pa < peak.high ? 1 : 0;
   }
-  EXPECT_GE(inside, 34);  // 38 expected
+  return inside;
+}
+
+// What noise adds to the largest sample it adds in every draw again.
+TEST(Uncertainty, OfARoundedPeakHoldsItThoughNoiseAddsToIt) {
+  ElasticShpb model;
+  model.pulse_s = 100e-6;
+  model.rise_s = 50e-6;  // a half sine, nearly
+  model.sampling_frequency_Hz = 2e6;
+  model.duration_s = 1.1e-3;
+  EXPECT_GE(intervals_that_hold_the_peak(model, 20e-6), 34);  // 38 expected
+}
+
+// The largest of some hundred samples of a plateau: two deviations of the noise above it.
+TEST(Uncertainty, OfAPlateauHoldsItThoughNoiseAddsToIt) {
+  ElasticShpb model;
+  model.pulse_s = 150e-6;
+  model.rise_s = 20e-6;
+  model.sampling_frequency_Hz = 2e6;
+  model.duration_s = 1.1e-3;
+  model.specimen_modulus_Pa = 50e9;                           // in equilibrium at once
+  EXPECT_GE(intervals_that_hold_the_peak(model, 20e-6), 34);  // 38 expected
 }
 
 /// A shot through a converter of so wide steps [strain], its zero anywhere within one.
