@@ -1,5 +1,4 @@
 #include "processing/reduction/shpb_pass.hpp"
-#include "processing/reduction/record_faults.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,8 @@
 #include "processing/reduction/plausibility.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
+#include "processing/reduction/quiet_drift.hpp"
+#include "processing/reduction/record_faults.hpp"
 #include "processing/reduction/requested.hpp"
 #include "processing/reduction/separated_faces.hpp"
 #include "processing/waves/seen_modes.hpp"
@@ -642,6 +643,9 @@ class Pass {
     reduction_.quality.reducible = true;
     judge(q, reduction_);
     judge_sizes(q.input_peak);
+    if (auto drift = quiet_drift(shot_, reduction_.quiet_samples, end)) {
+      reduction_.quality.checks.push_back(*std::move(drift));
+    }
   }
 
   /// What cannot be, whatever the specimen is.
