@@ -79,6 +79,11 @@ struct Shot {
   }
 };
 
+/// Leaves out what lies later than so long after a record's first sample: samples, and gaps in
+/// them.
+/// @param until_s  above 0; a record that ends sooner stays whole
+void cut_at(Shot& shot, double until_s);
+
 /// Indices of the samples of a channel at or beyond the converter's ends.
 [[nodiscard]] std::vector<std::size_t> clipped_samples(const ChannelRecord& channel);
 

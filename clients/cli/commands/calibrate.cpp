@@ -4,6 +4,7 @@
 #include "clients/cli/bar_model_file.hpp"
 #include "clients/cli/captures.hpp"
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/calibration_report.hpp"
 #include "clients/cli/reports/model_text.hpp"

@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/comparison_page.hpp"
@@ -20,11 +21,10 @@ namespace kolsky::cli {
 namespace {
 
 struct Settings {
-  std::vector<std::string> captures;
+  JudgedRecords judged;
   std::string model;
   bool fit = false;
   std::optional<std::string> report;
-  std::optional<double> band_limit_Hz;
 };
 
 bool was_fitted(const ModelFile& file) {
@@ -66,8 +66,8 @@ std::string how(const Settings& settings, const ModelFile& file) {
 int run_impacts(const Settings& settings, const ModelFile& file, const Campaign& campaign,
                 Context& context) {
   require_kind(file.model, campaign);
-  ImpactStudy study(campaign, judged_stretch(file.model), band_limit_of(settings.band_limit_Hz),
-                    all_cores());
+  ImpactStudy study(campaign, judged_stretch(file.model),
+                    band_limit_of(settings.judged.band_limit_Hz), all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
   const Studied studied = naming_model(settings.model, [&] {
     return fit_first ? study.fit(file.model) : study.as_it_is(file.model);
@@ -114,12 +114,12 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
 int run(const Settings& settings, Context& context) {
   const ModelFile file = model_named(settings.model);
   require_page_output(settings.report);
-  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  const Campaign campaign = read_campaign(read_shots(settings.judged));
   require_model_of(campaign.bench, file.model, settings.model);
   if (file.model.kind == BenchKind::impact) {
     return run_impacts(settings, file, campaign, context);
   }
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
+  Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
   const Studied studied =
       fit_first ? study.beside_quiet(study.fit(file.model)) : study.as_it_is(file.model);
@@ -181,13 +181,12 @@ Command compare_command() {
       "  kolsky compare shots/*.h5 --model m.toml\n"
       "  kolsky compare shots --model m.toml --report where.html\n";
   command.arguments = {
-      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.judged.captures),
       needed("--model", "M.toml", "the model to compare, or M.toml@N", &s.model),
       flag("--fit", "fit the model to these captures first; the file stays as it is", &s.fit),
       option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
-             &s.report),
-      option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+             &s.report)};
+  add_judged_options(s.judged, command.arguments);
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

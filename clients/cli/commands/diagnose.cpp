@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/comparison_page.hpp"
@@ -30,12 +31,11 @@ namespace kolsky::cli {
 namespace {
 
 struct Settings {
-  std::vector<std::string> captures;
+  JudgedRecords judged;
   std::string model;
   std::optional<std::string> output;
   std::optional<std::string> report;
   std::optional<std::string> note;
-  std::optional<double> band_limit_Hz;
   std::vector<std::string> without;  ///< safeguards, by name
 };
 
@@ -94,7 +94,7 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
                           const std::vector<Shot>& shots, const DiagnosisOptions& options) {
   const Campaign campaign = read_campaign(shots);
   require_kind(model, campaign);
-  ImpactStudy study(campaign, judged_stretch(model), band_limit_of(settings.band_limit_Hz),
+  ImpactStudy study(campaign, judged_stretch(model), band_limit_of(settings.judged.band_limit_Hz),
                     all_cores());
   ImpactsSeen seen;
   Diagnosis diagnosis =
@@ -157,7 +157,7 @@ std::string without_help() {
 
 Diagnosis examine(const Settings& settings, const Model& model, const Safeguards& safeguards,
                   bool progress) {
-  const std::vector<Shot> shots = read_shots(settings.captures);
+  const std::vector<Shot> shots = read_shots(settings.judged);
   if (!shots.empty()) {
     require_model_of(shots.front().bench, model, settings.model);
   }
@@ -180,7 +180,7 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
     return examine_impacts(settings, model, shots, options);
   }
   const Campaign campaign = read_campaign(shots);
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
+  Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
   Diagnosis diagnosis = diagnose(study, model, options);
   diagnosis.next_experiment = next_experiments(study, diagnosis);
   if (settings.report) {
@@ -193,8 +193,12 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
 /// The ledger, too, says what was left out.
 std::string noted(const Settings& settings, const std::vector<std::string>& without) {
   std::string note = settings.note.value_or("");
+  const auto add = [&note](const std::string& more) { note += (note.empty() ? "" : "; ") + more; };
+  if (settings.judged.until_s) {
+    add("records " + until_text(settings.judged));
+  }
   for (const std::string& name : without) {
-    note += (note.empty() ? "" : "; ") + ("without " + name);
+    add("without " + name);
   }
   return note;
 }
@@ -210,7 +214,7 @@ int run(const Settings& settings, Context& context) {
     diagnosis.notes.push_back("without the safeguard " + name + ": nothing of this is certified");
   }
   if (settings.output && diagnosis.model) {
-    add_diagnosis(file, diagnosis, files_of(settings.captures), noted(settings, without));
+    add_diagnosis(file, diagnosis, files_of(settings.judged.captures), noted(settings, without));
     replace_file(*settings.output, format_model(file));
   }
   if (!context.json) {
@@ -240,16 +244,15 @@ Command diagnose_command() {
       "  kolsky diagnose shots/*.h5 --model m.toml\n"
       "  kolsky diagnose shots --model m.toml -o m2.toml --json\n";
   command.arguments = {
-      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.judged.captures),
       needed("--model", "M.toml", "the model to diagnose", &s.model),
       option("-o,--output", "M2.toml", "where to write the model with what was found, fitted",
              &s.output),
       option("--note", "TEXT", "kept in the history of the model that is written", &s.note),
       option("--report", "R.html", "a page with plots to write: one file, opens in any browser",
              &s.report),
-      option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz),
       option("--without", "NAME", without_help(), &s.without)};
+  add_judged_options(s.judged, command.arguments);
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/comparison_text.hpp"
@@ -20,16 +21,15 @@ namespace kolsky::cli {
 namespace {
 
 struct Settings {
-  std::vector<std::string> captures;
+  JudgedRecords judged;
   std::string model;
   std::string output;
   std::optional<std::string> note;
-  std::optional<double> band_limit_Hz;
 };
 
 Studied fit(const Settings& settings, const Model& model, const Campaign& campaign,
             const Workers& executor) {
-  const double band_limit_Hz = band_limit_of(settings.band_limit_Hz);
+  const double band_limit_Hz = band_limit_of(settings.judged.band_limit_Hz);
   if (model.kind == BenchKind::impact) {
     require_kind(model, campaign);
     ImpactStudy study(campaign, judged_stretch(model), band_limit_Hz, executor);
@@ -43,11 +43,13 @@ int run(const Settings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   require_model_output(settings.output);
   const Workers workers = all_cores();
-  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  const Campaign campaign = read_campaign(read_shots(settings.judged));
   require_model_of(campaign.bench, file.model, settings.model);
   const Studied studied = fit(settings, file.model, campaign, workers);
-  begin_step(file, fmt::format("fit {} captures", campaign.shots.size()));
-  file.history.back().data_sha256 = digest_of_files(files_of(settings.captures));
+  const std::string until = until_text(settings.judged);
+  begin_step(file, fmt::format("fit {} captures{}", campaign.shots.size(),
+                               until.empty() ? "" : " " + until));
+  file.history.back().data_sha256 = digest_of_files(files_of(settings.judged.captures));
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());
   file.history.back().note = settings.note.value_or("");
   file.model = studied.model;
@@ -85,12 +87,11 @@ Command fit_command() {
       "arrival and offset are free. Filed deviations bound what may move besides.";
   command.examples = "  kolsky fit shots/*.h5 --model m.toml -o m2.toml\n";
   command.arguments = {
-      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.judged.captures),
       needed("--model", "M.toml", "the model to fit", &s.model),
       needed("-o,--output", "M2.toml", "where the fitted model goes", &s.output),
-      option("--note", "TEXT", "kept in the model's history", &s.note),
-      option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+      option("--note", "TEXT", "kept in the model's history", &s.note)};
+  add_judged_options(s.judged, command.arguments);
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
@@ -28,8 +29,7 @@ constexpr double kSlow = 10.0;  ///< times the model without the expression
 
 struct Settings {
   std::string model;
-  std::vector<std::string> captures;
-  std::optional<double> band_limit_Hz;
+  JudgedRecords judged;
 };
 
 /// One expression, checked.
@@ -129,9 +129,9 @@ class Stopwatch {
 
 /// Cosines beside a fit of the model without its expressions.
 void tell_apart(const Settings& settings, const Model& model, std::vector<Checked>& list) {
-  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  const Campaign campaign = read_campaign(read_shots(settings.judged));
   require_model_of(campaign.bench, model, settings.model);
-  Study study(campaign, band_limit_of(settings.band_limit_Hz), all_cores());
+  Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
   Model without = model;
   std::erase_if(without.effects, [&](const EffectUse& use) {
     return std::any_of(model.expressions.begin(), model.expressions.end(),
@@ -153,7 +153,7 @@ void tell_apart(const Settings& settings, const Model& model, std::vector<Checke
 
 /// Of captures an expression is checked beside their bench too, not only one of ordinary size.
 void require_admitted_here(const Settings& settings, const Model& model) {
-  const std::vector<Shot> shots = read_shots(settings.captures);
+  const std::vector<Shot> shots = read_shots(settings.judged);
   for (const auto& own : model.expressions) {
     if (const auto problem = admission_problem(*own, model, shots.front().bench)) {
       throw InputError(settings.model + ": expression " + own->about().id + " on this bench",
@@ -235,7 +235,7 @@ int run(const Settings& settings, Context& context) {
     const double own_s = stopwatch.expression_s(*own);
     list.push_back({own.get(), used, own_s, 1.0 + own_s / model_s, {}});
   }
-  if (!settings.captures.empty() && !list.empty()) {
+  if (!settings.judged.captures.empty() && !list.empty()) {
     require_admitted_here(settings, file.model);
     tell_apart(settings, file.model, list);
   }
@@ -291,9 +291,8 @@ Command model_check_command() {
       "  kolsky model check m.toml shots/*.h5\n";
   command.arguments = {
       needed("MODEL", "", "the model file", &s.model),
-      {"CAPTURE", "", "captures of one bench, or folders of them", &s.captures, false, {}},
-      option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+      {"CAPTURE", "", "captures of one bench, or folders of them", &s.judged.captures, false, {}}};
+  add_judged_options(s.judged, command.arguments);
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/outputs.hpp"
 #include "clients/cli/reports/impact_criticism.hpp"
@@ -17,10 +18,9 @@ namespace {
 
 struct Settings {
   std::string model;
-  std::vector<std::string> captures;
+  JudgedRecords judged;
   std::optional<std::string> report;
   std::optional<std::string> svg;
-  std::optional<double> band_limit_Hz;
 };
 
 /// Effects in the order in which the ledger has them come in.
@@ -35,7 +35,7 @@ std::vector<std::string> order_of(const ModelFile& file) {
 std::vector<std::string> notes_of(const Settings& settings, const ModelFile& file,
                                   const Waterfall& fall) {
   std::vector<std::string> notes;
-  const auto captures = files_of(settings.captures);
+  const auto captures = files_of(settings.judged.captures);
   const bool seen =
       std::any_of(file.history.begin(), file.history.end(),
                   [&](const ModelStep& step) { return is_digest_of(step.data_sha256, captures); });
@@ -57,9 +57,9 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
 }
 
 Waterfall fall_of(const Settings& settings, const ModelFile& file) {
-  const Campaign campaign = read_campaign(read_shots(settings.captures));
+  const Campaign campaign = read_campaign(read_shots(settings.judged));
   require_model_of(campaign.bench, file.model, settings.model);
-  const double band_limit_Hz = band_limit_of(settings.band_limit_Hz);
+  const double band_limit_Hz = band_limit_of(settings.judged.band_limit_Hz);
   const std::vector<LineageStep> steps = lineage(file.at(0).model, file.model, order_of(file));
   if (file.model.kind == BenchKind::impact) {
     require_kind(file.model, campaign);
@@ -121,12 +121,11 @@ Command model_waterfall_command() {
       "  kolsky model waterfall m2.toml shots --report fall.html --svg fall.svg\n";
   command.arguments = {
       needed("MODEL", "", "the model file, with its lineage, or M.toml@N", &s.model),
-      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.judged.captures),
       option("--report", "R.html", "a page with the picture to write: one file, opens anywhere",
              &s.report),
-      option("--svg", "FILE", "the picture alone", &s.svg),
-      option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+      option("--svg", "FILE", "the picture alone", &s.svg)};
+  add_judged_options(s.judged, command.arguments);
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

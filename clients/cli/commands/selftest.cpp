@@ -11,6 +11,7 @@
 #include <ostream>
 
 #include "clients/cli/command.hpp"
+#include "clients/cli/judged_records.hpp"
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
@@ -25,13 +26,12 @@ constexpr std::size_t kBarColumns = 40;
 constexpr std::uint64_t kMostNulls = 10000;
 
 struct Settings {
-  std::vector<std::string> captures;
+  JudgedRecords judged;
   std::string model;
   std::vector<std::string> effects;
   std::vector<std::string> sizes;
   std::optional<std::uint64_t> nulls;
   std::optional<std::uint64_t> seed;
-  std::optional<double> band_limit_Hz;
 };
 
 constexpr const char* kOptimistic =
@@ -223,11 +223,11 @@ int run(const Settings& settings, Context& context) {
                      "give fewer: each is a diagnosis");
   }
   options.seed = settings.seed.value_or(options.seed);
-  options.band_limit_Hz = band_limit_of(settings.band_limit_Hz);
+  options.band_limit_Hz = band_limit_of(settings.judged.band_limit_Hz);
   ProgressLine line(!context.json);
   options.progress = [&](std::size_t done, std::size_t all) { line(done, all); };
   const Model model = model_named(settings.model).model;
-  const std::vector<Shot> shots = read_shots(settings.captures);
+  const std::vector<Shot> shots = read_shots(settings.judged);
   if (!shots.empty()) {
     require_model_of(shots.front().bench, model, settings.model);
   }
@@ -258,7 +258,7 @@ Command selftest_command() {
       "2e-3\n"
       "  kolsky selftest balls --model m.toml --effects core-nonlinearity --nulls 2\n";
   command.arguments = {
-      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.captures),
+      needed("CAPTURE", "", "captures of one bench, or folders of them", &s.judged.captures),
       needed("--model", "M.toml", "the model that explains them, the better the more it says",
              &s.model),
       option("--effects", "ID...", "what to plant; else one of each kind that these shots can show",
@@ -269,9 +269,8 @@ Command selftest_command() {
              &s.sizes),
       option("--nulls", "N", "campaigns of fresh noise in which nothing is, at most 10000; else 6",
              &s.nulls),
-      option("--seed", "N", "of the fresh noise; else 1", &s.seed),
-      option("--band-limit", "HZ",
-             "upper end of the frequencies judged; else what the noise allows", &s.band_limit_Hz)};
+      option("--seed", "N", "of the fresh noise; else 1", &s.seed)};
+  add_judged_options(s.judged, command.arguments);
   command.run = [settings](Context& context) { return run(*settings, context); };
   return command;
 }

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
-#include "clients/cli/captures.hpp"
 #include "clients/cli/reports/diagnosis_text.hpp"
 #include "clients/figure/layout.hpp"
-#include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 
@@ -50,45 +47,6 @@ std::vector<Strained> strained_numbers(const Model& model) {
   }
   return list;
 }
-
-}  // namespace
-
-std::vector<Shot> read_shots(const std::vector<std::string>& captures) {
-  std::vector<Shot> shots = captured_shots(captures);
-  const auto name_of_file = [](const Shot& shot) {
-    return std::filesystem::path(shot.id).filename().string();
-  };
-  std::map<std::string, std::size_t> called;
-  for (const Shot& shot : shots) {
-    ++called[name_of_file(shot)];
-  }
-  // Of two folders one name may stand for two captures: then as they were given.
-  const bool ambiguous =
-      std::any_of(called.begin(), called.end(), [](const auto& name) { return name.second > 1; });
-  for (Shot& shot : shots) {
-    shot.id = ambiguous ? shot.id : name_of_file(shot);
-  }
-  return shots;
-}
-
-std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures) {
-  std::vector<std::filesystem::path> files;
-  for (const std::string& name : captures) {
-    for (const auto& file : captures_in(name)) {
-      files.push_back(file);
-    }
-  }
-  return files;
-}
-
-double band_limit_of(std::optional<double> asked_Hz) {
-  if (asked_Hz && *asked_Hz <= 0.0) {
-    throw InputError("--band-limit", "must be above 0 Hz", "give a positive number in Hz");
-  }
-  return asked_Hz.value_or(0.0);
-}
-
-namespace {
 
 /// Where a fit may take a number: the model file's bounds, else the effect's own.
 std::array<double, 2> bounds_of(const ModelValue& value, const EffectParameter& parameter) {

@@ -11,16 +11,6 @@
 
 namespace kolsky::cli {
 
-/// Captures named on the command line (files or folders), read. @throws InputError
-[[nodiscard]] std::vector<Shot> read_shots(const std::vector<std::string>& captures);
-
-/// The files of captures that the command line names.
-[[nodiscard]] std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures);
-
-/// What --band-limit asks for; 0, what the noise allows, where it was not given.
-/// @throws InputError where it is not above 0
-[[nodiscard]] double band_limit_of(std::optional<double> asked_Hz);
-
 /// A model's effects as `--json` gives them: id, stage, parameters with value, sd, unit, free.
 [[nodiscard]] JsonValue describe_effects(const Model& model);
 

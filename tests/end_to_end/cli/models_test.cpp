@@ -309,6 +309,61 @@ TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
   }
 }
 
+/// Copies a table of voltages; from a time on its second gauge reads half a volt more.
+void knock_late(const std::string& from, const std::string& to, double time_s) {
+  std::ifstream table(from);
+  std::ofstream copy(to);
+  std::string line;
+  std::getline(table, line);
+  copy << line << "\n";
+  while (std::getline(table, line)) {
+    const std::size_t g1 = line.find(',') + 1;
+    const std::size_t g2 = line.find(',', g1) + 1;
+    const std::size_t g3 = line.find(',', g2);
+    const double voltage = std::stod(line.substr(g2, g3 - g2));
+    copy << line.substr(0, g2) << (std::stod(line) > time_s ? voltage + 0.5 : voltage)
+         << line.substr(g3) << "\n";
+  }
+}
+
+TEST_F(SimulatedBar, IsJudgedOnlyAsFarAsAsked) {
+  std::filesystem::create_directory(file("knocked"));
+  // A quarter of a millisecond of quiet is before time 0 of these tables.
+  for (const char* shot : {"shot01", "shot02", "shot03", "shot04"}) {
+    knock_late(file(std::string("campaign/") + shot + ".csv"), file("knocked.csv"), 0.9e-3);
+    ASSERT_EQ(kolsky({"import", "csv", file("knocked.csv"), "--bench", file("campaign/bench.toml"),
+                      "-o", file(std::string("knocked/") + shot + ".h5")})
+                  .code,
+              0);
+  }
+  const auto diagnosed = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"diagnose", file("knocked"), "--model", file("m.toml"),
+                                   "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json_of(kolsky(words));
+  };
+  EXPECT_NE(diagnosed({})["effects"], json({"channel-delay:g3"}));
+  EXPECT_EQ(diagnosed({"--until", "1.1e-3", "-o", file("d.toml")})["effects"],
+            json({"channel-delay:g3"}));
+  EXPECT_NE(content(file("d.toml")).find("records up to 0.0011 s"), std::string::npos);
+  const auto chi2_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"compare", file("knocked"), "--model", file("d.toml"), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json_of(kolsky(words))["misfit"]["chi2_reduced"].get<double>();
+  };
+  EXPECT_LT(chi2_of({"--until", "1.1e-3"}), 1.3);
+  EXPECT_GT(chi2_of({}), 10.0);
+  EXPECT_EQ(chi2_of({"--until", "1"}), chi2_of({}));
+  ASSERT_EQ(kolsky({"fit", file("knocked"), "--model", file("d.toml"), "--until", "1.1e-3", "-o",
+                    file("f.toml")})
+                .code,
+            0);
+  EXPECT_NE(content(file("f.toml")).find("fit 4 captures up to 0.0011 s"), std::string::npos);
+  EXPECT_TRUE(
+      refused(kolsky({"compare", file("knocked"), "--model", file("d.toml"), "--until", "0"}),
+              {"--until", "above 0 s"}));
+}
+
 TEST_F(SimulatedBar, RefusesAPlaceForItsResultBeforeTheWork) {
   // No capture is there: what is refused first is what is said.
   const std::string none = file("no-such.h5");

@@ -31,5 +31,21 @@ TEST(Shot, HasAsManySamplesAsItsChannels) {
   EXPECT_EQ(shot.samples(), 3U);
 }
 
+TEST(Shot, CutAtATimeKeepsWhatIsBefore) {
+  Shot shot;
+  shot.rate = SampleRate::from_Hz(1e6);
+  shot.first_tick = 100;
+  shot.channels.resize(2);
+  shot.channels[0].codes = {1, 2, 3, 4};
+  shot.channels[1].codes = {5, 6, 7, 8};
+  shot.gaps = {{101, 1, true}, {103, 2, true}};
+  cut_at(shot, 3e-6);
+  EXPECT_EQ(shot.channels[0].codes, (std::vector<std::int32_t>{1, 2, 3}));
+  EXPECT_EQ(shot.channels[1].codes, (std::vector<std::int32_t>{5, 6, 7}));
+  EXPECT_EQ(shot.gaps, (std::vector<Gap>{{101, 1, true}}));
+  cut_at(shot, 1.0);
+  EXPECT_EQ(shot.samples(), 3U);
+}
+
 }  // namespace
 }  // namespace kolsky
