@@ -9,5 +9,7 @@ namespace kolsky::cli {
 
 [[nodiscard]] JsonValue describe(const Misfit& misfit);
 [[nodiscard]] std::string misfit_text(const Misfit& misfit);
+/// ", judged up to 12 kHz", or nothing where no frequency is left out.
+[[nodiscard]] std::string judged_text(const Misfit& misfit);
 
 }  // namespace kolsky::cli

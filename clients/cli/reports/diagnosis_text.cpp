@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "clients/cli/reports/criticism_text.hpp"
+
 namespace kolsky::cli {
 
 namespace {
@@ -193,9 +195,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   // What differs from shot to shot counts as noise, and makes more than 1 of it.
   constexpr double kScattered = 1.25;
   text += fmt::format(
-      "  held-out misfit {:.4f} -> {:.4f}, {} {:.4f}\n", held_out.before, held_out.after,
+      "  held-out misfit {:.4f} -> {:.4f}, {} {:.4f}{}\n", held_out.before, held_out.after,
       held_out.floor > kScattered ? "noise and what differs from shot to shot" : "noise alone",
-      held_out.floor);
+      held_out.floor, judged_text(diagnosis.before));
   text += notes_text(diagnosis) + candidates_text(diagnosis);
   for (const NextExperiment& next : diagnosis.next_experiment) {
     text += "\n  next: " + next.change + "\n" + separates_text(next);

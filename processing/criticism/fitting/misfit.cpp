@@ -11,6 +11,7 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double
                  std::size_t worker) {
   Misfit misfit;
   misfit.degrees_of_freedom = degrees_of_freedom;
+  misfit.judged_to_Hz = residuals.band().limit_Hz;
   const double chi2 = white.squaredNorm();
   misfit.chi2_reduced = chi2 / degrees_of_freedom;
   const std::size_t shots = residuals.campaign().shots.size();

@@ -17,6 +17,7 @@ struct Misfit {
   /// all there is. With one shot, of all residuals.
   double noise_scale = 1.0;
   double repeatable_log_p = 0.0;  ///< ln probability of so much repeating under noise alone
+  double judged_to_Hz = 0.0;      ///< what lies above is in no number here; 0: in all there is
 };
 
 /// The scale by which residuals of so many shots are judged: one shot cannot show that the noise is

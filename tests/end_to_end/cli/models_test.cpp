@@ -354,6 +354,9 @@ TEST_F(SimulatedBar, IsJudgedOnlyAsFarAsAsked) {
   EXPECT_LT(chi2_of({"--until", "1.1e-3"}), 1.3);
   EXPECT_GT(chi2_of({}), 10.0);
   EXPECT_EQ(chi2_of({"--until", "1"}), chi2_of({}));
+  const json narrow = json_of(kolsky({"compare", file("knocked"), "--model", file("d.toml"),
+                                      "--until", "1.1e-3", "--band-limit", "20e3", "--json"}));
+  EXPECT_NEAR(narrow["misfit"]["judged_to_Hz"], 20e3, 1e3);
   ASSERT_EQ(kolsky({"fit", file("knocked"), "--model", file("d.toml"), "--until", "1.1e-3", "-o",
                     file("f.toml")})
                 .code,
