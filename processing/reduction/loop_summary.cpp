@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -24,15 +25,18 @@ std::size_t index_of_largest(std::span<const double> history) {
 }
 
 /// In what sense the specimen is loaded at first, not most: what pulls at it later may be stronger.
+/// Told by the push so far, which a spike or a ripple at the start hardly adds to.
 double sense_of(const std::vector<double>& stress_Pa) {
+  constexpr double kPushed = 0.1;  // of the largest push
+  std::vector<double> push(stress_Pa.size());
+  std::partial_sum(stress_Pa.begin(), stress_Pa.end(), push.begin());
   double largest = 0.0;
-  for (const double stress : stress_Pa) {
-    largest = std::max(largest, std::abs(stress));
+  for (const double so_far : push) {
+    largest = std::max(largest, std::abs(so_far));
   }
-  const auto risen = std::find_if(stress_Pa.begin(), stress_Pa.end(), [&](double stress) {
-    return std::abs(stress) > kRisen * largest;
-  });
-  return risen != stress_Pa.end() && *risen < 0.0 ? -1.0 : 1.0;
+  const auto pushed = std::ranges::find_if(
+      push, [&](double so_far) { return std::abs(so_far) > kPushed * largest; });
+  return pushed != push.end() && *pushed < 0.0 ? -1.0 : 1.0;
 }
 
 /// Samples until the first loading and its unloading are over, or the strain has clearly come back.

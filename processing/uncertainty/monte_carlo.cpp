@@ -33,8 +33,7 @@ constexpr std::array kFigures{
 
 using Figures = std::array<double, kFigures.size()>;
 
-Figures figures_of(const Reduction& reduction) {
-  const LoopSummary summary = summarise(reduction);
+Figures figures_of(const LoopSummary& summary) {
   Figures figures{};
   for (std::size_t i = 0; i < kFigures.size(); ++i) {
     figures[i] = summary.*kFigures[i].member;
@@ -94,6 +93,7 @@ class Worker {
         moved_(shot, nominal.quiet_samples),
         options_(held(options, nominal)),
         nominal_(nominal),
+        has_loading_(summarise(nominal).no_loading.empty()),
         sources_(sources) {}
 
   /// @param moves  one per source
@@ -111,9 +111,11 @@ class Worker {
     reducer_.set_band_limit_Hz(numbers.band_limit_Hz);
     const Reduction reduction = reducer_.reduce(moved_.shot());
     Draw result;
-    result.good = reduction.quality.reducible && reduction.time_s.size() > 1;
+    const LoopSummary summary = summarise(reduction);
+    result.good = reduction.quality.reducible && reduction.time_s.size() > 1 &&
+                  (summary.no_loading.empty() || !has_loading_);
     if (result.good) {
-      result.figures = figures_of(reduction);
+      result.figures = figures_of(summary);
       const auto histories = histories_of(reduction);
       for (std::size_t h = 0; h < kHistories; ++h) {
         result.histories[h] = at_times(nominal_.time_s, reduction, *histories[h]);
@@ -127,6 +129,7 @@ class Worker {
   NoisyShot moved_;
   ReductionOptions options_;
   const Reduction& nominal_;
+  const bool has_loading_;
   const std::vector<UncertaintySource>& sources_;
   Reducer reducer_{options_};
 };
@@ -308,10 +311,11 @@ Uncertainty propagate(const Shot& shot, const ReductionOptions& options, const R
   workers.run(kHistories, [&](std::size_t h, std::size_t) {
     *bands[h] = band_of(joint, h, reduction.time_s.size());
   });
-  if (!summarise(reduction).no_loading.empty()) {
+  const LoopSummary summary = summarise(reduction);
+  if (!summary.no_loading.empty()) {
     return result;
   }
-  const Figures nominal = figures_of(reduction);
+  const Figures nominal = figures_of(summary);
   for (std::size_t f = 0; f < kFigures.size(); ++f) {
     UncertainFigure figure =
         uncertain_figure(kFigures[f].name, nominal[f], figure_values(joint, f));

@@ -146,6 +146,20 @@ Measured epoxy(int shot) {
           408e-6};
 }
 
+Measured pmma() {
+  return {
+      "PMMA",
+      "lanl-pmma.toml",
+      {"lanl-mini-kolsky-pmma/180303_171828_Ch1.csv", "lanl-mini-kolsky-pmma/180303_171828_Ch2.csv",
+       "lanl-mini-kolsky-pmma/180303_171828_Ch3.csv",
+       "lanl-mini-kolsky-pmma/180303_171828_Ch4.csv"},
+      "incident-1",
+      5000,
+      35000,
+      120e6,
+      300e6};
+}
+
 INSTANTIATE_TEST_SUITE_P(
     OtherLaboratories, MeasuredRecords,
     ::testing::Values(Measured{"OFE copper",
@@ -156,18 +170,7 @@ INSTANTIATE_TEST_SUITE_P(
                                4500,
                                250e6,
                                380e6},
-                      Measured{"PMMA",
-                               "lanl-pmma.toml",
-                               {"lanl-mini-kolsky-pmma/180303_171828_Ch1.csv",
-                                "lanl-mini-kolsky-pmma/180303_171828_Ch2.csv",
-                                "lanl-mini-kolsky-pmma/180303_171828_Ch3.csv",
-                                "lanl-mini-kolsky-pmma/180303_171828_Ch4.csv"},
-                               "incident-1",
-                               5000,
-                               35000,
-                               120e6,
-                               300e6},
-                      epoxy(1), epoxy(2), steel(1), steel(2), steel(3), steel(4), steel(5),
+                      pmma(), epoxy(1), epoxy(2), steel(1), steel(2), steel(3), steel(4), steel(5),
                       steel(6)));
 
 /// Of a shot's peak stress by what it states of itself: noise and the rest of the push.
@@ -181,6 +184,16 @@ double peak_sd(const Outcome& outcome) {
     }
   }
   throw std::runtime_error("no deviation of the peak stress");
+}
+
+// Its bars' lengths are filed to a millimetre, an eighth of the loading; draws that lost the
+// loading made 176 +- 56 MPa of it.
+TEST(MeasuredPmma, KeepsItsLoadingInEveryDraw) {
+  if (!std::filesystem::exists(shared("lanl-mini-kolsky-pmma"))) {
+    GTEST_SKIP() << "the measured records are not beside the project";
+  }
+  const Outcome outcome = replayed(pmma());
+  EXPECT_LT(peak_sd(outcome), 0.05 * peak(outcome.published.stress_Pa));
 }
 
 TEST(MeasuredPairs, RepeatWithinThemselves) {

@@ -32,6 +32,16 @@ TEST(LoopSummary, DescribesALoop) {
   EXPECT_EQ(loop.no_loading, "");
 }
 
+TEST(LoopSummary, IsNotTurnedRoundByASpikeAtTheStart) {
+  Reduction spiked = ramp();
+  spiked.stress_Pa[0] = -5e7;
+  spiked.stress_Pa[1] = -3e7;
+  const LoopSummary loop = summarise(spiked);
+  EXPECT_DOUBLE_EQ(loop.peak_stress_Pa, 1e8);
+  EXPECT_DOUBLE_EQ(loop.peak_strain, 0.1);
+  EXPECT_EQ(loop.no_loading, "");
+}
+
 /// As bars leave it that are too short for the pulse.
 TEST(LoopSummary, IsNoneWhereThereIsNoLoading) {
   const auto summary_of = [](const Reduction& reduction) {
