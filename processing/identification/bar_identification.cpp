@@ -30,7 +30,7 @@ constexpr double kLossInDeviations = 50.0;
 /// The best of some fits, and by how much it is ahead of the next.
 struct Best {
   const BarFit* fit = nullptr;
-  Choice choice;
+  ChoiceByEvidence choice;
 };
 
 Best best_of(const std::vector<const BarFit*>& fits) {

@@ -29,7 +29,7 @@ struct Alternative {
 };
 
 /// What the records say of the choice between explanations that differ in one respect.
-struct Choice {
+struct ChoiceByEvidence {
   bool told_apart = false;  ///< the best is ahead by a log evidence of 5
   double ahead = 0.0;       ///< by how much; 0 where there was nothing to choose
   bool asked = false;       ///< the caller chose
@@ -41,7 +41,7 @@ struct BarIdentification {
   /// Of the solid that the evidence chose, whichever was asked for, where it is clearly ahead: by
   /// this one the spectrum goes, which a solid that does not fit would lead astray.
   BarFit likeliest;
-  Choice wave_theory, far_end, solid;
+  ChoiceByEvidence wave_theory, far_end, solid;
   bool two_passes =
       false;  ///< one gauge stood for two (see split_passes); the far end counts as free
   std::vector<Alternative> alternatives;  ///< all that were compared, best first

@@ -578,7 +578,7 @@ std::vector<OctaveLeft> BarLikelihood::left_over() {
   return list;
 }
 
-CarriedNoise BarLikelihood::carried_noise() {
+NoiseInSums BarLikelihood::noise_in_sums() {
   const std::span<const double> own = judge_.in_time(data_.unit_impulse());
   const std::vector<double> own_response(own.begin(), own.end());
   return {data_, weights_->noise, responses_to_first(place_.at), own_response};
@@ -597,7 +597,7 @@ double BarLikelihood::independent_numbers(std::size_t octave) {
       signs(row, n) = random() % 2 == 0 ? 1.0 : -1.0;
     }
   }
-  const Eigen::MatrixXd covariance = carried_noise().covariance(unwhitened(std::move(signs)));
+  const Eigen::MatrixXd covariance = noise_in_sums().covariance(unwhitened(std::move(signs)));
   const double variances = covariance.diagonal().mean();
   const double off_diagonal = covariance.squaredNorm() - covariance.diagonal().squaredNorm();
   return variances * variances * (kDrawn * (kDrawn - 1)) / off_diagonal;
@@ -613,7 +613,7 @@ BarLikelihood::Scatter BarLikelihood::scatter_of_gradient(std::size_t as_it_is,
     const Eigen::Index count = first_row(firsts[i + 1]) - begin;
     by_row.segment(begin, count).setConstant(power[i]);
   }
-  CarriedNoise noise = carried_noise();
+  NoiseInSums noise = noise_in_sums();
   const Slopes moving = slopes();
   EightColumns columns(rows(), parameters);
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(parameters, parameters);

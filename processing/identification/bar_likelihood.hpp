@@ -9,8 +9,8 @@
 #include "processing/identification/bar_judge.hpp"
 #include "processing/identification/bar_misfit.hpp"
 #include "processing/identification/bar_model.hpp"
-#include "processing/identification/carried_noise.hpp"
 #include "processing/identification/noise_arrivals.hpp"
+#include "processing/identification/noise_in_sums.hpp"
 #include "processing/identification/wide_products.hpp"
 
 namespace kolsky {
@@ -139,7 +139,7 @@ class BarLikelihood {
       const BarNoise& noise, const std::vector<NoiseArrivals::Shown>& echoes,
       const std::vector<Eigen::MatrixXcd>& scatter) const;
   [[nodiscard]] std::vector<std::vector<double>> responses_to_first(std::span<const double> at);
-  [[nodiscard]] CarriedNoise carried_noise();
+  [[nodiscard]] NoiseInSums noise_in_sums();
   [[nodiscard]] std::vector<Eigen::MatrixXcd> unwhitened(Eigen::MatrixXd white) const;
   void put(std::span<const Complex> spectrum, Eigen::Index gauge, Eigen::Index column,
            std::size_t first_bin, EightColumns& columns) const;

@@ -13,7 +13,7 @@ struct Stretches {
   std::vector<Complex> to_specimen;  // exp(-gamma l)
   std::vector<Complex> round_trip;   // exp(-2 gamma x), gauge to far end and back
 
-  explicit Stretches(const BarWaves& bar)
+  explicit Stretches(const CarryingBar& bar)
       : to_specimen(bar.modes.size()), round_trip(bar.modes.size(), 0.0) {
     for (std::size_t k = 0; k < bar.modes.size(); ++k) {
       to_specimen[k] = -bar.modes[k].gamma * bar.gauge_to_specimen_m;
@@ -37,7 +37,7 @@ struct Place {
   Complex force;       // A rho s^2 / gamma^2, of what the gauge reads
   Complex velocity;    // s / gamma, likewise
 
-  Place(const BarWaves& bar, const Stretches& stretches, std::size_t k, Complex s)
+  Place(const CarryingBar& bar, const Stretches& stretches, std::size_t k, Complex s)
       : to_specimen(stretches.to_specimen[k]),
         round_trip(stretches.round_trip[k]),
         separation(1.0 / (1.0 - round_trip)),
@@ -64,8 +64,9 @@ void multiply_add(const std::vector<Complex>& kernel, std::span<const Complex> i
 
 }  // namespace
 
-CarryingKernels::CarryingKernels(std::span<const Complex> path, const BarWaves& input,
-                                 const BarWaves& output, double specimen_length_m, double delay_s) {
+CarryingKernels::CarryingKernels(std::span<const Complex> path, const CarryingBar& input,
+                                 const CarryingBar& output, double specimen_length_m,
+                                 double delay_s) {
   const std::size_t bins = path.size();
   for (auto* kernel : {&to_impact_, &from_impact_, &force_of_incident_, &force_of_rest_,
                        &force_of_output_, &rate_of_incident_, &rate_of_rest_, &rate_of_output_,

@@ -10,7 +10,7 @@
 namespace kolsky {
 
 /// One bar as the reduction sees it.
-struct BarWaves {
+struct CarryingBar {
   double area_m2 = 0.0;
   double density_kg_m3 = 0.0;
   double gauge_to_specimen_m = 0.0;
@@ -45,8 +45,8 @@ class CarryingKernels {
   /// @param delay_s  by which every history comes out late; at least the longer of both fronts'
   ///   travel from gauge to specimen, so that carrying back looks into no future and nothing wraps
   ///   round the record's start
-  CarryingKernels(std::span<const Complex> path, const BarWaves& input, const BarWaves& output,
-                  double specimen_length_m, double delay_s);
+  CarryingKernels(std::span<const Complex> path, const CarryingBar& input,
+                  const CarryingBar& output, double specimen_length_m, double delay_s);
 
   [[nodiscard]] std::size_t bins() const { return to_impact_.size(); }
 

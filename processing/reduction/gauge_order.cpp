@@ -32,7 +32,7 @@ std::optional<double> passes(std::span<const double> strain, const FirstPulse& p
 }  // namespace
 
 std::vector<double> strain_of_gauge(const Shot& shot, std::size_t gauge) {
-  const Station own{.channels = {gauge}};
+  const BarStation own{.channels = {gauge}};
   std::vector<double> record(shot.samples());
   read_raw_station(shot, own, record);
   const auto pulse = first_pulse(record, shot.rate.Hz());

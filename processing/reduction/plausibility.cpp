@@ -20,7 +20,7 @@ constexpr double kMostViscoelastic = 0.1;
 /// A pulse shaper, a soft impact or dispersion take tens of per cent off a pulse, not a half.
 constexpr double kFactorOff = 2.0;
 
-const Gauge& gauge_of(const Shot& shot, const Station& station) {
+const Gauge& gauge_of(const Shot& shot, const BarStation& station) {
   return shot.bench.gauges[station.channels.front()];
 }
 
@@ -76,7 +76,7 @@ std::optional<Check> impossible_specimen_strain(const Reduction& reduction) {
   return check;
 }
 
-std::optional<Check> impossible_bar_strain(const Shot& shot, const Station& station,
+std::optional<Check> impossible_bar_strain(const Shot& shot, const BarStation& station,
                                            std::span<const double> strain) {
   const Gauge& gauge = gauge_of(shot, station);
   const double limit =
@@ -102,7 +102,7 @@ std::optional<Check> impossible_bar_strain(const Shot& shot, const Station& stat
   return check;
 }
 
-std::optional<Check> striker_speed(const Shot& shot, const Station& station, double peak_strain,
+std::optional<Check> striker_speed(const Shot& shot, const BarStation& station, double peak_strain,
                                    double wave_speed_m_per_s) {
   const auto speed_m_per_s = speed_of(shot);
   if (!speed_m_per_s || !shot.bench.striker) {

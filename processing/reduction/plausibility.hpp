@@ -16,7 +16,8 @@ namespace kolsky {
 /// A check that fails, "bar_strain", where a bar would be strained as none bears: elastic ones
 /// beyond 2 %, viscoelastic ones beyond 10 %; nothing where it is not.
 /// @param strain  of the station, the whole record
-[[nodiscard]] std::optional<Check> impossible_bar_strain(const Shot& shot, const Station& station,
+[[nodiscard]] std::optional<Check> impossible_bar_strain(const Shot& shot,
+                                                         const BarStation& station,
                                                          std::span<const double> strain);
 
 /// A check, "striker_speed", that warns where the incident pulse is over twice or under half of
@@ -25,7 +26,7 @@ namespace kolsky {
 /// or impedance is not known.
 /// @param peak_strain        largest of the incident pulse at its gauge
 /// @param wave_speed_m_per_s of a front in the input bar
-[[nodiscard]] std::optional<Check> striker_speed(const Shot& shot, const Station& station,
+[[nodiscard]] std::optional<Check> striker_speed(const Shot& shot, const BarStation& station,
                                                  double peak_strain, double wave_speed_m_per_s);
 
 }  // namespace kolsky

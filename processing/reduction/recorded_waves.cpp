@@ -46,7 +46,7 @@ FirstSeen first_seen(const Shot& shot, const std::string& bar) {
     if (shot.bench.gauges[i].bar != bar) {
       continue;
     }
-    read_raw_station(shot, Station{.channels = {i}}, readings);
+    read_raw_station(shot, BarStation{.channels = {i}}, readings);
     const auto pulse = first_pulse(readings, shot.rate.Hz());
     if (pulse && pulse->quiet < first.quiet) {
       first = {gauge, pulse->quiet};

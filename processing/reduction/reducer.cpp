@@ -141,8 +141,8 @@ Reduction Reducer::State::reduce(const Shot& shot) {
   if (!told.most_band_Hz && material.identified) {
     told.most_band_Hz = material.identified->band_limit_Hz;
   }
-  const Station in = station_on(shot.bench, "input");
-  const Station out = station_on(shot.bench, "output");
+  const BarStation in = station_on(shot.bench, "input");
+  const BarStation out = station_on(shot.bench, "output");
   std::vector<double> numbers = shpb_numbers(shot.bench, material, told.theory, in, out);
   const ShpbBar input(shot.bench.input, in, material);
   const ShpbBar output(*shot.bench.output, out, material);

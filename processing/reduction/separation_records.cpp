@@ -19,7 +19,7 @@ SeparationRecords::SeparationRecords(const Shot& shot, const std::string& bar,
     const std::size_t quiet = quiet_at(gauge);
     least_quiet = std::min(least_quiet, quiet);
     auto& strain = strains.emplace_back(shot.samples());
-    read_station(shot, Station{.channels = {i}}, quiet, strain);
+    read_station(shot, BarStation{.channels = {i}}, quiet, strain);
     noise_rms.push_back(quiet_before(strain, quiet).noise_rms);
     std::fill_n(strain.begin(), quiet, 0.0);
     gauges.push_back({.position_m = gauge.position_m, .values = {}});

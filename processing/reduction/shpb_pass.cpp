@@ -44,8 +44,8 @@ double largest(std::span<const double> values) {
 /// One reduction in progress: what is found on the way from the records to the histories.
 class Pass {
  public:
-  Pass(const Shot& shot, const Station& in, const Station& out, const ReductionOptions& options,
-       ShpbPlans& plans, ShpbTables& tables)
+  Pass(const Shot& shot, const BarStation& in, const BarStation& out,
+       const ReductionOptions& options, ShpbPlans& plans, ShpbTables& tables)
       : shot_(shot),
         in_(in),
         out_(out),
@@ -701,8 +701,8 @@ class Pass {
   }
 
   const Shot& shot_;
-  const Station& in_;
-  const Station& out_;
+  const BarStation& in_;
+  const BarStation& out_;
   const ReductionOptions& options_;
   ShpbPlans& t_;
   ShpbTables& bars_;
@@ -738,7 +738,7 @@ class Pass {
 
 }  // namespace
 
-Reduction shpb_pass(const Shot& shot, const Station& in, const Station& out,
+Reduction shpb_pass(const Shot& shot, const BarStation& in, const BarStation& out,
                     const ReductionOptions& options, ShpbPlans& plans, ShpbTables& tables) {
   return Pass(shot, in, out, options, plans, tables).run();
 }

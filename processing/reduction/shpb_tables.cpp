@@ -23,7 +23,7 @@ std::size_t rounded_up(std::size_t samples) {
 
 }  // namespace
 
-ShpbBar::ShpbBar(const Bar& bar, const Station& station, const Material& viscoelastic)
+ShpbBar::ShpbBar(const Bar& bar, const BarStation& station, const Material& viscoelastic)
     : compliance(compliance_of(bar, viscoelastic)),
       front_speed_m_per_s(kolsky::front_speed_m_per_s(bar, *compliance)),
       waves{bar.area_m2(),
@@ -39,7 +39,7 @@ double ShpbBar::front_time_s(double distance_m) const {
 }
 
 std::vector<double> shpb_numbers(const Bench& b, const Material& m, WaveTheory theory,
-                                 const Station& in, const Station& out) {
+                                 const BarStation& in, const BarStation& out) {
   std::vector<double> numbers = {static_cast<double>(theory),
                                  b.input.area_m2(),
                                  b.input.density_kg_m3,
@@ -115,7 +115,8 @@ ShpbPlans::ShpbPlans(const ShpbPlanKey& k)
 }
 
 ShpbTables::ShpbTables(std::vector<double> n, const ShpbPlanKey& p, WaveTheory t,
-                       const Bench& bench, const Material& m, const Station& in, const Station& out)
+                       const Bench& bench, const Material& m, const BarStation& in,
+                       const BarStation& out)
     : numbers(std::move(n)),
       plan(p),
       theory(t),

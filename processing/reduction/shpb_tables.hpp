@@ -14,9 +14,9 @@ namespace kolsky {
 struct ShpbBar {
   std::unique_ptr<const Compliance> compliance;
   double front_speed_m_per_s;
-  BarWaves waves;
+  CarryingBar waves;
 
-  ShpbBar(const Bar& bar, const Station& station, const Material& viscoelastic);
+  ShpbBar(const Bar& bar, const BarStation& station, const Material& viscoelastic);
 
   /// Seconds a front needs over a distance.
   [[nodiscard]] double front_time_s(double distance_m) const;
@@ -24,8 +24,8 @@ struct ShpbBar {
 
 /// What decides the kernels: two shots that agree in it are reduced with the same ones.
 [[nodiscard]] std::vector<double> shpb_numbers(const Bench& bench, const Material& viscoelastic,
-                                               WaveTheory theory, const Station& in,
-                                               const Station& out);
+                                               WaveTheory theory, const BarStation& in,
+                                               const BarStation& out);
 
 /// Samples that a front needs from a gauge to the specimen, on the bar where it needs more.
 [[nodiscard]] std::size_t longest_travel(const Shot& shot, const ShpbBar& input,
@@ -75,7 +75,7 @@ struct ShpbTables {
   CarryingKernels kernels;
 
   ShpbTables(std::vector<double> n, const ShpbPlanKey& p, WaveTheory t, const Bench& bench,
-             const Material& m, const Station& in, const Station& out);
+             const Material& m, const BarStation& in, const BarStation& out);
 
   void reach(const ShpbPlans& plans, std::size_t bins);
   /// Where surface gauges go blind, if within so many bins.

@@ -23,7 +23,7 @@ double unstrained_reading(const ChannelRecord& channel, std::size_t quiet) {
 
 /// The mean of what `add` gives of each gauge, on the bench's clock.
 template <class Add>
-void add_each(const Shot& shot, const Station& station, std::vector<double>& sum, Add add) {
+void add_each(const Shot& shot, const BarStation& station, std::vector<double>& sum, Add add) {
   std::fill(sum.begin(), sum.end(), 0.0);
   const double share = 1.0 / static_cast<double>(station.channels.size());
   for (const std::size_t index : station.channels) {
@@ -41,8 +41,8 @@ void add_each(const Shot& shot, const Station& station, std::vector<double>& sum
 
 }  // namespace
 
-Station station_on(const Bench& bench, const std::string& bar) {
-  Station station;
+BarStation station_on(const Bench& bench, const std::string& bar) {
+  BarStation station;
   const Gauge* first = nullptr;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
     const Gauge& gauge = bench.gauges[i];
@@ -66,7 +66,7 @@ Station station_on(const Bench& bench, const std::string& bar) {
   return station;
 }
 
-void read_raw_station(const Shot& shot, const Station& station, std::vector<double>& readings) {
+void read_raw_station(const Shot& shot, const BarStation& station, std::vector<double>& readings) {
   add_each(shot, station, readings, [&](std::size_t index, double share, std::vector<double>& sum) {
     const ChannelRecord& channel = shot.channels[index];
     for (std::size_t n = 0; n < sum.size(); ++n) {
@@ -75,7 +75,7 @@ void read_raw_station(const Shot& shot, const Station& station, std::vector<doub
   });
 }
 
-void read_station(const Shot& shot, const Station& station, std::size_t quiet,
+void read_station(const Shot& shot, const BarStation& station, std::size_t quiet,
                   std::vector<double>& strains) {
   add_each(shot, station, strains, [&](std::size_t index, double share, std::vector<double>& sum) {
     const ChannelRecord& channel = shot.channels[index];

@@ -216,8 +216,8 @@ SpectralQuality spectral_quality(const Shot& shot, const Reduction& reduction) {
   if (!reduction.quality.reducible || reduction.time_s.empty() || shot.channels.empty()) {
     return quality;
   }
-  const Station in = station_on(shot.bench, "input");
-  const Station out = station_on(shot.bench, "output");
+  const BarStation in = station_on(shot.bench, "input");
+  const BarStation out = station_on(shot.bench, "output");
   const std::size_t quiet = reduction.quiet_samples;
   std::vector<double> strain(shot.samples());
   BandPower bands(shot.samples(), shot.rate.period_s(), quiet, 1.5 * reduction.band_limit_Hz);

@@ -53,7 +53,7 @@ JsonObject describe(const BarSpectrum& spectrum) {
           {"wavenumber_sd_of_mean", spectrum.wavenumber_per_m.sd_of_mean}};
 }
 
-JsonObject describe(const Choice& choice) {
+JsonObject describe(const ChoiceByEvidence& choice) {
   return {{"asked", choice.asked},
           {"told_apart", choice.told_apart},
           {"log_evidence_ahead", choice.ahead}};

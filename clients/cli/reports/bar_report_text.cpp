@@ -28,7 +28,7 @@ std::string table_of(const std::vector<FittedNumber>& list) {
   return text;
 }
 
-std::string choice_text(const Choice& choice) {
+std::string choice_text(const ChoiceByEvidence& choice) {
   if (choice.asked) {
     return "as asked";
   }

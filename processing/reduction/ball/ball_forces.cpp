@@ -104,7 +104,7 @@ std::size_t BallPass::known_samples() const {
 
 void BallPass::choose_stations() {
   double longest = 0.0;
-  for (const Station& station : stations_) {
+  for (const BarStation& station : stations_) {
     longest = std::max(longest, clean_samples(station));
   }
   std::vector<bool> chosen(stations_.size());

@@ -29,18 +29,18 @@ BallPlans::BallPlans(const BallPlanKey& k)
 }
 
 std::vector<double> ball_kernel_numbers(const Bar& bar, WaveTheory theory,
-                                        const std::vector<Station>& stations) {
+                                        const std::vector<BarStation>& stations) {
   std::vector<double> numbers{static_cast<double>(theory), bar.area_m2(),
                               bar.density_kg_m3,           *bar.youngs_modulus_Pa,
                               bar.poisson_ratio,           bar.dispersion_radius_m()};
-  for (const Station& station : stations) {
+  for (const BarStation& station : stations) {
     numbers.push_back(station.gauge_to_specimen_m);
   }
   return numbers;
 }
 
 void reach(BallKernels& kernels, const BallPlans& plans, const Bar& bar, WaveTheory theory,
-           const std::vector<Station>& stations, std::size_t bins) {
+           const std::vector<BarStation>& stations, std::size_t bins) {
   if (kernels.bins() >= bins) {
     return;
   }

@@ -46,10 +46,10 @@ struct BallKernels {
 
 /// What decides the kernels: two shots that agree in it share them.
 [[nodiscard]] std::vector<double> ball_kernel_numbers(const Bar& bar, WaveTheory theory,
-                                                      const std::vector<Station>& stations);
+                                                      const std::vector<BarStation>& stations);
 
 /// Makes the kernels of at least so many bins.
 void reach(BallKernels& kernels, const BallPlans& plans, const Bar& bar, WaveTheory theory,
-           const std::vector<Station>& stations, std::size_t bins);
+           const std::vector<BarStation>& stations, std::size_t bins);
 
 }  // namespace kolsky

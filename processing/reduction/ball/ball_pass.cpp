@@ -10,7 +10,7 @@
 
 namespace kolsky {
 
-BallPass::BallPass(const Shot& shot, const std::vector<Station>& stations,
+BallPass::BallPass(const Shot& shot, const std::vector<BarStation>& stations,
                    const ReductionOptions& options, BallPlans& plans, BallKernels& kernels)
     : shot_(shot),
       bar_(shot.bench.input),
@@ -60,7 +60,7 @@ double BallPass::travel_samples(double distance_m) const {
   return distance_m / front_speed_m_per_s_ * rate_Hz_;
 }
 
-double BallPass::clean_samples(const Station& station) const {
+double BallPass::clean_samples(const BarStation& station) const {
   return 2.0 * travel_samples(station.gauge_to_far_end_m);
 }
 

@@ -18,8 +18,8 @@ namespace kolsky {
 /// the contact. Force histories count from the record's first sample at the face.
 class BallPass {
  public:
-  BallPass(const Shot& shot, const std::vector<Station>& stations, const ReductionOptions& options,
-           BallPlans& plans, BallKernels& kernels);
+  BallPass(const Shot& shot, const std::vector<BarStation>& stations,
+           const ReductionOptions& options, BallPlans& plans, BallKernels& kernels);
 
   [[nodiscard]] static double front_speed(const Bar& bar);
   [[nodiscard]] Reduction run();
@@ -30,10 +30,10 @@ class BallPass {
 
   [[nodiscard]] double travel_samples(double distance_m) const;
   /// From first touch until the far end's reflection, carried back, overlies a station's force.
-  [[nodiscard]] double clean_samples(const Station& station) const;
+  [[nodiscard]] double clean_samples(const BarStation& station) const;
   [[nodiscard]] bool find_wave();
   /// Samples of a station before the wave arrives there.
-  [[nodiscard]] std::size_t quiet_samples(const Station& station) const;
+  [[nodiscard]] std::size_t quiet_samples(const BarStation& station) const;
   /// @return whether every reading is a strain
   [[nodiscard]] bool read_strains();
   /// The wave at a station, until the far end answers there.
@@ -73,7 +73,7 @@ class BallPass {
 
   const Shot& shot_;
   const Bar& bar_;
-  const std::vector<Station>& stations_;
+  const std::vector<BarStation>& stations_;
   const ReductionOptions& options_;
   BallPlans& t_;
   BallKernels& kernels_;

@@ -51,7 +51,7 @@ Reduction BallReducer::reduce(const Shot& shot, const ReductionOptions& options)
   if (!unusable.empty()) {
     return not_reducible(unusable, kRepeatOrLeaveOut);
   }
-  const std::vector<Station> stations = stations_by_position(shot.bench);
+  const std::vector<BarStation> stations = stations_by_position(shot.bench);
   const Bar& bar = shot.bench.input;
   const double samples_per_m = shot.rate.Hz() / BallPass::front_speed(bar);
   const BallPlanKey key{

@@ -5,13 +5,13 @@
 
 namespace kolsky {
 
-std::vector<Station> stations_by_position(const Bench& bench) {
+std::vector<BarStation> stations_by_position(const Bench& bench) {
   std::vector<std::size_t> order(bench.gauges.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return bench.gauges[a].position_m.value < bench.gauges[b].position_m.value;
   });
-  std::vector<Station> stations;
+  std::vector<BarStation> stations;
   double first_m = 0.0;
   for (const std::size_t i : order) {
     const double position_m = bench.gauges[i].position_m;
@@ -21,7 +21,7 @@ std::vector<Station> stations_by_position(const Bench& bench) {
     }
     stations.back().channels.push_back(i);
   }
-  for (Station& station : stations) {
+  for (BarStation& station : stations) {
     double sum_m = 0.0;
     for (const std::size_t i : station.channels) {
       sum_m += bench.gauges[i].position_m;
@@ -32,7 +32,7 @@ std::vector<Station> stations_by_position(const Bench& bench) {
   return stations;
 }
 
-std::string names_of(const Station& station, const Bench& bench) {
+std::string names_of(const BarStation& station, const Bench& bench) {
   std::string names;
   for (const std::size_t i : station.channels) {
     names += (names.empty() ? "" : "+") + bench.gauges[i].name;

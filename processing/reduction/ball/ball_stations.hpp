@@ -10,10 +10,10 @@
 namespace kolsky {
 
 /// The gauges at each place of the struck bar, nearest to the struck end first.
-[[nodiscard]] std::vector<Station> stations_by_position(const Bench& bench);
+[[nodiscard]] std::vector<BarStation> stations_by_position(const Bench& bench);
 
 /// "g1+g2"
-[[nodiscard]] std::string names_of(const Station& station, const Bench& bench);
+[[nodiscard]] std::string names_of(const BarStation& station, const Bench& bench);
 
 /// Relative deviation of a gauge's strain, from what converts it. @param strain  its largest
 [[nodiscard]] double gain_sd(const Gauge& gauge, double strain);

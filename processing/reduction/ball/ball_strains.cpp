@@ -51,7 +51,7 @@ bool BallPass::find_wave() {
   return true;
 }
 
-std::size_t BallPass::quiet_samples(const Station& station) const {
+std::size_t BallPass::quiet_samples(const BarStation& station) const {
   const double later =
       travel_samples(station.gauge_to_specimen_m - stations_[0].gauge_to_specimen_m);
   const double end = foot_ + later - kFootClearance_s * rate_Hz_;

@@ -1,13 +1,13 @@
-#include "processing/identification/carried_noise.hpp"
+#include "processing/identification/noise_in_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace kolsky {
 
-CarriedNoise::CarriedNoise(const BarData& data, const BarNoise& noise,
-                           const std::vector<std::vector<double>>& responses,
-                           std::span<const double> own)
+NoiseInSums::NoiseInSums(const BarData& data, const BarNoise& noise,
+                         const std::vector<std::vector<double>>& responses,
+                         std::span<const double> own)
     : data_(data),
       noise_(noise),
       judged_(data.places().judged(), data.places().period_s, 1.0),
@@ -18,14 +18,14 @@ CarriedNoise::CarriedNoise(const BarData& data, const BarNoise& noise,
   }
 }
 
-BarData::Spectrum CarriedNoise::spectrum_of(std::span<const double> in_time) {
+BarData::Spectrum NoiseInSums::spectrum_of(std::span<const double> in_time) {
   BarData::Spectrum spectrum(whole_.bins());
   whole_.forward(in_time, spectrum);
   return spectrum;
 }
 
 /// What a sum multiplies each place of the residuals by.
-BarData::Spectrum CarriedNoise::in_judged_part(const Eigen::VectorXcd& weights) {
+BarData::Spectrum NoiseInSums::in_judged_part(const Eigen::VectorXcd& weights) {
   const BarData::Places& places = data_.places();
   BarData::Spectrum bins(judged_.bins());
   for (Eigen::Index k = 0; k < weights.size(); ++k) {
@@ -39,7 +39,7 @@ BarData::Spectrum CarriedNoise::in_judged_part(const Eigen::VectorXcd& weights) 
 }
 
 /// Gauge 0 has no noise before its record, and what it has is less the mean of its quiet part.
-BarData::Spectrum CarriedNoise::within_record(const BarData::Spectrum& spectrum) {
+BarData::Spectrum NoiseInSums::within_record(const BarData::Spectrum& spectrum) {
   const BarData::Places& places = data_.places();
   const auto begin = static_cast<std::size_t>(places.records_begin);
   std::vector<double> in_time(places.judged_end - begin);
@@ -55,13 +55,13 @@ BarData::Spectrum CarriedNoise::within_record(const BarData::Spectrum& spectrum)
   return spectrum_of(in_time);
 }
 
-double CarriedNoise::power(std::size_t gauge, std::size_t bin) const {
+double NoiseInSums::power(std::size_t gauge, std::size_t bin) const {
   const double cycles = static_cast<double>(bin) /
                         (static_cast<double>(whole_.length()) * data_.places().samples_per_place);
   return std::max(noise_.spectra[gauge].power(cycles), data_.least_noise(gauge));
 }
 
-Eigen::MatrixXd CarriedNoise::covariance(const std::vector<Eigen::MatrixXcd>& weights) {
+Eigen::MatrixXd NoiseInSums::covariance(const std::vector<Eigen::MatrixXcd>& weights) {
   const Eigen::Index sums = weights.front().cols();
   const std::size_t others = weights.size();
   // What each gauge's noise is multiplied by at each frequency, gauge 0's first.

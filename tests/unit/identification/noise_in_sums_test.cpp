@@ -1,5 +1,5 @@
 // What noise makes of sums over judged residuals, against the scatter of records that were drawn.
-#include "processing/identification/carried_noise.hpp"
+#include "processing/identification/noise_in_sums.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ Carried carried(double noise_correlation) {
     const auto record = judge.in_time(spectrum);
     return std::vector<double>(record.begin(), record.end());
   };
-  CarriedNoise noise(data, data.noise(), {in_time(product)}, in_time(data.unit_impulse()));
+  NoiseInSums noise(data, data.noise(), {in_time(product)}, in_time(data.unit_impulse()));
   const auto bins = static_cast<Eigen::Index>(data.judged_path().size());
   const Eigen::MatrixXcd weights = weights_of(bins);
   Carried carried{noise.covariance({weights}), Eigen::MatrixXd::Zero(kSums, kSums),
@@ -104,7 +104,7 @@ Carried carried(double noise_correlation) {
   return carried;
 }
 
-TEST(CarriedNoise, ForetellsHowSumsScatterInRecords) {
+TEST(NoiseInSums, ForetellsHowSumsScatterInRecords) {
   // A variance of so many shots is known to sqrt(2 / shots).
   const double allowed = 4.0 * std::sqrt(2.0 / static_cast<double>(kShots));
   for (const double correlation : {0.0, 0.95}) {

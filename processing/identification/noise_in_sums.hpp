@@ -15,14 +15,14 @@ namespace kolsky {
 /// baseline with it; each gauge's own shows its spectrum through the ends of what is judged.
 ///
 /// Holds work space: one thread at a time.
-class CarriedNoise {
+class NoiseInSums {
  public:
   /// @param data, noise  outlive this
   /// @param responses  at the lower rate, of each gauge but the first to what gauge 0 reads in the
   ///   record's first sample
   /// @param own  the same of a gauge to its own reading
-  CarriedNoise(const BarData& data, const BarNoise& noise,
-               const std::vector<std::vector<double>>& responses, std::span<const double> own);
+  NoiseInSums(const BarData& data, const BarNoise& noise,
+              const std::vector<std::vector<double>>& responses, std::span<const double> own);
 
   /// Covariance of several sums. @param weights  by gauge but the first: a column a sum, a row a
   /// bin
