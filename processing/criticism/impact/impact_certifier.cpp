@@ -102,8 +102,8 @@ bool ImpactCertifier::certified(const ImpactSearch& search, const ImpactRefit& r
 }
 
 std::optional<std::string> ImpactCertifier::unbelievable(const ImpactSearch& search,
-                                                         const std::vector<ImpactRefit>& refits,
                                                          const Studied& current) const {
+  const std::vector<ImpactRefit>& refits = search.refits();
   if (refits.empty() || !stands(search, refits.front(), current)) {
     return std::nullopt;
   }
@@ -116,12 +116,10 @@ std::optional<std::string> ImpactCertifier::unbelievable(const ImpactSearch& sea
                             id, off_m));
 }
 
-JudgedRefits ImpactCertifier::judged(const ImpactSearch& search,
-                                     const std::vector<ImpactRefit>& refits,
-                                     const Studied& current) const {
+JudgedRefits ImpactCertifier::judged(const ImpactSearch& search, const Studied& current) const {
   JudgedRefits judged;
-  for (const ImpactRefit& refit : refits) {
-    if (refit.evidence < refits.front().evidence - kStandsBefore) {
+  for (const ImpactRefit& refit : search.refits()) {
+    if (refit.evidence < search.refits().front().evidence - kStandsBefore) {
       break;
     }
     if (certified(search, refit, current)) {
@@ -133,10 +131,9 @@ JudgedRefits ImpactCertifier::judged(const ImpactSearch& search,
   return judged;
 }
 
-std::vector<std::string> beside(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
-                                const ImpactRefit& own) {
+std::vector<std::string> beside(const ImpactSearch& search, const ImpactRefit& own) {
   std::vector<std::string> ties;
-  for (const ImpactRefit& rival : refits) {
+  for (const ImpactRefit& rival : search.refits()) {
     const std::string other = search.candidate(rival).id();
     const bool as_good = rival.evidence > own.evidence - kStandsBefore;
     // An effect may be there in several variants.

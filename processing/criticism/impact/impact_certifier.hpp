@@ -9,9 +9,9 @@
 
 namespace kolsky {
 
-/// What becomes of the best of a search's refits.
+/// What becomes of the best of a search's refits, which outlive it.
 struct JudgedRefits {
-  const ImpactRefit* certified = nullptr;  ///< the best that is; none: null
+  const ImpactRefit* certified = nullptr;  ///< the best that is, of the search's; none: null
   std::vector<std::string> rejected;       ///< those before it
 };
 
@@ -29,12 +29,9 @@ class ImpactCertifier {
   [[nodiscard]] double held_out_misfit(const Studied& studied) const;
 
   /// Of what stands before nothing at all, down to the best that is certified.
-  [[nodiscard]] JudgedRefits judged(const ImpactSearch& search,
-                                    const std::vector<ImpactRefit>& refits,
-                                    const Studied& current) const;
+  [[nodiscard]] JudgedRefits judged(const ImpactSearch& search, const Studied& current) const;
   /// Why the best is not believed though all else certifies it; none: nothing of it is there.
   [[nodiscard]] std::optional<std::string> unbelievable(const ImpactSearch& search,
-                                                        const std::vector<ImpactRefit>& refits,
                                                         const Studied& current) const;
 
  private:
@@ -52,8 +49,6 @@ class ImpactCertifier {
 };
 
 /// What a refit does not stand before.
-[[nodiscard]] std::vector<std::string> beside(const ImpactSearch& search,
-                                              const std::vector<ImpactRefit>& refits,
-                                              const ImpactRefit& own);
+[[nodiscard]] std::vector<std::string> beside(const ImpactSearch& search, const ImpactRefit& own);
 
 }  // namespace kolsky

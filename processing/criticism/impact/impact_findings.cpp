@@ -71,36 +71,37 @@ class Seeker {
 
   bool add_one(ImpactSearch& search, Studied& current, Searched searched) {
     options_.progress("refitting rivals");
-    std::vector<ImpactRefit> refits = search.refits();
+    search.refit_rivals();
     scale_ = search.scale();
     if (diagnosis_.candidates.empty()) {
-      diagnosis_.candidates = table_of_impacts(search, refits, certifier_);
+      diagnosis_.candidates = table_of_impacts(search, certifier_);
       for (const FlatEffect& flat : search.flat()) {
         flat_.push_back(flat.id);
       }
     }
-    const ImpactRefit* claimed = judge(search, refits, search.base());
-    unbelievable_ = certifier_.unbelievable(search, refits, search.base());
+    const ImpactRefit* claimed = judge(search, search.base());
+    unbelievable_ = certifier_.unbelievable(search, search.base());
     if (claimed == nullptr && searched == Searched::settled && diagnosis_.effects.empty() &&
         study_.allowance(current) != Allowance::kept) {
       options_.progress("fitting the nearest to a claim to their ends");
-      refits = search.settled(std::move(refits), current);
+      search.settle_nearest(current);
       scale_ = search.scale();
-      claimed = judge(search, refits, current);
+      claimed = judge(search, current);
     }
     if (claimed == nullptr) {
-      keep_rest(search, refits);
+      keep_rest(search);
       return false;
     }
     const std::string id = search.candidate(*claimed).id();
     diagnosis_.effects.push_back(id);
-    diagnosis_.tied_with[id] = beside(search, refits, *claimed);
+    diagnosis_.tied_with[id] = beside(search, *claimed);
     take(claimed->studied, current);
     return true;
   }
 
   /// A filed number that is set free has its place in every model already.
-  void keep_rest(const ImpactSearch& search, const std::vector<ImpactRefit>& refits) {
+  void keep_rest(const ImpactSearch& search) {
+    const std::vector<ImpactRefit>& refits = search.refits();
     rest_.reset();
     if (!refits.empty() && refits.front().evidence > kStandsBefore &&
         !search.candidate(refits.front()).frees_prior) {
@@ -132,19 +133,18 @@ class Seeker {
   }
 
   /// Puts down what becomes of the refits. @return the one that is certified; none: null
-  const ImpactRefit* judge(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
-                           const Studied& base) {
+  const ImpactRefit* judge(const ImpactSearch& search, const Studied& base) {
     note_not_in_quiet(search);
-    const JudgedRefits judged = certifier_.judged(search, refits, base);
+    const JudgedRefits judged = certifier_.judged(search, base);
     for (const std::string& id : judged.rejected) {
       set_verdict(diagnosis_, id, CandidateVerdict::rejected);
     }
     std::vector<std::string> told = judged.rejected;
     if (judged.certified != nullptr) {
       told.push_back(search.candidate(*judged.certified).id());
-      std::ranges::copy(beside(search, refits, *judged.certified), std::back_inserter(told));
+      std::ranges::copy(beside(search, *judged.certified), std::back_inserter(told));
     }
-    note_refits(search, refits, told, certifier_, diagnosis_.candidates);
+    note_refits(search, told, certifier_, diagnosis_.candidates);
     return judged.certified;
   }
 
@@ -191,8 +191,8 @@ class Seeker {
     options_.progress("weighing " + id + " beside what else was found");
     const Studied others = without(current.model, id);
     ImpactSearch search(study_, others);
-    const std::vector<ImpactRefit> refits = search.refits();
-    const ImpactRefit* claimed = judge(search, refits, search.base());
+    search.refit_rivals();
+    const ImpactRefit* claimed = judge(search, search.base());
     if (claimed == nullptr) {
       drop_claim(diagnosis_, id, CandidateVerdict::rejected);
       take(others, current);
@@ -201,7 +201,7 @@ class Seeker {
     const std::string now = search.candidate(*claimed).id();
     std::replace(diagnosis_.effects.begin(), diagnosis_.effects.end(), id, now);
     diagnosis_.tied_with.erase(id);
-    diagnosis_.tied_with[now] = beside(search, refits, *claimed);
+    diagnosis_.tied_with[now] = beside(search, *claimed);
     if (now == id) {
       return false;
     }
@@ -223,14 +223,15 @@ class Seeker {
       }
       const Studied others = without(rest_->studied.model, id);
       ImpactSearch search(study_, others);
-      const std::vector<ImpactRefit> refits = search.refits();
-      const auto own = std::ranges::find_if(
-          refits, [&](const ImpactRefit& refit) { return search.candidate(refit).id() == id; });
-      if (own == refits.end()) {
+      search.refit_rivals();
+      const auto own = std::ranges::find_if(search.refits(), [&](const ImpactRefit& refit) {
+        return search.candidate(refit).id() == id;
+      });
+      if (own == search.refits().end()) {
         continue;
       }
       std::vector<std::string>& ties = diagnosis_.tied_with[id];
-      for (const std::string& other : beside(search, refits, *own)) {
+      for (const std::string& other : beside(search, *own)) {
         if (std::ranges::find(ties, other) == ties.end()) {
           ties.push_back(other);
         }

@@ -116,11 +116,6 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
   return fit;
 }
 
-void sort_by_evidence(std::vector<ImpactRefit>& list) {
-  std::sort(list.begin(), list.end(),
-            [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
-}
-
 }  // namespace
 
 ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
@@ -259,16 +254,17 @@ std::optional<ImpactRefit> ImpactSearch::described(std::size_t index, const Mode
   return out;
 }
 
-void ImpactSearch::rate(std::vector<ImpactRefit>& list) {
-  const auto best = std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
-    return a.studied.fit.objective() < b.studied.fit.objective();
-  });
+void ImpactSearch::rate() {
+  const auto best =
+      std::min_element(refits_.begin(), refits_.end(), [](const auto& a, const auto& b) {
+        return a.studied.fit.objective() < b.studied.fit.objective();
+      });
   // By one measure of it: what takes up how shots scatter leaves less noise, and of a large misfit
   // each of its own made that more than what it explains.
   const double noise = std::max(1.0, best->studied.misfit.noise_scale);
   const auto [chi2, known] = study_.repeated(best->studied.fit.residual);
   scale_ = std::max(kSolverDoubt, chi2 / known);
-  for (ImpactRefit& refit : list) {
+  for (ImpactRefit& refit : refits_) {
     refit.gain = refit.lowers / noise;
     refit.of_filed = refit.lowers_filed / noise;
     const Signs signs = refit.freedom < 1.5 ? candidate(refit).signs : Signs::both;
@@ -299,17 +295,17 @@ void ImpactSearch::share_out(std::size_t count,
 }
 
 /// Fits to the end what may be claimed, and what may stand beside it.
-void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
-  const auto best = std::max_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
-    return a.evidence < b.evidence;
-  });
+void ImpactSearch::refine() {
+  const auto best =
+      std::max_element(refits_.begin(), refits_.end(),
+                       [](const auto& a, const auto& b) { return a.evidence < b.evidence; });
   constexpr double kInSight = -3.0;  ///< ln p: what a rough fit misses moves it by less than a half
   constexpr double kNearBest = 15.0;  ///< twice what a tie needs
-  if (best == list.end() || with_search(best->log_p) > kInSight) {
+  if (best == refits_.end() || with_search(best->log_p) > kInSight) {
     return;
   }
   std::vector<ImpactRefit*> near;
-  for (ImpactRefit& own : list) {
+  for (ImpactRefit& own : refits_) {
     if (own.evidence >= best->evidence - kNearBest) {
       near.push_back(&own);
     }
@@ -323,14 +319,18 @@ void ImpactSearch::refine(std::vector<ImpactRefit>& list) {
       own = std::move(*refined);
     }
   });
-  rate(list);
+  rate();
 }
 
-std::vector<ImpactRefit> ImpactSearch::settled(std::vector<ImpactRefit> refits,
-                                               const Studied& base) {
+void ImpactSearch::sort_by_evidence() {
+  std::sort(refits_.begin(), refits_.end(),
+            [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+}
+
+void ImpactSearch::settle_nearest(const Studied& base) {
   constexpr std::size_t kNearest = 3;
   std::size_t count = 0;
-  for (ImpactRefit& own : refits) {
+  for (ImpactRefit& own : refits_) {
     if (candidate(own).frees_prior) {
       continue;
     }
@@ -344,15 +344,14 @@ std::vector<ImpactRefit> ImpactSearch::settled(std::vector<ImpactRefit> refits,
   }
   study_.residuals().anchor(base.composition, base.fit.theta, ImpactResiduals::AnchorBy::middle);
   if (count > 0) {
-    rate(refits);
-    sort_by_evidence(refits);
+    rate();
+    sort_by_evidence();
   }
-  return refits;
 }
 
-void ImpactSearch::leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list) {
+void ImpactSearch::leave_out_what_quiet_lacks() {
   not_in_quiet_.clear();
-  std::erase_if(list, [&](const ImpactRefit& own) {
+  std::erase_if(refits_, [&](const ImpactRefit& own) {
     const std::string id = candidate(own).id();
     const bool lacks = !stands_before_pulse(own.studied, id, study_.residuals());
     if (lacks && own.lowers > kStandsBefore * kSolverDoubt) {
@@ -360,12 +359,12 @@ void ImpactSearch::leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list) {
     }
     return lacks;
   });
-  for (const ImpactRefit& own : list) {
+  for (const ImpactRefit& own : refits_) {
     not_in_quiet_.erase(candidate(own).id());  // in another variant it is there
   }
 }
 
-std::vector<ImpactRefit> ImpactSearch::refits() {
+void ImpactSearch::refit_rivals() {
   std::vector<std::size_t> chosen = worth_refitting();
   const auto from_afar_too =
       std::stable_partition(chosen.begin(), chosen.end(),
@@ -382,19 +381,18 @@ std::vector<ImpactRefit> ImpactSearch::refits() {
   for (std::size_t i = near; i < chosen.size(); ++i) {
     done[i] = refit(chosen[i], study_.executor(), best - margin_behind(best));
   }
-  std::vector<ImpactRefit> list;
+  refits_.clear();
   for (auto& own : done) {
     if (own) {
-      list.push_back(std::move(*own));
+      refits_.push_back(std::move(*own));
     }
   }
-  leave_out_what_quiet_lacks(list);
-  if (!list.empty()) {
-    rate(list);
-    refine(list);
+  leave_out_what_quiet_lacks();
+  if (!refits_.empty()) {
+    rate();
+    refine();
   }
-  sort_by_evidence(list);
-  return list;
+  sort_by_evidence();
 }
 
 }  // namespace kolsky

@@ -28,11 +28,10 @@ struct ImpactRefit {
 /// One search for what a fitted model of impacts lacks.
 ///
 /// A gain of the records counts against what the best of the refits leaves of the means per degree
-/// of freedom
-/// (`scale`), and against no less than kSolverDoubt: a regression's F test where the calculation is
-/// further off than was allowed for, else a chi2 test. How far numbers are from what is filed of
-/// them is no matter of the calculation and counts in full; what claims one of them counts as much
-/// less as the records' own part in its uncertainty is in doubt (doubt_of_gain).
+/// of freedom (`scale`), and against no less than kSolverDoubt: a regression's F test where the
+/// calculation is further off than was allowed for, else a chi2 test. How far numbers are from what
+/// is filed of them is no matter of the calculation and counts in full; what claims one of them
+/// counts as much less as the records' own part in its uncertainty is in doubt (doubt_of_gain).
 class ImpactSearch {
  public:
   /// @param base  the model as fitted
@@ -53,21 +52,22 @@ class ImpactSearch {
   [[nodiscard]] double log_trials() const;
   /// ln of the chance that the best of all candidates does as well on noise.
   [[nodiscard]] double with_search(double log_p) const;
-  /// The candidates worth it, refitted; the best first. An effect may be there in several variants.
-  /// What would be added to the records (hum, drift) is left out where it is not in the quiet
-  /// before the pulse.
-  [[nodiscard]] std::vector<ImpactRefit> refits();
-  /// The same with the nearest to a claim settled: numbers that do nearly the same to a ball are
-  /// told apart by the middle mesh, and a coarse one may lead a rival's fit to where it gains less.
-  /// @param base  the search's, as it was settled
-  [[nodiscard]] std::vector<ImpactRefit> settled(std::vector<ImpactRefit> refits,
-                                                 const Studied& base);
-  /// Ids of what the last refits left out so, though it stands before nothing.
-  [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
   /// Of what is allowed for the calculation's error, what the records leave open
   /// (solver_share.hpp).
   [[nodiscard]] double solver_share() const;
-  /// Squares of deviates are over this.
+
+  /// Refits the candidates worth it. What would be added to the records (hum, drift) is left out
+  /// where it is not in the quiet before the pulse.
+  void refit_rivals();
+  /// Settles those nearest to a claim: numbers that do nearly the same to a ball are told apart by
+  /// the middle mesh, and a coarse one may lead a rival's fit to where it gains less.
+  /// @param base  the search's, as it was settled
+  void settle_nearest(const Studied& base);
+  /// The best first; none before they are refitted. An effect may be there in several variants.
+  [[nodiscard]] const std::vector<ImpactRefit>& refits() const { return refits_; }
+  /// Ids of what is not in the quiet and was left out for it, though it stands before nothing.
+  [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
+  /// Squares of deviates are over this, by the refits.
   [[nodiscard]] double scale() const { return scale_; }
 
  private:
@@ -78,10 +78,11 @@ class ImpactSearch {
                                                  double least);
   [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
                                                      Composition composition, ModelFit fit) const;
-  void leave_out_what_quiet_lacks(std::vector<ImpactRefit>& list);
+  void leave_out_what_quiet_lacks();
   void share_out(std::size_t count, const std::function<void(std::size_t, const Workers&)>& work);
-  void refine(std::vector<ImpactRefit>& list);
-  void rate(std::vector<ImpactRefit>& list);
+  void refine();
+  void rate();
+  void sort_by_evidence();
 
   ImpactStudy& study_;
   Studied base_;
@@ -89,6 +90,7 @@ class ImpactSearch {
   std::vector<Direction> directions_;
   std::vector<std::optional<FlatEffect>> flat_;  ///< by candidate
   std::vector<double> evidence_;                 ///< at first order, as ImpactRefit's
+  std::vector<ImpactRefit> refits_;
   std::set<std::string> not_in_quiet_;
   double trials_ = 1.0;
   double scale_ = kSolverDoubt;

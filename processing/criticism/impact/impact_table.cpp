@@ -5,28 +5,26 @@
 namespace kolsky {
 
 std::vector<CandidateResult> table_of_impacts(const ImpactSearch& search,
-                                              const std::vector<ImpactRefit>& refits,
                                               const ImpactCertifier& certifier) {
   std::vector<CandidateResult> table =
       first_order_table({search.candidates(), search.directions(), search.base(),
                          search.log_trials(), search.scale()});
   set_limits(search.flat(), search.scale(), table);
   std::vector<std::string> all;
-  for (const ImpactRefit& refit : refits) {
+  for (const ImpactRefit& refit : search.refits()) {
     all.push_back(search.candidate(refit).id());
   }
-  note_refits(search, refits, all, certifier, table);
+  note_refits(search, all, certifier, table);
   return table;
 }
 
-void note_refits(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
-                 const std::vector<std::string>& ids, const ImpactCertifier& certifier,
-                 std::vector<CandidateResult>& table) {
+void note_refits(const ImpactSearch& search, const std::vector<std::string>& ids,
+                 const ImpactCertifier& certifier, std::vector<CandidateResult>& table) {
   for (CandidateResult& result : table) {
-    const auto best = std::ranges::find_if(refits, [&](const ImpactRefit& refit) {
+    const auto best = std::ranges::find_if(search.refits(), [&](const ImpactRefit& refit) {
       return search.candidate(refit).id() == result.effect;
     });
-    if (best == refits.end() || std::ranges::find(ids, result.effect) == ids.end()) {
+    if (best == search.refits().end() || std::ranges::find(ids, result.effect) == ids.end()) {
       continue;
     }
     result.gain = best->gain;

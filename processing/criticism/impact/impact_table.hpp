@@ -10,12 +10,10 @@ namespace kolsky {
 
 /// Every effect as a search has it, refitted or at first order.
 [[nodiscard]] std::vector<CandidateResult> table_of_impacts(const ImpactSearch& search,
-                                                            const std::vector<ImpactRefit>& refits,
                                                             const ImpactCertifier& certifier);
 
 /// What a search found of these effects, in the place of what their rows said before.
-void note_refits(const ImpactSearch& search, const std::vector<ImpactRefit>& refits,
-                 const std::vector<std::string>& ids, const ImpactCertifier& certifier,
-                 std::vector<CandidateResult>& table);
+void note_refits(const ImpactSearch& search, const std::vector<std::string>& ids,
+                 const ImpactCertifier& certifier, std::vector<CandidateResult>& table);
 
 }  // namespace kolsky
