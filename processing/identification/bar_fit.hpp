@@ -66,6 +66,10 @@ struct BarFit {
   std::vector<std::vector<double>> posterior;  ///< covariance of `at`
 };
 
+/// A loss is seen that is known at least as well as this, as deviation of its number's logarithm:
+/// above zero by three deviations.
+inline constexpr double kWidestLogOfALoss = 0.3;
+
 /// Fits one bar's material to any number of shots at once. The deviations include those of the
 /// bench's known unknowns; where the fit leaves more than noise they are widened for it, as if what
 /// it leaves were chance. The

@@ -534,9 +534,8 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
 }  // namespace
 
 bool loss_shows(const BarFit& three_element) {
-  constexpr double kDetermined = 0.3;
   const FittedNumber& E2 = three_element.parameters[1];
-  return !three_element.lossless && E2.sd <= kDetermined * E2.value;
+  return !three_element.lossless && E2.sd <= kWidestLogOfALoss * E2.value;
 }
 
 BarIdentification identify_bar(const std::vector<Shot>& shots,

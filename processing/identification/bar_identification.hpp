@@ -54,7 +54,7 @@ struct BarIdentification {
   std::vector<std::string> warnings;
 };
 
-/// Whether there is a loss, and not only what noise makes of one: E2 by three deviations.
+/// Whether there is a loss, and not only what noise makes of one (kWidestLogOfALoss of E2).
 [[nodiscard]] bool loss_shows(const BarFit& three_element);
 
 /// The whole identification of a bar from its shots: which waves travel in it, what comes back from

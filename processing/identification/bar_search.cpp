@@ -27,8 +27,6 @@ constexpr double kNearEnough = 0.1;
 /// valley that the data leave open.
 constexpr double kDoubtfulGain = 1e-2;
 constexpr double kLongestLogStep = 1.0;
-/// What is known of a loss as well as this, as deviation of the logarithms, is seen.
-constexpr double kWidestLogOfALoss = 0.3;
 
 ParameterPrior prior_of(const BarData& data, const BarModel& model) {
   const auto size = static_cast<Eigen::Index>(model.parameters());
