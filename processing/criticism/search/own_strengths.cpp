@@ -10,11 +10,18 @@
 #include "processing/criticism/search/amplitude_over_shots.hpp"
 #include "processing/criticism/search/hum_slopes.hpp"
 #include "processing/criticism/search/quiet_slopes.hpp"
+#include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/search_trials.hpp"
 
 namespace kolsky {
 
 namespace {
+
+/// Of what it takes to make a claim. What was found so once falls only by half: else it would come
+/// and go with the rest of the model.
+double share_asked(Claim claim) {
+  return claim == Claim::standing ? 0.5 : 1.0;
+}
 
 /// Standard deviation over mean.
 double spread_of(const Eigen::VectorXd& sizes) {
@@ -67,13 +74,12 @@ bool slopes_agree(const std::vector<double>& found, const std::vector<double>& b
 }
 
 /// Nearer to products than noise comes in one of a thousand, or in one of a hundred where slow
-/// noise does not gain as much, and not for one gauge's sake. What was found so once falls only by
-/// half: else it would come and go with the rest of the model.
+/// noise does not gain as much, and not for one gauge's sake.
 bool are_products(const ProductTest& test, Claim claim) {
-  const double share = claim == Claim::standing ? 0.5 : 1.0;
   const double chance = claim == Claim::beyond_slow_noise ? -4.6 : -6.9;
   constexpr double kBeyond = 25.0;
-  return test.log_p < share * chance && test.beyond_one_gauge > share * kBeyond;
+  return test.log_p < share_asked(claim) * chance &&
+         test.beyond_one_gauge > share_asked(claim) * kBeyond;
 }
 
 /// Slopes before each shot's pulse, sum over the gauges that an addition is in: of the addition
@@ -163,23 +169,20 @@ Eigen::MatrixXcd amplitudes_of(const Studied& studied, const std::string& id,
 
 /// What is alike at all gauges stands in their mean before the pulse; of what is found behind it
 /// only a part may show, for waves from gauge to gauge carry the rest: more than its sign is not
-/// asked for. @param claim  what was found so once may fall by half, as in `are_products`
+/// asked for.
 bool seen_at_all_gauges(const Slopes& slopes, const Campaign& campaign, Claim claim) {
-  const double share = claim == Claim::standing ? 0.5 : 1.0;
-  constexpr double kChance = -5.8;
   return std::inner_product(slopes.found.begin(), slopes.found.end(), slopes.before.begin(), 0.0) >
              0.0 &&
-         log_chance_of_common_slopes(campaign, slopes.of_others) < share * kChance;
+         log_chance_of_common_slopes(campaign, slopes.of_others) < share_asked(claim) * kFalseClaim;
 }
 
 /// A record is a fraction of a hum's period, in which a slope of each shot's own is nearly all of
 /// it: with phases free, whatever wanders slowly and alike at all gauges is a hum of some
 /// amplitude, but none that is well known.
 bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim) {
-  const double share = claim == Claim::standing ? 0.5 : 1.0;
   constexpr double kSigma = 5.0;
   const Amplitude amplitude = amplitude_over_shots(studied, id);
-  return amplitude.value > share * kSigma * amplitude.sd;
+  return amplitude.value > share_asked(claim) * kSigma * amplitude.sd;
 }
 
 /// Less the hum that was found in all of a record, what came before the pulse slopes no longer as
@@ -187,20 +190,18 @@ bool amplitude_stands(const Studied& studied, const std::string& id, Claim claim
 /// seen to turn together there, what they slope by must be more than that does.
 bool wanders_on(const Studied& studied, const EffectUse& hum, const Campaign& campaign,
                 const Slopes& slopes, Claim claim) {
-  const double share = claim == Claim::standing ? 0.5 : 1.0;
-  constexpr double kChance = -5.8;
   if (wanders_in_common(campaign) &&
-      log_chance_of_common_slopes(campaign, slopes.of_others) > share * kChance) {
+      log_chance_of_common_slopes(campaign, slopes.of_others) > share_asked(claim) * kFalseClaim) {
     return true;
   }
   if (hum.alike) {
-    return log_chance_of_common_slopes(campaign, slopes.of_all_additions) < kChance;
+    return log_chance_of_common_slopes(campaign, slopes.of_all_additions) < kFalseClaim;
   }
   SlopesByShot less = slopes_of_products(studied, hum.id(), campaign, slopes.of_others);
   for (std::size_t n = 0; n < less.size(); ++n) {
     std::ranges::transform(less[n], slopes.of_others[n], less[n].begin(), std::plus{});
   }
-  return log_chance_of_common_slopes(campaign, less) < kChance;
+  return log_chance_of_common_slopes(campaign, less) < kFalseClaim;
 }
 
 }  // namespace
@@ -231,9 +232,7 @@ bool own_strengths_confirmed(const Studied& studied, const std::string& id,
 }
 
 bool slow_noise_excluded(double log_chance, Claim claim) {
-  const double share = claim == Claim::standing ? 0.5 : 1.0;
-  constexpr double kChance = -5.8;
-  return log_chance < share * kChance;
+  return log_chance < share_asked(claim) * kFalseClaim;
 }
 
 OwnStrengths own_strengths_in(const Studied& studied, const std::string& id) {

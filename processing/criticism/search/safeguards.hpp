@@ -5,6 +5,9 @@
 
 namespace kolsky {
 
+/// ln of the chance of a false claim, or of a false "unknown": 0.3 %.
+inline constexpr double kFalseClaim = -5.8;
+
 /// What keeps a diagnosis from claiming what is not there. Each may be left out to see what it is
 /// good for; a claim made without one of them is none.
 struct Safeguards {

@@ -45,7 +45,7 @@ struct Diagnosis {
 
 struct DiagnosisOptions {
   std::size_t most_effects = 3;  ///< that are sought, those not counted that are no surprise
-  double log_alpha = -5.8;       ///< ln of the chance of a false claim, or a false "unknown": 0.3 %
+  double log_alpha = kFalseClaim;
   std::function<void(const std::string&)> progress = [](const std::string&) {};
   Safeguards safeguards{};
 };

@@ -8,6 +8,7 @@
 #include "processing/criticism/fitting/record_parts.hpp"
 #include "processing/criticism/search/candidate_table.hpp"
 #include "processing/criticism/search/candidates.hpp"
+#include "processing/criticism/search/safeguards.hpp"
 
 namespace kolsky {
 
@@ -200,9 +201,8 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
     before = std::move(left);
   }
   const Misfit& rest = fall.steps.back().misfit;
-  constexpr double kByChance = -5.8;  // as a diagnosis judges what remains
   fall.floor =
-      floor_of(last, rest.repeatable_log_p < kByChance ? Left::more : Left::noise, fall.shots);
+      floor_of(last, rest.repeatable_log_p < kFalseClaim ? Left::more : Left::noise, fall.shots);
   fall.signal = study.residuals().signal_energy() / all;
   fall.repeats = rest.repeatable_share * fall.signal;
   for (WaterfallStep& made : fall.steps) {
