@@ -77,7 +77,7 @@ bool explains(const Refit& refit, const SearchGround& ground) {
          allowed_by_formula(*refit.studied.model.find(candidate.id()));
 }
 
-bool confirmed_as_own_strengths(Refit& refit, const SearchGround& ground, SlowChances& slow) {
+bool confirm_own_strengths(Refit& refit, const SearchGround& ground, SlowChances& slow) {
   const std::string id = ground.candidates[refit.candidate].id();
   const auto by_itself = [&](Claim claim) {
     return own_strengths_confirmed(refit.studied, id, ground.study.campaign(), claim);

@@ -14,9 +14,10 @@ namespace kolsky {
 /// that its formula allows, and is no limit of another effect.
 [[nodiscard]] bool explains(const Refit& refit, const SearchGround& ground);
 
-/// Whether strengths that every shot has of its own are more than chance: by their products, or
-/// beyond what slow noise does, which is noted in the refit. Of other effects, that they have none.
-[[nodiscard]] bool confirmed_as_own_strengths(Refit& refit, const SearchGround& ground,
-                                              SlowChances& slow);
+/// Confirms strengths that every shot has of its own: by their products, or by what slow noise does
+/// not do, whose chance is put into the refit. @return whether they are more than chance; of
+///   effects that have none, true
+[[nodiscard]] bool confirm_own_strengths(Refit& refit, const SearchGround& ground,
+                                         SlowChances& slow);
 
 }  // namespace kolsky

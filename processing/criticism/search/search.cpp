@@ -29,7 +29,7 @@ std::vector<double> Search::known() const {
   return list;
 }
 
-std::vector<Refit> Search::refits() {
+std::vector<Refit> Search::refit_rivals() {
   const std::vector<std::size_t> chosen =
       worth_refitting(ground_, safeguards_.own_strengths ? &slow_chances_ : nullptr);
   std::vector<std::optional<Refit>> done(chosen.size());
@@ -38,7 +38,7 @@ std::vector<Refit> Search::refits() {
   });
   std::vector<Refit> list;
   for (auto& own : done) {
-    if (admissible(*own)) {
+    if (admit(*own)) {
       list.push_back(*std::move(own));
     } else {
       dismiss(*own);
@@ -52,9 +52,9 @@ std::vector<Refit> Search::refits() {
   return list;
 }
 
-bool Search::admissible(Refit& refit) {
+bool Search::admit(Refit& refit) {
   return explains(refit, ground_) &&
-         (!safeguards_.own_strengths || confirmed_as_own_strengths(refit, ground_, slow_chances_));
+         (!safeguards_.own_strengths || confirm_own_strengths(refit, ground_, slow_chances_));
 }
 
 void Search::dismiss(const Refit& refit) {
@@ -93,7 +93,7 @@ void Search::refine(std::vector<Refit>& list) {
       own = refitter_.refit_closely(std::move(own), worker);
     });
     std::erase_if(list, [&](Refit& own) {
-      if (admissible(own)) {
+      if (admit(own)) {
         return false;
       }
       dismiss(own);

@@ -38,8 +38,9 @@ class Search {
   /// By candidate: degrees of freedom by which noise is known in its direction.
   [[nodiscard]] std::vector<double> known() const;
 
-  /// The candidates worth it, refitted; the best first.
-  [[nodiscard]] std::vector<Refit> refits();
+  /// Refits the candidates worth it. @return those that may explain, the best first; the others are
+  ///   dismissed
+  [[nodiscard]] std::vector<Refit> refit_rivals();
 
   /// What was refitted and is no explanation.
   struct Dismissed {
@@ -50,7 +51,8 @@ class Search {
   [[nodiscard]] const std::map<std::string, Dismissed>& dismissed() const { return dismissed_; }
 
  private:
-  [[nodiscard]] bool admissible(Refit& refit);
+  /// @return whether it may explain anything; strengths of each shot's own are confirmed for it
+  [[nodiscard]] bool admit(Refit& refit);
   void dismiss(const Refit& refit);
   void refine(std::vector<Refit>& list);
 

@@ -95,7 +95,7 @@ std::optional<Choice> Chooser::choose_next(Search& search, const Studied& base) 
 
 Chooser::Found Chooser::found_by(Search& search, const Studied& base,
                                  const std::vector<std::string>& barred) {
-  Found found{search, search.refits(), {}, barred};
+  Found found{search, search.refit_rivals(), {}, barred};
   found.held_out = certify(search, found.refits, base);
   return found;
 }

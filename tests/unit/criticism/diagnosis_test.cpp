@@ -224,7 +224,7 @@ TEST(Search, DoesNotTakeARelaxationInTheSpecimensOwnPlaceForARival) {
   const Model start = filed_split_bar(truth);
   const Studied base = study.fit(start);
   Search search(study, base, start);
-  for (const Refit& refit : search.refits()) {
+  for (const Refit& refit : search.refit_rivals()) {
     EXPECT_NE(search.candidates()[refit.candidate].id(), "specimen-second-relaxation");
   }
 }
@@ -432,7 +432,7 @@ TEST(Search, AHumWeighsWhatItExplains) {
   const Model model = paper_model(BenchKind::bar, false);
   const Studied base = study.fit(model);
   Search search(study, base, model);
-  const std::vector<Refit> refits = search.refits();
+  const std::vector<Refit> refits = search.refit_rivals();
   const auto hum = std::find_if(refits.begin(), refits.end(),
                                 [](const Refit& refit) { return refit.products.has_value(); });
   ASSERT_NE(hum, refits.end());

@@ -57,7 +57,7 @@ TEST(EndReflection, IsFittedFarFromTheRecordsWhateverItsRank) {
   const Studied base = study.fit(model);
   ASSERT_GT(base.misfit.chi2_reduced, 3.0);
   Search search(study, base, model);
-  const std::vector<Refit> refits = search.refits();
+  const std::vector<Refit> refits = search.refit_rivals();
   const bool fitted = std::ranges::any_of(refits, [&](const Refit& refit) {
     return search.candidates()[refit.candidate].id() == "end-reflection";
   });
@@ -133,7 +133,7 @@ TEST(Gap, IsFittedInEveryVariantFarFromTheRecords) {
   ASSERT_GT(base.misfit.chi2_reduced, 3.0);
   Search search(study, base, model);
   std::vector<double> gaps_m;
-  for (const Refit& refit : search.refits()) {
+  for (const Refit& refit : search.refit_rivals()) {
     if (search.candidates()[refit.candidate].id() == "interface-gap") {
       gaps_m.push_back(refit.studied.model.find("interface-gap")->values[0].value);
     }
