@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "processing/reduction/cut_off.hpp"
 #include "processing/reduction/formatted.hpp"
 #include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/record_faults.hpp"
@@ -29,8 +30,6 @@ constexpr double kFewQuietSamples = 64;
 constexpr double kUnloaded = 0.10;
 /// The largest strain within the last of so many parts of the histories: it may well grow on.
 constexpr std::size_t kLastPart = 50;
-/// Codes of a record with noise hardly ever stand still for so long at their largest.
-constexpr std::size_t kFlatTop = 10;
 
 /// The loading: from the start to the largest strain.
 Check equilibrium(const Reduction& r, std::size_t end) {
@@ -498,13 +497,12 @@ FlatTop longest_flat_top(const Shot& shot) {
   for (std::size_t i = 0; i < gauges; ++i) {
     const ChannelRecord& channel = shot.channels[i];
     if (channel.code_min != Code::min() || channel.code_max != Code::max()) continue;
-    const auto [least, most] = std::minmax_element(channel.codes.begin(), channel.codes.end());
-    std::size_t run = 0;
-    for (std::size_t n = 0; n < channel.codes.size(); ++n) {
-      const std::int32_t code = channel.codes[n];
-      const bool same = n > 0 && code == channel.codes[n - 1];
-      run = code == *least || code == *most ? (same ? run + 1 : 1) : 0;
-      if (run > longest.samples) longest = {channel.gauge, run};
+    longest.ends_filed = false;
+    // In codes: a unit is no matter.
+    const std::vector<double> record(channel.codes.begin(), channel.codes.end());
+    if (const auto top = cut_off(record); top && top->count > longest.samples) {
+      longest.gauge = channel.gauge;
+      longest.samples = top->count;
     }
   }
   return longest;
@@ -512,17 +510,17 @@ FlatTop longest_flat_top(const Shot& shot) {
 
 Check clipping(const FlatTop& flat_top) {
   Check check{.name = "clipping", .limit = 0.0, .unit = "samples", .text = {}};
-  if (flat_top.samples >= kFlatTop) {
+  if (flat_top.samples > 0) {
     check.value = static_cast<double>(flat_top.samples);
     check.verdict = Verdict::warn;
-    check.text =
-        formatted("stands at the record's largest value for %zu samples", flat_top.samples);
-    check.text = flat_top.gauge + " " + check.text +
-                 ": clipped before it was imported? A table does not say where its converter ends";
+    check.text = flat_top.gauge + " stays at its record's extreme for " +
+                 std::to_string(flat_top.samples) +
+                 " samples: clipped before it was imported? A table does not say where its "
+                 "converter ends";
     return check;
   }
-  check.text = flat_top.samples > 0 ? "no flat top; a table does not say where its converter ends"
-                                    : "no code at the converter's ends";
+  check.text = flat_top.ends_filed ? "no code at the converter's ends"
+                                   : "no flat top; a table does not say where its converter ends";
   return check;
 }
 

@@ -18,16 +18,17 @@ inline constexpr double kEquilibriumLimit = 0.07;
 /// codes. Empty when they can.
 [[nodiscard]] std::string unusable_because(const Shot& shot);
 
-/// The longest stretch in which a gauge stands at its record's largest or least value.
+/// What records show of the ends of their converters where nobody filed these, as of a table.
 struct FlatTop {
-  std::string gauge;
-  std::size_t samples = 0;
+  bool ends_filed = true;   ///< by all gauges
+  std::string gauge;        ///< cut off for the longest; empty: none
+  std::size_t samples = 0;  ///< for so long
 };
 
-/// Of all gauges whose converter's ends are not known (a table's), the longest; of none otherwise.
+/// By where the gauges' records are cut off (cut_off.hpp).
 [[nodiscard]] FlatTop longest_flat_top(const Shot& shot);
 
-/// A pass, or a warning where a record of unknown ends stands at its largest value for long.
+/// A pass, or a warning where a record of unknown ends was cut off.
 [[nodiscard]] Check clipping(const FlatTop& flat_top);
 
 /// What to do about a shot that is `unusable_because`.

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "processing/reduction/quality.hpp"
 #include "processing/reduction/record_faults.hpp"
 
 namespace kolsky {
@@ -69,31 +73,54 @@ TEST(CutOff, IsSeenAtBothEndsAtOnce) {
   EXPECT_GT(top->count, 40U);
 }
 
-// A pulse that pushes only: its record is least where it is quiet, at one code for long.
-TEST(CutOff, IsNotAQuietRecordAtOneCode) {
+/// A pulse that pushes only: its record is least where it is quiet, at one code for long.
+std::vector<double> quiet_at_one_code() {
   std::vector<double> record(1200, 0.0);
   for (std::size_t n = 300; n < 500; ++n) {
     const double phase = std::numbers::pi * static_cast<double>(n - 300) / 200.0;
     record[n] = kStep_V * std::round(0.2 * std::sin(phase) / kStep_V);
   }
-  EXPECT_FALSE(cut_off(record));
+  return record;
 }
 
-TEST(SpoiledBecause, NamesTheGaugeAndTheSample) {
+TEST(CutOff, IsNotAQuietRecordAtOneCode) {
+  EXPECT_FALSE(cut_off(quiet_at_one_code()));
+}
+
+/// A shot of one gauge as a table has it: no ends of the converter are filed.
+Shot of_a_table(const std::vector<double>& record) {
   Shot shot;
   shot.bench.gauges.emplace_back().name = "g1";
   shot.rate = {1'000'000, 1};
   ChannelRecord& channel = shot.channels.emplace_back();
   channel.gauge = "g1";
   channel.scale = kStep_V;
-  for (const double value : converted(two_pulses(-0.07, 0.2), -1.0, 0.11)) {
+  channel.code_min = std::numeric_limits<std::int32_t>::min();
+  channel.code_max = std::numeric_limits<std::int32_t>::max();
+  for (const double value : record) {
     channel.codes.push_back(static_cast<std::int32_t>(std::lround(value / kStep_V)));
   }
-  const auto top = cut_off(converted(two_pulses(-0.07, 0.2), -1.0, 0.11));
+  return shot;
+}
+
+TEST(FlatTop, OfATableIsWhereItsRecordIsCutOff) {
+  const Check quiet = clipping(longest_flat_top(of_a_table(quiet_at_one_code())));
+  EXPECT_EQ(quiet.verdict, Verdict::pass);
+  EXPECT_NE(quiet.text.find("a table does not say"), std::string::npos) << quiet.text;
+  const std::vector<double> cut = converted(two_pulses(-0.07, 0.2), -1.0, 0.11);
+  const Check clipped = clipping(longest_flat_top(of_a_table(cut)));
+  EXPECT_EQ(clipped.verdict, Verdict::warn);
+  EXPECT_EQ(clipped.value, static_cast<double>(cut_off(cut)->count));
+  EXPECT_EQ(clipped.text.find("g1 stays at"), 0U) << clipped.text;
+}
+
+TEST(SpoiledBecause, NamesTheGaugeAndTheSample) {
+  const std::vector<double> record = converted(two_pulses(-0.07, 0.2), -1.0, 0.11);
+  const auto top = cut_off(record);
   ASSERT_TRUE(top);
-  EXPECT_EQ(spoiled_because(shot), "gauge g1 stays at its extreme for " +
-                                       std::to_string(top->count) + " samples from " +
-                                       std::to_string(top->first) + " on: it was cut off there");
+  EXPECT_EQ(spoiled_because(of_a_table(record)),
+            "gauge g1 stays at its extreme for " + std::to_string(top->count) + " samples from " +
+                std::to_string(top->first) + " on: it was cut off there");
 }
 
 }  // namespace
