@@ -155,7 +155,7 @@ Reduction Reducer::State::reduce(const Shot& shot) {
         return std::make_unique<ShpbTables>(std::move(numbers), plan, told.theory, shot.bench,
                                             material, in, out);
       });
-  Reduction reduction = shpb_pass(shot, in, out, told, own_plans, own_tables);
+  Reduction reduction = ShpbPass(shot, in, out, told, own_plans, own_tables).run();
   ask_how_gauges_are_connected(shot, reduction);
   put_failures_first(reduction.quality.checks);
   reduction.bar_model =
