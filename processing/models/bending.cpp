@@ -40,22 +40,25 @@ Complex curvature_ratio(const BarScene& bar, Complex s, Complex J, double x, boo
 
 }  // namespace
 
-void add_bending(const Scene& scene, std::size_t reference,
+bool bends(const Scene& scene) {
+  return std::ranges::any_of(scene.gauges, [](const GaugeScene& gauge) {
+    return gauge.offset_m != 0.0 && gauge.bar == 0;
+  });
+}
+
+void add_bending(const Scene& scene, std::span<const Complex> struck_end,
                  std::vector<std::vector<Complex>>& readings) {
   const BarScene& bar = scene.bars.front();
-  const double x0 = scene.gauges[reference].position_m;
   for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
     const GaugeScene& gauge = scene.gauges[j];
     if (gauge.offset_m == 0.0 || gauge.bar != 0) {
       continue;
     }
     for (std::size_t k = 0; k < scene.s.size(); ++k) {
-      // The force at the end, in units of the wave at the reference gauge. Moment over E I at unit
-      // eccentricity: force J / (pi a^4 / 4), times a.
-      const Complex at_end = std::exp(bar.gamma_per_m[k] * x0);
+      // Moment over E I at unit eccentricity: force J / (pi a^4 / 4), times a.
       const Complex s = scene.s[k];
       const Complex stress =
-          bar.density_kg_m3 * s * s / (bar.gamma_per_m[k] * bar.gamma_per_m[k]) * at_end;
+          bar.density_kg_m3 * s * s / (bar.gamma_per_m[k] * bar.gamma_per_m[k]) * struck_end[k];
       const Complex J = bar.J_per_Pa[k];
       readings[j][k] += gauge.offset_m * 4.0 / bar.radius_m * stress * J *
                         curvature_ratio(bar, s, J, gauge.position_m, gauge.bends_as_deflection);

@@ -149,7 +149,37 @@ Junction junction(const Scene& scene, const Crossing& crossing, std::size_t at,
   return j;
 }
 
-void set_bar_readings(const Scene& scene, std::size_t reference, Transfers& transfers) {
+/// Mean strain of waves both ways at the end that is struck, per unit source at the reference gauge
+/// and, beside a nonlinear specimen, per unit q. Empty where no gauge reads bending.
+struct StruckEnd {
+  std::vector<Complex> per_source, per_q;
+};
+
+StruckEnd struck_end_of_bar(const Scene& scene, std::size_t reference) {
+  const BarScene& bar = scene.bars.front();
+  StruckEnd end{over(bar, -scene.gauges[reference].position_m), {}};
+  const std::vector<Complex> round_trip = over(bar, 2.0 * bar.length_m);
+  for (std::size_t k = 0; k < scene.s.size(); ++k) {
+    end.per_source[k] *= 1.0 + bar.reflection(k) * round_trip[k];
+  }
+  return end;
+}
+
+/// @param arriving  at the specimen, per unit source
+StruckEnd struck_end_of_joint(const Scene& scene, std::size_t reference,
+                              const std::vector<Junction>& joints,
+                              const std::vector<Complex>& arriving) {
+  const BarScene& bar = scene.bars.front();
+  const std::vector<Complex> back = over(bar, bar.length_m);
+  StruckEnd end{over(bar, -scene.gauges[reference].position_m), {}};
+  for (std::size_t k = 0; k < scene.s.size(); ++k) {
+    end.per_source[k] += joints[k].reflected * arriving[k] * back[k];
+    end.per_q.push_back(joints[k].reflected_q * back[k]);
+  }
+  return end;
+}
+
+StruckEnd set_bar_readings(const Scene& scene, std::size_t reference, Transfers& transfers) {
   const BarScene& bar = scene.bars.front();
   const double x0 = scene.gauges[reference].position_m;
   for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
@@ -166,6 +196,7 @@ void set_bar_readings(const Scene& scene, std::size_t reference, Transfers& tran
       transfers.reading[j][k] *= bar.surface_over_mean[k];
     }
   }
+  return bends(scene) ? struck_end_of_bar(scene, reference) : StruckEnd{};
 }
 
 /// A gauge of the input bar reads the source and what the joint returns; one of the output bar what
@@ -208,7 +239,7 @@ void set_specimen(const std::vector<Junction>& joints, const std::vector<Complex
   }
 }
 
-void set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& transfers) {
+StruckEnd set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& transfers) {
   const BarScene& in = scene.bars[0];
   const BarScene& out = scene.bars[1];
   const std::vector<Complex> round_trip = over(out, 2.0 * out.length_m);
@@ -226,11 +257,18 @@ void set_shpb_readings(const Scene& scene, std::size_t reference, Transfers& tra
   for (std::size_t j = 0; j < scene.gauges.size(); ++j) {
     set_reading(scene, reference, joints, arriving, j, transfers);
   }
+  return bends(scene) ? struck_end_of_joint(scene, reference, joints, arriving) : StruckEnd{};
 }
 
 /// Bending, the sensors' own factors, then what neighbours pick up.
-void pass_sensors(const Scene& scene, std::size_t reference, Transfers& transfers) {
-  add_bending(scene, reference, transfers.reading);
+void pass_sensors(const Scene& scene, std::size_t reference, const StruckEnd& end,
+                  Transfers& transfers) {
+  if (!end.per_source.empty()) {
+    add_bending(scene, end.per_source, transfers.reading);
+  }
+  if (!end.per_q.empty() && !transfers.reading_of_q.empty()) {
+    add_bending(scene, end.per_q, transfers.reading_of_q);
+  }
   for (auto* readings : {&transfers.reading, &transfers.reading_of_q}) {
     if (readings->empty()) {
       continue;
@@ -283,12 +321,9 @@ void set_elementary_waves(Scene& scene) {
 Transfers transfers_of(const Scene& scene, std::size_t reference) {
   Transfers transfers;
   transfers.reading.assign(scene.gauges.size(), Transfers::Spectrum(scene.s.size()));
-  if (scene.bars.size() == 1) {
-    set_bar_readings(scene, reference, transfers);
-  } else {
-    set_shpb_readings(scene, reference, transfers);
-  }
-  pass_sensors(scene, reference, transfers);
+  const StruckEnd end = scene.bars.size() == 1 ? set_bar_readings(scene, reference, transfers)
+                                               : set_shpb_readings(scene, reference, transfers);
+  pass_sensors(scene, reference, end, transfers);
   return transfers;
 }
 

@@ -10,7 +10,7 @@ class AmplitudeDependence final : public Effect {
       : Effect({
             .id = "amplitude-dependence",
             .stage = Stage::material,
-            .definition = "all moduli x (1 + b peak strain of the shot)",
+            .definition = "all moduli x (1 + b peak strain of the shot, at the first gauge)",
             .reference = "docs/methods/effects.md",
             .kinds = {BenchKind::bar, BenchKind::shpb},
             .parameters = {{"b", "-", 0.0, -200.0, 200.0, 1.0, {}}},

@@ -104,6 +104,16 @@ TEST(Added, AFaceThatPartsPullsNothing) {
   }
 }
 
+// The moment is that of the force at the end. A wave that comes back to it, free by then, makes
+// none.
+TEST(Added, BendingIsNotMadeByWavesThatComeBack) {
+  testing::CampaignWishes wished = wishes(false);
+  wished.samples = 3000;  // 1.1 round trips and more
+  const Added added = fitted_with(wished, {{"end-reflection", "0.05"}, {"bending", "3e-4"}});
+  EXPECT_LT(added.off("bending", 0, 3e-4), 3.5) << added.value("bending", 0).value;
+  EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1);
+}
+
 /// A model that was fitted without what is hidden, and fitted again with it.
 struct AddedLater {
   testing::Campaign truth;
