@@ -25,9 +25,11 @@ struct ModelValue {
 /// One effect as a model uses it.
 struct EffectUse {
   const Effect* effect = nullptr;
-  std::string gauge;               ///< for effects of one gauge
-  bool per_shot = false;           ///< strengths of their own for every shot
-  bool alike = false;              ///< the same at all gauges, where each could have its own
+  std::string gauge;      ///< for effects of one gauge
+  bool per_shot = false;  ///< strengths of their own for every shot
+  bool alike = false;     ///< the same at all gauges, where each could have its own
+  /// Whether one strength serves all shots or each has its own is for the next fit to find.
+  bool form_open = false;
   std::vector<ModelValue> values;  ///< one per parameter; of strengths per shot or gauge the mean
   /// Of the priors among each other, parameters x parameters row by row; empty: independent.
   std::vector<double> prior_correlation{};

@@ -205,6 +205,7 @@ struct EditSettings {
   std::string effect;
   std::optional<std::string> output;
   bool per_shot = false;
+  bool shared = false;
   std::optional<std::string> note;
   std::optional<std::uint64_t> to;  ///< of a reversion: a step
 };
@@ -247,6 +248,7 @@ EffectUse put_in(ModelFile& file, EffectUse use, const EditSettings& settings) {
   EffectUse* held = file.model.find(use.id());
   if (held == nullptr) {
     use.per_shot = settings.per_shot;
+    use.form_open = use.effect->about().per_shot && !settings.per_shot && !settings.shared;
     file.model.effects.push_back(use);
     return use;
   }
@@ -273,6 +275,9 @@ int add(const EditSettings& settings, Context& context) {
   }
   if (settings.per_shot && !use.effect->about().per_shot) {
     throw InputError("effect " + use.id(), "is one for all shots", "leave --per-shot out");
+  }
+  if (settings.per_shot && settings.shared) {
+    throw InputError("--shared", "and --per-shot exclude each other", "give one of them, or none");
   }
   const bool freed = file.model.find(use.id()) != nullptr;
   begin_step(file, "add " + use.id());
@@ -430,7 +435,11 @@ Command edit_command(const std::string& name, const std::string& purpose,
   }
   if (name == "add") {
     command.arguments.push_back(
-        flag("--per-shot", "with a strength of its own for every shot", &s.per_shot));
+        flag("--per-shot",
+             "with a strength of its own for every shot (a drift, a hum); else the next fit finds "
+             "whether that takes it",
+             &s.per_shot));
+    command.arguments.push_back(flag("--shared", "with one strength for all shots", &s.shared));
   }
   if (name == "revert") {
     command.arguments.push_back(

@@ -104,6 +104,12 @@ void require_correlation(const TomlTable& table, const std::vector<double>& own,
   }
 }
 
+/// No fit has found any of its numbers yet, and one is to.
+bool awaits_a_fit(const EffectUse& use) {
+  return std::ranges::any_of(use.values, &ModelValue::free) &&
+         std::ranges::all_of(use.values, [](const ModelValue& value) { return value.sd == 0.0; });
+}
+
 EffectUse read_use(const TomlTable& table, const Model& model) {
   table.expect({"id", "per_shot", "alike", "parameters", "prior_correlation"});
   EffectUse use;
@@ -130,6 +136,7 @@ EffectUse read_use(const TomlTable& table, const Model& model) {
       }
     }
   }
+  use.form_open = use.effect->about().per_shot && !table.has("per_shot") && awaits_a_fit(use);
   if (table.has("prior_correlation")) {
     use.prior_correlation = table.numbers("prior_correlation");
     require_correlation(table, use.prior_correlation, use);
@@ -191,6 +198,8 @@ std::string format_use(const EffectUse& use) {
   }
   if (use.per_shot) {
     text += "per_shot = true\n";
+  } else if (use.effect->about().per_shot && !use.form_open && awaits_a_fit(use)) {
+    text += "per_shot = false\n";
   }
   if (!use.prior_correlation.empty()) {
     text += "prior_correlation = [";

@@ -1,9 +1,13 @@
 #include "processing/criticism/fitting/study.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
 #include "processing/criticism/fitting/moduli_starts.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
 
 namespace kolsky {
 
@@ -80,8 +84,26 @@ Study::Attempt Study::best_attempt(const Model& model) {
   return std::move(better);
 }
 
+Model Study::formed(Model model) {
+  constexpr double kShotsDisagree = -6.9;  // ln of one in a thousand, were all of one strength
+  for (EffectUse& use : model.effects) {
+    if (!std::exchange(use.form_open, false) || campaign_.shots.size() < 2) {
+      continue;
+    }
+    Attempt shared = best_attempt(model);
+    use.per_shot = true;
+    const Attempt own = best_attempt(model);
+    // By one noise, that which the richer of both leaves.
+    const ModelFit beside = fit_model(shared.composition, residuals_, executor_, shared.fit.theta);
+    const auto more = static_cast<double>(own.fit.theta.size() - shared.fit.theta.size());
+    const double gain = beside.objective() - own.fit.objective();
+    use.per_shot = log_chi2_tail(std::max(0.0, gain), more) < kShotsDisagree;
+  }
+  return model;
+}
+
 Studied Study::fit(const Model& model, LearnNoise learn) {
-  auto [started, composition, fit] = best_attempt(model);
+  auto [started, composition, fit] = best_attempt(formed(model));
   if (learn == LearnNoise::yes) {
     residuals_.calibrate(composition, fit.theta);
     fit = fit_model(composition, residuals_, executor_, fit.theta);

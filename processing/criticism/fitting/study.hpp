@@ -31,6 +31,7 @@ class Study {
   /// Fits from wherever the model's moduli are, and where an earlier fit has led them astray from
   /// the library's too. What was just added begins at the best of its auxiliary parameters' starts
   /// or of a few sizes, and what is free to choose among a few is held at the best from then on.
+  /// Where it is open whether shots share a strength, a likelihood-ratio test at 0.1 % settles it.
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
@@ -48,6 +49,8 @@ class Study {
   [[nodiscard]] const Workers& executor() const { return executor_; }
 
  private:
+  /// The model with every form that is open settled.
+  [[nodiscard]] Model formed(Model model);
   [[nodiscard]] Model begun(Model model);
   struct Attempt {
     Model begun;

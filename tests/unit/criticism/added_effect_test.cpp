@@ -114,6 +114,35 @@ TEST(Added, BendingIsNotMadeByWavesThatComeBack) {
   EXPECT_LT(added.studied.misfit.chi2_reduced, 1.1);
 }
 
+struct Form {
+  std::string hidden;
+  std::string name;
+  bool per_shot;
+};
+
+class OpenForm : public ::testing::TestWithParam<Form> {};
+
+// Whoever adds a hum or a drift does not know whether shots share it.
+TEST_P(OpenForm, IsSettledByTheFit) {
+  testing::Campaign truth = testing::draw_campaign(wishes(false));
+  testing::hide(truth, testing::parse_effect(GetParam().hidden));
+  Model model = paper_model(BenchKind::bar, false);
+  model.effects.push_back(use_named(GetParam().name));
+  model.effects.back().form_open = true;
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Studied added = study.fit(model);
+  EXPECT_EQ(added.model.find(GetParam().name)->per_shot, GetParam().per_shot);
+  EXPECT_FALSE(added.model.find(GetParam().name)->form_open);
+  EXPECT_LT(added.misfit.chi2_reduced, 1.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(HumsAndDrifts, OpenForm,
+                         ::testing::Values(Form{"mains-hum=3e-5", "mains-hum", true},
+                                           Form{"mains-hum=3e-5,phase=0.3", "mains-hum", false},
+                                           Form{"baseline-drift:g2=0.1", "baseline-drift:g2",
+                                                false}));
+
 /// A model that was fitted without what is hidden, and fitted again with it.
 struct AddedLater {
   testing::Campaign truth;

@@ -478,5 +478,27 @@ TEST(ModelFile, RefusesAPriorThatIsNoDeviation) {
   }
 }
 
+// An effect that was added is fitted either way unless its file says which, and stays so.
+TEST(ModelFile, KeepsWhetherAFormIsOpen) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  file.model.effects.push_back(use_named("mains-hum"));
+  const auto again = [&file] {
+    return *parse_model(format_model(file), "m.toml").model.find("mains-hum");
+  };
+  EXPECT_FALSE(again().form_open);
+  EXPECT_FALSE(again().per_shot);
+  file.model.effects.back().form_open = true;
+  EXPECT_TRUE(again().form_open);
+  file.model.effects.back().form_open = false;
+  file.model.effects.back().per_shot = true;
+  EXPECT_TRUE(again().per_shot);
+  EXPECT_FALSE(again().form_open);
+  // What a fit has found is found.
+  file.model.effects.back().per_shot = false;
+  file.model.effects.back().values.front().sd = 1e-7;
+  EXPECT_FALSE(again().form_open);
+}
+
 }  // namespace
 }  // namespace kolsky
