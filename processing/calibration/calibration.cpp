@@ -6,6 +6,7 @@
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/calibration/part_fit.hpp"
+#include "processing/identification/bar_misfit.hpp"
 #include "processing/models/material_effects.hpp"
 
 namespace kolsky {

@@ -14,6 +14,7 @@
 #include "processing/criticism/fitting/study.hpp"
 #include "processing/criticism/records/judged_band.hpp"
 #include "processing/criticism/search/candidates.hpp"
+#include "processing/identification/bar_misfit.hpp"
 #include "processing/identification/known_unknowns.hpp"
 #include "processing/models/material_effects.hpp"
 #include "processing/waves/bar_modes.hpp"

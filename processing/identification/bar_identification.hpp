@@ -65,16 +65,4 @@ struct BarIdentification {
                                              const BarIdentificationOptions& options,
                                              const Workers& workers = {});
 
-/// What gauge 0 of a shot foretells for the others, by a fit (paper, Fig. 21).
-struct ForetoldGauge {
-  std::string name;
-  std::vector<double> measured, foretold;  ///< strain, low-passed alike
-};
-struct ForetoldShot {
-  std::string id;
-  std::vector<double> time_s;  ///< from the first sample
-  std::vector<ForetoldGauge> gauges;
-};
-[[nodiscard]] std::vector<ForetoldShot> foretell(const std::vector<Shot>& shots, const BarFit& fit);
-
 }  // namespace kolsky

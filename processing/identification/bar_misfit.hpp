@@ -6,6 +6,9 @@
 
 namespace kolsky {
 
+/// Above this reduced chi2 a fit leaves more than noise.
+inline constexpr double kMoreThanNoise = 1.3;
+
 /// What a fit leaves of a bar's shots in one octave of frequency, in the power of what is taken for
 /// noise: 1 where it is noise alone.
 struct OctaveLeft {

@@ -7,6 +7,7 @@
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/figure/figure.hpp"
 #include "processing/identification/bar_identification.hpp"
+#include "processing/identification/foretold_shots.hpp"
 #include "processing/uncertainty/fit_draws.hpp"
 
 namespace kolsky::cli {

@@ -15,6 +15,7 @@
 
 #include "processing/base/error.hpp"
 #include "processing/identification/better_solid.hpp"
+#include "processing/identification/foretold_shots.hpp"
 #include "tests/generators/bar_shots.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/generators/spectrum_coverage.hpp"
