@@ -91,7 +91,7 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
                                       {"parameters", describe_parameters(studied.model)},
                                       {"effects", describe_effects(studied.model)},
                                       {"strained", describe_strained(studied.model)},
-                                      {"notes", std::move(notes)}})
+                                      {"notes", notes}})
                 << "\n";
     return kDone;
   }

@@ -102,7 +102,7 @@ std::string legend_text(const std::vector<CandidateResult>& shown) {
         "records shows it"},
        {CandidateVerdict::not_needed, "noise gains as much, or others explain it"}}};
   for (const auto& [verdict, meaning] : kMeanings) {
-    if (std::ranges::any_of(shown, [&](const auto& c) { return c.verdict == verdict; })) {
+    if (std::ranges::count(shown, verdict, &CandidateResult::verdict) > 0) {
       text += fmt::format("  {}: {}.\n", kolsky::name_of(verdict), meaning);
     }
   }
