@@ -24,8 +24,8 @@ Argument dispersion_option(std::string help, std::optional<std::string>* target,
 
 Argument solid_option(std::string name, std::string help, std::optional<std::string>* target) {
   Argument solid = option(std::move(name), "FAMILY", std::move(help), target);
-  solid.choices = {"three-element", "four-element-fluid", "two-kelvin",
-                   "three-kelvin",  "fractional",         "auto"};
+  solid.choices = {"three-element", "four-element-fluid", "two-kelvin", "three-kelvin",
+                   "four-kelvin",   "fractional",         "auto"};
   return solid;
 }
 

@@ -85,6 +85,10 @@ std::vector<double> first_guess(const BarData& data, SolidKind solid) {
     case SolidKind::three_kelvin:
       guess = {E1, 3.0 * E2, 0.3 * eta2, 3.0 * E2, 3.0 * eta2, 3.0 * E2, 30.0 * eta2};
       break;
+    case SolidKind::four_kelvin:
+      guess = {E1,       4.0 * E2,    0.4 * eta2, 4.0 * E2,    4.0 * eta2,
+               4.0 * E2, 40.0 * eta2, 4.0 * E2,   400.0 * eta2};
+      break;
     case SolidKind::fractional:
       guess = {E1, E2, eta2, 0.9};
       break;

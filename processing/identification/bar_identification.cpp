@@ -278,14 +278,40 @@ const BarFit* choose_three_elements(const BarIdentificationOptions& options, con
 std::vector<SolidKind> solids_to_try(const BarIdentificationOptions& options,
                                      const BarFit& three_element) {
   std::vector<SolidKind> solids;
-  for (const SolidKind solid : {SolidKind::two_kelvin, SolidKind::four_element_fluid,
-                                SolidKind::fractional, SolidKind::three_kelvin}) {
+  for (const SolidKind solid :
+       {SolidKind::two_kelvin, SolidKind::four_element_fluid, SolidKind::fractional,
+        SolidKind::three_kelvin, SolidKind::four_kelvin}) {
     const bool asked = options.solid == solid;
     // Families differ in how they lose: of a bar that loses nothing none is better than another.
     const bool compared = (options.compare_solids || !options.solid) && loss_shows(three_element) &&
-                          solid != SolidKind::three_kelvin;
+                          kelvin_branches(solid) <= 2;
     if (asked || compared) {
       solids.push_back(solid);
+    }
+  }
+  return solids;
+}
+
+/// Other families than three elements, and Kelvin branches beyond two for as long as each is
+/// clearly ahead of one fewer: whichever family leads so far, since a bar of three branches may be
+/// nearer to a fractional one than to two.
+Explanations::Solids families_of(const BarFit& three_element, const std::vector<SolidKind>& kinds,
+                                 Explanations& explanations) {
+  Explanations::Solids solids = explanations.solids(three_element, kinds);
+  const auto two = std::ranges::find(kinds, SolidKind::two_kelvin);
+  if (solids.three_element.lossless || two == kinds.end()) {
+    return solids;
+  }
+  const auto ahead = [](const BarFit* more, const BarFit& fewer) {
+    return more != nullptr && more->log_evidence > fewer.log_evidence + kToldApart;
+  };
+  const BarFit* fewer = &three_element;
+  const BarFit* more = solids.others[static_cast<std::size_t>(two - kinds.begin())];
+  while (ahead(more, *fewer)) {
+    fewer = more;
+    more = explanations.branch_more(three_element, *fewer);
+    if (ahead(more, *fewer) && std::ranges::find(solids.others, more) == solids.others.end()) {
+      solids.others.push_back(more);
     }
   }
   return solids;
@@ -308,7 +334,7 @@ struct EndWithSolids {
 EndWithSolids settle_end(const BarIdentificationOptions& options, const BarData& data,
                          const BarFit& chosen, const std::vector<SolidKind>& kinds,
                          Explanations& explanations) {
-  EndWithSolids settled{&chosen, explanations.solids(chosen, kinds)};
+  EndWithSolids settled{&chosen, families_of(chosen, kinds, explanations)};
   if (kinds.empty() || options.far_end || data.two_passes() ||
       chosen.far_end != FarEndReturn::partial) {
     return settled;
@@ -317,7 +343,7 @@ EndWithSolids settle_end(const BarIdentificationOptions& options, const BarData&
   if (whole.fit == nullptr) {
     return settled;
   }
-  EndWithSolids other{whole.fit, explanations.solids(*whole.fit, kinds)};
+  EndWithSolids other{whole.fit, families_of(*whole.fit, kinds, explanations)};
   const bool does_as_well = best_evidence(*whole.fit, other.solids) + kPartialAhead >
                             best_evidence(chosen, settled.solids);
   return does_as_well ? std::move(other) : std::move(settled);
@@ -350,14 +376,6 @@ void choose_solid(const BarIdentificationOptions& options, const BarData& data,
   std::vector<const BarFit*>& over_solids = solids.others;
   over_solids.insert(over_solids.begin(), &three_element);
   Best best = best_of(over_solids);
-  if (best.fit != nullptr && best.fit->solid == SolidKind::two_kelvin && !options.solid) {
-    // One branch more for as long as the records are evidence for it; a fourth none has shown.
-    const BarFit* const third = explanations.third_branch(three_element, *best.fit);
-    if (third != nullptr && third->log_evidence > best.fit->log_evidence + kToldApart) {
-      over_solids.push_back(third);
-      best = best_of(over_solids);
-    }
-  }
   while (!options.solid && best.fit != &three_element) {
     const auto place = std::find(over_solids.begin(), over_solids.end(), best.fit);
     *place = explanations.finished(theory_of(*best.fit));

@@ -35,23 +35,40 @@ std::vector<double> near_three_elements(SolidKind solid, const std::vector<doubl
       return {E1, E2, eta2, E2 + std::log(10.0), slow};
     case SolidKind::three_kelvin:
       return {E1, E2, eta2, E2 + std::log(10.0), slow, E2 + std::log(10.0), fast};
+    case SolidKind::four_kelvin: {
+      const double between = E2 + std::log(10.0 * kTypicalTime_s);
+      const double weak = E2 + std::log(10.0);
+      return {E1, E2, eta2, weak, slow, weak, fast, weak, between};
+    }
     case SolidKind::fractional:
       return {E1, E2, eta2, std::log(0.98)};
   }
   return logs;
 }
 
-/// Two Kelvin branches, as logarithms, with a weak third: ten times faster than the faster of them,
-/// between them, and ten times slower than the slower.
-std::vector<std::vector<double>> with_third_branch(const std::vector<double>& at) {
-  const double E = std::max(at[1], at[3]) + std::log(10.0);
-  const double first = at[2] - at[1];
-  const double second = at[4] - at[3];
+/// Kelvin branches, as logarithms, with a weak one more: ten times faster than the fastest of them,
+/// between any two neighbours in time, and ten times slower than the slowest.
+std::vector<std::vector<double>> with_branch_more(const std::vector<double>& at,
+                                                  std::size_t branches) {
+  const double away = std::log(10.0);
+  const auto end = static_cast<std::ptrdiff_t>(1 + 2 * branches);
+  std::vector<double> log_times;
+  double weakest = at[1];
+  for (std::size_t i = 1; i < static_cast<std::size_t>(end); i += 2) {
+    log_times.push_back(at[i + 1] - at[i]);
+    weakest = std::max(weakest, at[i]);
+  }
+  std::ranges::sort(log_times);
+  std::vector<double> places{log_times.front() - away};
+  for (std::size_t i = 1; i < log_times.size(); ++i) {
+    places.push_back(0.5 * (log_times[i - 1] + log_times[i]));
+  }
+  places.push_back(log_times.back() + away);
   std::vector<std::vector<double>> starts;
-  for (const double log_time : {std::min(first, second) - std::log(10.0), 0.5 * (first + second),
-                                std::max(first, second) + std::log(10.0)}) {
+  for (const double log_time : places) {
+    const double E = weakest + away;
     std::vector<double>& start = starts.emplace_back(at);
-    start.insert(start.begin() + 5, {E, E + log_time});
+    start.insert(start.begin() + end, {E, E + log_time});
   }
   return starts;
 }
@@ -300,15 +317,26 @@ Explanations::Solids Explanations::solids(const BarFit& three_element,
   return result;
 }
 
-const BarFit* Explanations::third_branch(const BarFit& three_element, const BarFit& two_kelvin) {
-  Entry& entry = add({two_kelvin.theory, SolidKind::three_kelvin, two_kelvin.far_end});
+const BarFit* Explanations::branch_more(const BarFit& three_element, const BarFit& fewer) {
+  const auto solid = one_branch_more(fewer.solid);
+  if (!solid) {
+    return nullptr;
+  }
+  const BarTheory theory{fewer.theory, *solid, fewer.far_end};
+  Entry* const known = find(theory);
+  Entry& entry = known != nullptr ? *known : add(theory);
   const BarLikelihood::Weights& weights =
       find({three_element.theory, three_element.solid, three_element.far_end})->search->weights();
-  for (const std::vector<double>& start : with_third_branch(two_kelvin.at)) {
-    Entry other;
-    other.theory = entry.theory;
-    other.search = std::make_unique<BarSearch>(data_, entry.theory);
-    compare(other, [&](BarSearch& search) { search.closely(start, weights); });
+  const auto starts = with_branch_more(fewer.at, kelvin_branches(fewer.solid));
+  std::vector<Entry> others(starts.size());
+  workers_.run(starts.size(), [&](std::size_t index, std::size_t /*worker*/) {
+    Entry& other = others[index];
+    other.theory = theory;
+    other.rough_chi2 = entry.rough_chi2;
+    other.search = std::make_unique<BarSearch>(data_, theory);
+    compare(other, [&](BarSearch& search) { search.closely(starts[index], weights); });
+  });
+  for (Entry& other : others) {
     if (!entry.fit || (other.fit && other.fit->log_evidence > entry.fit->log_evidence)) {
       entry = std::move(other);
     }

@@ -56,9 +56,9 @@ class Explanations {
   };
   [[nodiscard]] Solids solids(const BarFit& three_element, const std::vector<SolidKind>& others);
 
-  /// A third Kelvin branch beside two, faster, slower or between them, by the weights of three
-  /// elements. Null where it cannot be fitted.
-  [[nodiscard]] const BarFit* third_branch(const BarFit& three_element, const BarFit& two_kelvin);
+  /// A Kelvin branch beside those of another fit, faster, slower or between them, by the weights of
+  /// three elements. Null where there is no such family, or it cannot be fitted.
+  [[nodiscard]] const BarFit* branch_more(const BarFit& three_element, const BarFit& fewer);
 
   /// An end that returns all or nothing once more, from where one that may return anything is best:
   /// it holds the others within it.

@@ -193,8 +193,8 @@ CreepLaw creep_of(const Material& material, KelvinUnit second) {
     throw InputError("solid",
                      "is " + name_of(material.solid) +
                          ", and finite elements carry a spring and Kelvin units in line",
-                     "file three-element, two-kelvin or three-kelvin, as `kolsky identify "
-                     "specimen --solid` fits them");
+                     "file three-element, two-kelvin, three-kelvin or four-kelvin, as `kolsky "
+                     "identify specimen --solid` fits them");
   }
   const auto& family = parameters_of(material.solid);
   for (std::size_t i = 0; i < family.size(); ++i) {

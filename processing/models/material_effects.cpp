@@ -120,6 +120,7 @@ std::optional<EffectUse> further_effect(const Material& material, const std::str
       }
       break;
     case SolidKind::three_kelvin:
+    case SolidKind::four_kelvin:
       break;
   }
   throw InputError(

@@ -17,6 +17,7 @@ const char* surplus_of(SolidKind solid) {
     case SolidKind::two_kelvin:
       return "a second branch";
     case SolidKind::three_kelvin:
+    case SolidKind::four_kelvin:
       return "further branches";
     case SolidKind::four_element_fluid:
       return "a flow, eta2_Pa_s";

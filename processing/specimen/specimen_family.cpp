@@ -55,6 +55,16 @@ FamilyStarts three_kelvin_starts(double E1, double E2, double eta2) {
           about({E1, E2, eta2, E2, eta2, E2, eta2})};
 }
 
+/// Three further branches, one slower, one faster and one much slower than the first.
+FamilyStarts four_kelvin_starts(double E1, double E2, double eta2) {
+  const double E = E2 + kNothing;
+  const double eta = eta2 + kNothing;
+  const double weak = E2 + kTen;
+  return {{{E1, E2, eta2, E, eta, E, eta, E, eta},
+           {E1, E2, eta2, weak, eta2 + 2.0 * kTen, weak, eta2, weak, eta2 + 3.0 * kTen}},
+          about({E1, E2, eta2, E2, eta2, E2, eta2, E2, eta2})};
+}
+
 FamilyStarts fluid_starts(double E1, double E2, double eta2) {
   FamilyStarts starts{{{E1, eta2 + kNoFlow, E2, eta2}, {E1, eta2 + 2.0 * kTen, E2, eta2}},
                       about({E1, eta2, E2, eta2})};
@@ -73,6 +83,8 @@ FamilyStarts starts_of(SolidKind solid, const std::vector<double>& logs) {
       return two_kelvin_starts(E1, E2, eta2);
     case SolidKind::three_kelvin:
       return three_kelvin_starts(E1, E2, eta2);
+    case SolidKind::four_kelvin:
+      return four_kelvin_starts(E1, E2, eta2);
     case SolidKind::four_element_fluid:
       return fluid_starts(E1, E2, eta2);
     case SolidKind::three_element:

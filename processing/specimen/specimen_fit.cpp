@@ -247,7 +247,7 @@ std::vector<FittedNumber> numbers_of(SolidKind solid, const SpecimenMinimum& min
 /// The same solid with its Kelvin branches in the order of their retardation times: the search
 /// finds them in any.
 SpecimenMinimum quickest_first(SolidKind solid, SpecimenMinimum minimum) {
-  if (solid != SolidKind::two_kelvin && solid != SolidKind::three_kelvin) {
+  if (kelvin_branches(solid) < 2) {
     return minimum;
   }
   const SpecimenMinimum found = minimum;

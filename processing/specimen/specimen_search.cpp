@@ -35,6 +35,9 @@ std::vector<double> near_three_element(SolidKind kind, double E1, double E2, dou
       return {E1, 2.0 * E2, eta, 2.0 * E2, 10.0 * eta};
     case SolidKind::three_kelvin:
       return {E1, 3.0 * E2, 0.3 * eta, 3.0 * E2, 3.0 * eta, 3.0 * E2, 30.0 * eta};
+    case SolidKind::four_kelvin:
+      return {E1,       4.0 * E2,   0.4 * eta, 4.0 * E2,   4.0 * eta,
+              4.0 * E2, 40.0 * eta, 4.0 * E2,  400.0 * eta};
     case SolidKind::fractional:
       break;
   }

@@ -8,7 +8,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::size_t kMostSolidParameters = 7;
+constexpr std::size_t kMostSolidParameters = 9;
 
 class FourElementFluid final : public Compliance {
  public:
@@ -99,6 +99,7 @@ Moved moved(SolidKind kind, std::span<const double> p, Complex s) {
       break;
     case SolidKind::two_kelvin:
     case SolidKind::three_kelvin:
+    case SolidKind::four_kelvin:
       for (std::size_t i = 1; i < p.size(); i += 2) {
         add_kelvin(s, p[i], p[i + 1], i, i + 1, m);
       }
@@ -120,6 +121,7 @@ std::unique_ptr<const Compliance> make_solid(SolidKind kind, std::span<const dou
       return std::make_unique<FourElementFluid>(parameters);
     case SolidKind::two_kelvin:
     case SolidKind::three_kelvin:
+    case SolidKind::four_kelvin:
       return std::make_unique<KelvinChain>(parameters);
     case SolidKind::fractional:
       break;

@@ -108,6 +108,7 @@ KelvinChain TrueMaterial::chain(double dT_K, double peak_strain) const {
                          ? testing::elastic(E1_Pa * warm)
                          : fractional_three_element(E1_Pa * warm, E2_Pa * warm, eta2_Pa_s, beta);
   made.add_relaxation(relaxation_per_Pa, relaxation_time_s);
+  made.elements.insert(made.elements.end(), further_branches.begin(), further_branches.end());
   made.add_flow(fluidity_per_Pa_s);
   return made.scaled(1.0 + per_peak_strain * peak_strain);
 }

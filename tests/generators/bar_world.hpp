@@ -68,6 +68,7 @@ struct TrueMaterial {
   double poisson_ratio = 0.36;
   double relaxation_per_Pa = 0.0;
   double relaxation_time_s = 300e-6;
+  std::vector<KelvinElement> further_branches{};  ///< each 1/(E + s eta)
   double fluidity_per_Pa_s = 0.0;
   double beta = 1.0;
   double per_kelvin = 0.0;       ///< E1, E2 x (1 - c dT)

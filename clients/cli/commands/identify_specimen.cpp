@@ -243,9 +243,10 @@ Command identify_specimen_command() {
       option("--model-out", "S.toml",
              "material file of the solid fitted to write: values, deviations, covariance",
              &s.model_out),
-      option("--solid", "FAMILY",
-             "three-element (default), four-element-fluid, two-kelvin, three-kelvin or fractional",
-             &s.solid),
+      option(
+          "--solid", "FAMILY",
+          "three-element (default), four-element-fluid, two-, three- or four-kelvin, or fractional",
+          &s.solid),
       dispersion_option(
           "how waves travel in the bars: elementary, love or exact; else what the data say",
           &s.dispersion),

@@ -30,8 +30,8 @@ bool has_parameter(SolidKind solid, const std::string& name) {
 
 /// Of a family that has the parameter, the one of fewest; empty where none has.
 std::string family_with(const std::string& parameter) {
-  for (const SolidKind solid :
-       {SolidKind::two_kelvin, SolidKind::fractional, SolidKind::three_kelvin}) {
+  for (const SolidKind solid : {SolidKind::two_kelvin, SolidKind::fractional,
+                                SolidKind::three_kelvin, SolidKind::four_kelvin}) {
     if (has_parameter(solid, parameter)) {
       return name_of(solid);
     }

@@ -109,7 +109,7 @@ TEST(MaterialFile, ReadsAnotherFamilyByItsParametersNames) {
 TEST(MaterialFile, EveryFamilyReadsBackToTheBit) {
   for (const SolidKind solid :
        {SolidKind::three_element, SolidKind::four_element_fluid, SolidKind::two_kelvin,
-        SolidKind::three_kelvin, SolidKind::fractional}) {
+        SolidKind::three_kelvin, SolidKind::four_kelvin, SolidKind::fractional}) {
     Material material = paper_pmma();
     material.solid = solid;
     material.parameters.clear();
@@ -142,7 +142,7 @@ TEST(MaterialFile, RefusesWhatIsNotOfItsFamily) {
             "solid has it: solid = \"two-kelvin\"");
   EXPECT_EQ(refusal(with(kTwoKelvin, "two-kelvin", "burgers")),
             "m.toml:1: solid: \"burgers\" is not a family of solids; give three-element, "
-            "four-element-fluid, two-kelvin, three-kelvin or fractional");
+            "four-element-fluid, two-kelvin, three-kelvin, four-kelvin or fractional");
   EXPECT_EQ(refusal(with(kTwoKelvin, "eta3_Pa_s = 5e7\n", "")),
             "m.toml: eta3_Pa_s: is missing; add it");
   EXPECT_EQ(refusal(std::string(kTwoKelvin) + "covariance = [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"),

@@ -16,6 +16,7 @@ TEST(Solids, SlopesAreThoseOfTheCompliance) {
       {SolidKind::four_element_fluid, {5.7e9, 4e8, 37e9, 1.8e6}},
       {SolidKind::two_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7}},
       {SolidKind::three_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5}},
+      {SolidKind::four_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5, 70e9, 5e5}},
       {SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7}}};
   for (const auto& [kind, parameters] : solids) {
     const auto slopes = log_slopes(kind, parameters, path);
@@ -36,6 +37,16 @@ TEST(Solids, SlopesAreThoseOfTheCompliance) {
   }
 }
 
+TEST(Solids, KelvinBranchesAreCountedUpToFour) {
+  EXPECT_EQ(kelvin_branches(SolidKind::three_element), 1U);
+  EXPECT_EQ(kelvin_branches(SolidKind::four_kelvin), 4U);
+  EXPECT_EQ(kelvin_branches(SolidKind::fractional), 0U);
+  EXPECT_EQ(one_branch_more(SolidKind::three_element), SolidKind::two_kelvin);
+  EXPECT_EQ(one_branch_more(SolidKind::three_kelvin), SolidKind::four_kelvin);
+  EXPECT_FALSE(one_branch_more(SolidKind::four_kelvin));
+  EXPECT_FALSE(one_branch_more(SolidKind::four_element_fluid));
+}
+
 /// As processing/base/solid_kind.hpp writes them.
 TEST(Solids, AMaterialIsCarriedByItsOwnFamily) {
   const Complex s(300.0, 6e4);
@@ -54,6 +65,9 @@ TEST(Solids, AMaterialIsCarriedByItsOwnFamily) {
               1.0 / 5.7e9 + kelvin(37e9, 1.8e6) + kelvin(60e9, 3e7));
   expect_near(of(SolidKind::three_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5}),
               1.0 / 5.7e9 + kelvin(37e9, 1.8e6) + kelvin(60e9, 3e7) + kelvin(50e9, 1e5));
+  expect_near(of(SolidKind::four_kelvin, {5.7e9, 37e9, 1.8e6, 60e9, 3e7, 50e9, 1e5, 70e9, 5e5}),
+              1.0 / 5.7e9 + kelvin(37e9, 1.8e6) + kelvin(60e9, 3e7) + kelvin(50e9, 1e5) +
+                  kelvin(70e9, 5e5));
   expect_near(of(SolidKind::fractional, {5.7e9, 37e9, 1.8e6, 0.7}),
               1.0 / 5.7e9 + 1.0 / (37e9 * (1.0 + std::pow(s * 1.8e6 / 37e9, 0.7))));
 }
