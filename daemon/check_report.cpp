@@ -64,9 +64,12 @@ std::string check_report(const DaemonConfig& config, const Apparatus& apparatus)
   const auto milliseconds = [&](auto samples) {
     return 1e3 * static_cast<double>(samples) / rate_Hz;
   };
-  const std::string model = apparatus.bench.input.youngs_modulus_Pa ? "elastic, as in the bench"
-                            : apparatus.bar_model                   ? apparatus.bar_model->source
-                                                                    : paper_pmma().source;
+  std::string model = apparatus.bench.input.youngs_modulus_Pa ? "elastic, as in the bench"
+                      : apparatus.bar_model                   ? apparatus.bar_model->source
+                                                              : paper_pmma().source;
+  if (apparatus.bench.output && apparatus.bench.output->material) {
+    model += "; output bar by itself: " + apparatus.bench.output->material->source;
+  }
   const std::string doubt =
       apparatus.bar_model ? poorly_identified(*apparatus.bar_model) : std::string();
   return fmt::format(

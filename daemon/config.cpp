@@ -370,6 +370,11 @@ Apparatus read_apparatus(DaemonConfig& config) {
   Apparatus apparatus;
   apparatus.bench = std::move(file.bench);
   apparatus.bench_toml = std::move(file.text);
+  try {
+    require_own_material_holds(apparatus.bench);
+  } catch (const InputError& error) {
+    throw error.inside(config.bench.string());
+  }
   if (config.bar_model) {
     apparatus.bar_model = read_material(*config.bar_model);
     require_bar_model_holds(*apparatus.bar_model, apparatus.bench, config.bar_model->string());

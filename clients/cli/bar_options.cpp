@@ -37,8 +37,17 @@ std::optional<SolidKind> solid_asked(const std::optional<std::string>& name) {
 }
 
 std::string bar_in_words(const Bar& bar, const Bench& bench, const std::optional<Material>& given) {
-  return bar.youngs_modulus_Pa ? "elastic, modulus from the bench"
-                               : viscoelastic_in_words(bench, given);
+  if (bar.youngs_modulus_Pa) {
+    return "elastic, modulus from the bench";
+  }
+  if (bar.material) {
+    return bar.material->source.empty() ? "its own material, from the bench" : bar.material->source;
+  }
+  Bench of_model = bench;
+  if (bench.output && bench.output->material) {
+    of_model.output.reset();
+  }
+  return viscoelastic_in_words(of_model, given);
 }
 
 }  // namespace kolsky::cli

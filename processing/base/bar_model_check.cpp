@@ -18,6 +18,7 @@ constexpr double kDeviations = 3.0;
 constexpr double kPoorChi2 = 2.0;  // far from 1
 /// Densities of PMMA are from 1150 to 1200 kg/m3.
 constexpr double kNoPmmaApart = 0.05;
+constexpr const char* kOwnMaterial = "bars.output.material";
 
 std::string with_decimals(double value, int decimals) {
   std::array<char, 64> text{};
@@ -27,11 +28,11 @@ std::string with_decimals(double value, int decimals) {
 
 using OnBar = std::function<void(std::string_view, const Bar&)>;
 
-void for_viscoelastic_bars(const Bench& bench, const OnBar& use) {
-  if (!bench.input.youngs_modulus_Pa) {
+void for_bars_of_the_model(const Bench& bench, const OnBar& use) {
+  if (bench.input.takes_bar_model()) {
     use("input", bench.input);
   }
-  if (bench.output && !bench.output->youngs_modulus_Pa) {
+  if (bench.output && bench.output->takes_bar_model()) {
     use("output", *bench.output);
   }
 }
@@ -48,26 +49,12 @@ void require_temperature(const Material& model, std::optional<double> there_K,
   }
 }
 
-void require_density(const Material& model, const Bench& bench, const std::string& name) {
-  const Measured& identified = model.density_kg_m3;
-  for_viscoelastic_bars(bench, [&](std::string_view, const Bar& bar) {
-    const double apart = std::abs(identified - bar.density_kg_m3);
-    if (apart > kDensityApart * bar.density_kg_m3 &&
-        apart > kDeviations * std::hypot(identified.sd, bar.density_kg_m3.sd)) {
-      throw InputError(name,
-                       "is of bars of " + with_decimals(identified, 0) +
-                           " kg/m3, and the bench's have " + with_decimals(bar.density_kg_m3, 0),
-                       "file the same density in both: moduli give the wave speed with the one "
-                       "they were identified with");
-    }
-  });
-}
-
 void require_moduli(const Material& model, const Bench& bench, const std::string& name) {
-  if (!all_elastic(bench)) {
+  if (takes_bar_model(bench)) {
     require_passive(model, name);
   }
-  require_density(model, bench, name);
+  for_bars_of_the_model(
+      bench, [&](std::string_view, const Bar& bar) { require_density(model, bar, name); });
 }
 
 }  // namespace
@@ -79,6 +66,19 @@ void require_passive(const Material& model, const std::string& name) {
                      "lets them do",
                      "check the gauge factors and the order of the gauges of those shots, and "
                      "identify the bars again");
+  }
+}
+
+void require_density(const Material& model, const Bar& bar, const std::string& name) {
+  const Measured& identified = model.density_kg_m3;
+  const double apart = std::abs(identified - bar.density_kg_m3);
+  if (apart > kDensityApart * bar.density_kg_m3 &&
+      apart > kDeviations * std::hypot(identified.sd, bar.density_kg_m3.sd)) {
+    throw InputError(name,
+                     "is of bars of " + with_decimals(identified, 0) +
+                         " kg/m3, and the bench's have " + with_decimals(bar.density_kg_m3, 0),
+                     "file the same density in both: moduli give the wave speed with the one "
+                     "they were identified with");
   }
 }
 
@@ -98,15 +98,52 @@ std::optional<double> temperature_of(const Shot& shot) {
 
 void require_bar_model_holds(const Material& model, const Bench& bench, const std::string& name) {
   require_moduli(model, bench, name);
-  if (!all_elastic(bench) && bench.temperature_K) {
+  if (takes_bar_model(bench) && bench.temperature_K) {
     require_temperature(model, bench.temperature_K->value, "the bench is filed", name);
   }
 }
 
 void require_bar_model_holds(const Material& model, const Shot& shot, const std::string& name) {
   require_moduli(model, shot.bench, name);
-  if (!all_elastic(shot.bench)) {
+  if (takes_bar_model(shot.bench)) {
     require_temperature(model, temperature_of(shot), "capture " + shot.id + " was taken", name);
+  }
+}
+
+void require_own_material_holds(const Shot& shot) {
+  if (shot.bench.output && shot.bench.output->material) {
+    require_temperature(*shot.bench.output->material, temperature_of(shot),
+                        "capture " + shot.id + " was taken", kOwnMaterial);
+  }
+}
+
+void require_own_material_holds(const Bench& bench) {
+  if (bench.output && bench.output->material && bench.temperature_K) {
+    require_temperature(*bench.output->material, bench.temperature_K->value, "the bench is filed",
+                        kOwnMaterial);
+  }
+}
+
+std::optional<double> known_band_Hz(const Bench& bench, const Material& bar_model) {
+  std::optional<double> known_Hz;
+  const auto take = [&](const Material& material) {
+    const auto limit_Hz = material.identified ? material.identified->band_limit_Hz : std::nullopt;
+    if (limit_Hz && (!known_Hz || *limit_Hz < *known_Hz)) {
+      known_Hz = limit_Hz;
+    }
+  };
+  if (takes_bar_model(bench)) {
+    take(bar_model);
+  }
+  if (bench.output && bench.output->material) {
+    take(*bench.output->material);
+  }
+  return known_Hz;
+}
+
+void require_own_band_known(const Bench& bench, std::optional<double> asked_Hz) {
+  if (bench.output && bench.output->material) {
+    require_band_known(*bench.output->material, asked_Hz, kOwnMaterial);
   }
 }
 
@@ -143,7 +180,7 @@ std::string poorly_identified(const Material& model) {
 
 Material assumed_bars(const Bench& bench) {
   Material pmma = paper_pmma();
-  for_viscoelastic_bars(bench, [&](std::string_view which, const Bar& bar) {
+  for_bars_of_the_model(bench, [&](std::string_view which, const Bar& bar) {
     const double off = bar.density_kg_m3 / pmma.density_kg_m3 - 1.0;
     if (std::abs(off) > kNoPmmaApart) {
       throw InputError(
@@ -159,10 +196,19 @@ Material assumed_bars(const Bench& bench) {
 }
 
 std::string viscoelastic_in_words(const Bench& bench, const std::optional<Material>& given) {
-  if (!given) {
-    return assumed_bars(bench).source + ", assumed because no bar model was given";
+  std::string text;
+  if (takes_bar_model(bench)) {
+    text = !given ? assumed_bars(bench).source + ", assumed because no bar model was given"
+           : given->source.empty() ? "the bar model given"
+                                   : given->source;
+  } else if (bench.input.youngs_modulus_Pa) {
+    text = "elastic, modulus from the bench";
   }
-  return given->source.empty() ? "the bar model given" : given->source;
+  if (bench.output && bench.output->material) {
+    const std::string& own = bench.output->material->source;
+    text += "; output bar by itself: " + (own.empty() ? "as the bench has it" : own);
+  }
+  return text;
 }
 
 }  // namespace kolsky

@@ -19,6 +19,21 @@ inline constexpr double kNearEnough_K = 2.0;
 /// @throws InputError
 void require_passive(const Material& model, const std::string& name);
 
+/// Refuses a material for a bar of another density: moduli tell a wave's speed only with the one
+/// they were identified with. More than 1 % and three filed deviations off.
+/// @throws InputError
+void require_density(const Material& model, const Bar& bar, const std::string& name);
+
+/// Refuses a shot, or a bench, whose output bar's own material was identified more than 2 K from
+/// its temperature. (That it suits the bar is the bench's own check.)
+/// @throws InputError
+void require_own_material_holds(const Shot& shot);
+void require_own_material_holds(const Bench& bench);
+
+/// Up to where both the bar model and an output bar's own material are known, as far as either
+/// says.
+[[nodiscard]] std::optional<double> known_band_Hz(const Bench& bench, const Material& bar_model);
+
 /// Refuses a bar model for what it does not hold for: one that is not passive; viscoelastic bars of
 /// another density (moduli tell a wave's speed only with the density they were identified with),
 /// more than 1 % and three filed deviations off; and, where both are known, bars more than 2 K from
@@ -33,6 +48,10 @@ void require_bar_model_holds(const Material& model, const Shot& shot, const std:
 /// @throws InputError
 void require_band_known(const Material& model, std::optional<double> asked_Hz,
                         const std::string& name);
+
+/// The same of an output bar's own material.
+/// @throws InputError
+void require_own_band_known(const Bench& bench, std::optional<double> asked_Hz);
 
 /// What to say where a bar model's temperature is known and the shot's is not; else nothing.
 [[nodiscard]] std::string temperature_unchecked(const Material& model, const Shot& shot);

@@ -74,6 +74,10 @@ bool all_elastic(const Bench& bench) {
   return bench.input.youngs_modulus_Pa && (!bench.output || bench.output->youngs_modulus_Pa);
 }
 
+bool takes_bar_model(const Bench& bench) {
+  return bench.input.takes_bar_model() || (bench.output && bench.output->takes_bar_model());
+}
+
 const Bar& bar_named(const Bench& bench, const std::string& name) {
   if (name == "input") {
     return bench.input;

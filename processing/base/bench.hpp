@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/base/material.hpp"
 #include "processing/base/measured.hpp"
 
 namespace kolsky {
@@ -28,12 +29,16 @@ struct Bar {
   Measured density_kg_m3{};
   Measured poisson_ratio{};
   std::optional<Measured> youngs_modulus_Pa{};  ///< elastic bars only
+  std::optional<Material>
+      material{};  ///< of a viscoelastic output bar that is not of the bar model
   Section section = Section::round;
   std::optional<Measured> side_m{};  ///< square bars only
   FarEnd far_end = FarEnd::free;     ///< of the output bar; the input bar's is the impacted one
 
   [[nodiscard]] double area_m2() const;
   [[nodiscard]] double dispersion_radius_m() const;
+  /// Whether the bench leaves what it is made of to the bar model.
+  [[nodiscard]] bool takes_bar_model() const { return !youngs_modulus_Pa && !material; }
 };
 
 /// How a gauge's bridge is wired. `quarter`: one active arm. `half`: two axial gauges in opposite
@@ -146,6 +151,8 @@ struct Bench {
 
 /// Whether the modulus of every bar is filed: none is viscoelastic.
 [[nodiscard]] bool all_elastic(const Bench& bench);
+/// Whether the bench leaves to the bar model what some bar is made of.
+[[nodiscard]] bool takes_bar_model(const Bench& bench);
 
 /// The input or the output bar. @throws InputError "bar" where the bench has none of that name
 [[nodiscard]] const Bar& bar_named(const Bench& bench, const std::string& name);

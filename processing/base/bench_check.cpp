@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/bench.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
@@ -86,6 +87,22 @@ void check_section(const std::string& place, const Bar& bar) {
   }
 }
 
+/// A material file's numbers, of this very bar.
+void check_material(const std::string& place, const Bar& bar) {
+  const Material& material = *bar.material;
+  if (bar.youngs_modulus_Pa) {
+    throw InputError(place, "is filed beside youngs_modulus_Pa: a bar is elastic or viscoelastic",
+                     "remove one of the two");
+  }
+  try {
+    check(material);
+    require_density(material, bar, "density_kg_m3");
+  } catch (const InputError& error) {
+    throw InputError(place + "." + error.place(), error.problem(), error.mend());
+  }
+  require_passive(material, place);
+}
+
 void check_bar(const std::string& place, const Bar& bar) {
   check_number(place + ".length_m", bar.length_m, kBarLength);
   check_section(place, bar);
@@ -106,6 +123,18 @@ void check_bar(const std::string& place, const Bar& bar) {
       throw InputError(modulus, "makes waves of " + in_words(speed_m_per_s, "m/s"),
                        kWaveSpeed.mend);
     }
+  }
+  if (bar.material) {
+    check_material(place + ".material", bar);
+  }
+}
+
+void refuse_material_of_input(const Bar& input) {
+  if (input.material) {
+    throw InputError(
+        "bars.input.material",
+        "is for an output bar that is of another material than the bar model",
+        "give the input bar's as the bar model (--bar-model, or bar_model of kolskyd)");
   }
 }
 
@@ -379,6 +408,7 @@ void check(const Bench& bench) {
   require_part(bench, "bars.output", bench.output.has_value(), BenchKind::shpb);
   require_part(bench, "specimen", bench.specimen.has_value(), BenchKind::shpb);
   require_part(bench, "ball", bench.ball.has_value(), BenchKind::impact);
+  refuse_material_of_input(bench.input);
   check_bar("bars.input", bench.input);
   if (bench.output) {
     check_bar("bars.output", *bench.output);

@@ -166,6 +166,13 @@ std::string name_of(Certificate certificate) {
 }
 
 Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& options) {
+  for (const Shot& shot : shots) {
+    if (shot.bench.output && shot.bench.output->material) {
+      throw InputError("bars.output.material",
+                       "is filed, and each bar's moduli are what these shots are to tell",
+                       "leave it out of the bench that is held against them: `--bench`");
+    }
+  }
   if (options.bars) {
     for (const Shot& shot : shots) {
       require_bar_model_holds(options.bars->material, shot, "the bar model");

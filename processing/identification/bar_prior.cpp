@@ -43,23 +43,12 @@ BarPrior::BarPrior(const Material& m) : material(m) {
   }
 }
 
-double sd_by_temperature(const Bench& bench, const BarPrior& bars) {
-  const bool viscoelastic =
-      !bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa);
-  return viscoelastic && bench.temperature_K ? bars.softening_per_K * bench.temperature_K->sd : 0.0;
-}
+namespace {
 
-std::optional<std::size_t> bar_of_density(const Bench& bench, const BarPrior& bars) {
-  const std::size_t first = bench.input.youngs_modulus_Pa ? 1 : 0;
-  const Bar* const bar = first == 0 ? &bench.input : bench.output ? &*bench.output : nullptr;
-  const bool goes =
-      bars.from_waves && bar != nullptr && !bar->youngs_modulus_Pa && bar->density_kg_m3.sd > 0.0;
-  return goes ? std::optional(first) : std::nullopt;
-}
-
-Eigen::MatrixXd moduli_directions(const Bench& bench, const BarPrior& bars) {
+/// @param without_density  leaves out what the density's deviation is to them
+Eigen::MatrixXd directions(const BarPrior& bars, bool without_density) {
   const double density =
-      bar_of_density(bench, bars) ? std::pow(relative_sd(bars.material.density_kg_m3), 2) : 0.0;
+      without_density ? std::pow(relative_sd(bars.material.density_kg_m3), 2) : 0.0;
   const Eigen::VectorXd with_density = moves_with_density(bars.material);
   const Eigen::Index count = with_density.size();
   Eigen::MatrixXd covariance(count, count);
@@ -75,6 +64,34 @@ Eigen::MatrixXd moduli_directions(const Bench& bench, const BarPrior& bars) {
   // Three by three has a solver of its own, and results of three elements are on file to the bit.
   return count == 3 ? scaled_eigenvectors<Eigen::Matrix3d>(covariance)
                     : scaled_eigenvectors(covariance);
+}
+
+}  // namespace
+
+double sd_by_temperature(const Bench& bench, const BarPrior& bars) {
+  const bool viscoelastic =
+      !bench.input.youngs_modulus_Pa || (bench.output && !bench.output->youngs_modulus_Pa);
+  return viscoelastic && bench.temperature_K ? bars.softening_per_K * bench.temperature_K->sd : 0.0;
+}
+
+std::optional<std::size_t> bar_of_density(const Bench& bench, const BarPrior& bars) {
+  const std::size_t first = bench.input.youngs_modulus_Pa ? 1 : 0;
+  const Bar* const bar = first == 0 ? &bench.input : bench.output ? &*bench.output : nullptr;
+  const bool goes =
+      bars.from_waves && bar != nullptr && bar->takes_bar_model() && bar->density_kg_m3.sd > 0.0;
+  return goes ? std::optional(first) : std::nullopt;
+}
+
+Eigen::MatrixXd moduli_directions(const Bench& bench, const BarPrior& bars) {
+  return directions(bars, bar_of_density(bench, bars).has_value());
+}
+
+bool own_moduli_go_with_density(const Bar& bar) {
+  return bar.material->identified && bar.density_kg_m3.sd > 0.0;
+}
+
+Eigen::MatrixXd own_moduli_directions(const Bar& bar) {
+  return directions(BarPrior(*bar.material), own_moduli_go_with_density(bar));
 }
 
 Eigen::VectorXd moves_with_density(const Material& material) {

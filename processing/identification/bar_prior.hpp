@@ -38,6 +38,11 @@ struct BarPrior {
 /// them is left out.
 [[nodiscard]] Eigen::MatrixXd moduli_directions(const Bench& bench, const BarPrior& bars);
 
+/// Those of an output bar's own material; whose moduli go with that bar's density, where they are
+/// from waves and it may be off.
+[[nodiscard]] Eigen::MatrixXd own_moduli_directions(const Bar& bar);
+[[nodiscard]] bool own_moduli_go_with_density(const Bar& bar);
+
 /// How a material's parameters move, relative, per relative move of a density that they go with:
 /// all moduli and viscosities by as much, which leaves waves as fast as they were.
 [[nodiscard]] Eigen::VectorXd moves_with_density(const Material& material);

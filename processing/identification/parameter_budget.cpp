@@ -22,6 +22,7 @@ std::string source_of(const std::string& number) {
                                 std::pair{"poisson-ratio", "Poisson's ratios"},
                                 std::pair{"youngs-modulus", "bar moduli"},
                                 std::pair{"bar-model", "bar moduli"},
+                                std::pair{"output-bar-model", "bar moduli"},
                                 std::pair{"specimen-length", "specimen length"},
                                 std::pair{"specimen-diameter", "specimen diameter"},
                                 std::pair{"specimen-density", "specimen inertia"}};

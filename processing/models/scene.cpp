@@ -5,11 +5,19 @@
 #include <limits>
 #include <numbers>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 
 namespace {
 
 BarScene scene_of(const Bar& bar) {
+  if (bar.material) {
+    throw InputError("bars.output.material",
+                     "is filed, and a model has one material for all viscoelastic bars",
+                     "leave it out where both are of one, or reduce and identify with the bench as "
+                     "it is");
+  }
   BarScene scene;
   scene.length_m = bar.length_m;
   scene.radius_m = bar.dispersion_radius_m();

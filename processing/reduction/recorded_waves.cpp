@@ -70,6 +70,13 @@ struct BarModel {
 };
 
 BarModel bar_model_of(const Shot& shot, const Bar& bar, const RecordedWavesOptions& options) {
+  if (bar.material) {
+    require_own_material_holds(shot);
+    require_own_band_known(shot.bench, options.band_limit_Hz);
+    return {compliance_of(*bar.material), bar.material->identified
+                                              ? bar.material->identified->band_limit_Hz
+                                              : std::optional<double>{}};
+  }
   const std::optional<Material>& given = options.bar_model ? options.bar_model : shot.bar_model;
   if (bar.youngs_modulus_Pa || !given) {
     return {compliance_of(bar, bar.youngs_modulus_Pa ? Material{} : assumed_bars(shot.bench)), {}};

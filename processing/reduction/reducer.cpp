@@ -131,6 +131,7 @@ Reduction Reducer::State::reduce(const Shot& shot) {
   }
   ReductionOptions told = options;
   const bool assumed = !told.bar_model && !shot.bar_model;
+  require_own_material_holds(shot);
   const Material material = told.bar_model   ? *told.bar_model
                             : shot.bar_model ? *shot.bar_model
                                              : assumed_bars(shot.bench);
@@ -138,8 +139,8 @@ Reduction Reducer::State::reduce(const Shot& shot) {
     require_bar_model_holds(material, shot, "the capture's bar model");
     require_band_known(material, told.band_limit_Hz, "the capture's bar model");
   }
-  if (!told.most_band_Hz && material.identified) {
-    told.most_band_Hz = material.identified->band_limit_Hz;
+  if (!told.most_band_Hz) {
+    told.most_band_Hz = known_band_Hz(shot.bench, material);
   }
   const BarStation in = station_on(shot.bench, "input");
   const BarStation out = station_on(shot.bench, "output");

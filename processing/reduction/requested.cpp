@@ -121,6 +121,9 @@ void require_suits(const ReductionRequest& request, const Bench& bench,
   if (bar_model) {
     require_band_of_model(options.band_limit_Hz, *bar_model);
   }
+  if (bench.output && bench.output->material) {
+    require_band_of_model(options.band_limit_Hz, *bench.output->material);
+  }
   if (options.separation == Separation::gauges) {
     try {
       require_two_places(bench);

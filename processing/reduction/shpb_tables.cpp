@@ -59,6 +59,10 @@ std::vector<double> shpb_numbers(const Bench& b, const Material& m, WaveTheory t
                                  b.specimen->length_m,
                                  static_cast<double>(m.solid)};
   numbers.insert(numbers.end(), m.parameters.begin(), m.parameters.end());
+  if (const auto& own = b.output->material) {
+    numbers.push_back(static_cast<double>(own->solid));
+    numbers.insert(numbers.end(), own->parameters.begin(), own->parameters.end());
+  }
   return numbers;
 }
 

@@ -95,8 +95,9 @@ const std::vector<BarMode>& ShpbModel::modes(WaveTheory theory, const MovedShpb&
                              theory == WaveTheory::elementary ? 0.0 : b.dispersion_radius_m(),
                              theory == WaveTheory::elementary ? 0.0 : b.poisson_ratio.value};
   if (!b.youngs_modulus_Pa) {
-    key.push_back(static_cast<double>(moved.material.solid));
-    key.insert(key.end(), moved.material.parameters.begin(), moved.material.parameters.end());
+    const Material& material = b.material ? *b.material : moved.material;
+    key.push_back(static_cast<double>(material.solid));
+    key.insert(key.end(), material.parameters.begin(), material.parameters.end());
   }
   KeptModes& kept = kept_[slot][bar];
   if (kept.key != key) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 
 namespace kolsky {
 
@@ -26,9 +27,33 @@ void add_bar(std::vector<ShpbUnknown>& list, const Bar& bar, std::size_t index) 
   }
 }
 
+void add_directions(std::vector<ShpbUnknown>& list, const std::string& name, Of of,
+                    const Eigen::MatrixXd& directions) {
+  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    const bool moves = directions.col(i).norm() > 0.0;
+    add(list, name + std::to_string(i + 1), of, static_cast<std::size_t>(i), moves ? 1.0 : 0.0);
+  }
+}
+
 void scale(Measured& number, double move) {
   number.value *= 1.0 + move;
 }
+
+/// How an output bar's own material moves.
+struct OwnMoves {
+  Eigen::MatrixXd directions;
+  bool go_with_density;
+  Eigen::VectorXd with_density;
+  Eigen::VectorXd with_temperature;
+  Eigen::VectorXd relative;
+
+  explicit OwnMoves(const Bar& bar)
+      : directions(own_moduli_directions(bar)),
+        go_with_density(own_moduli_go_with_density(bar)),
+        with_density(moves_with_density(*bar.material)),
+        with_temperature(moves_with_temperature(*bar.material)),
+        relative(Eigen::VectorXd::Zero(directions.rows())) {}
+};
 
 }  // namespace
 
@@ -53,13 +78,12 @@ std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench, const std::vector<Shp
   }
   add_bar(list, bench.input, 0);
   add_bar(list, *bench.output, 1);
-  if (!bench.input.youngs_modulus_Pa || !bench.output->youngs_modulus_Pa) {
-    const Eigen::MatrixXd root = moduli_directions(bench, bars);
-    for (Eigen::Index i = 0; i < root.cols(); ++i) {
-      const bool moves = root.col(i).norm() > 0.0;
-      add(list, "bar-model:" + std::to_string(i + 1), Of::bar_material, static_cast<std::size_t>(i),
-          moves ? 1.0 : 0.0);
-    }
+  if (takes_bar_model(bench)) {
+    add_directions(list, "bar-model:", Of::bar_material, moduli_directions(bench, bars));
+  }
+  if (bench.output->material) {
+    add_directions(list, "output-bar-model:", Of::own_material,
+                   own_moduli_directions(*bench.output));
   }
   add(list, "temperature", Of::temperature, 0, sd_by_temperature(bench, bars));
   const Specimen& specimen = *bench.specimen;
@@ -84,6 +108,10 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
   const Eigen::VectorXd with_density = moves_with_density(material);
   const Eigen::VectorXd with_temperature = moves_with_temperature(material);
   Eigen::VectorXd relative = Eigen::VectorXd::Zero(root.cols());
+  std::optional<OwnMoves> own;
+  if (filed.output->material) {
+    own.emplace(*filed.output);
+  }
   const auto moduli_with = bar_of_density(filed, prior);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const ShpbUnknown& u = unknowns[i];
@@ -104,6 +132,9 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
       case Of::bar_density:
         scale(bars[u.index].density_kg_m3, move);
         relative += (u.index == moduli_with ? move : 0.0) * with_density;
+        if (own && u.index == 1 && own->go_with_density) {
+          own->relative += move * own->with_density;
+        }
         break;
       case Of::bar_diameter:
         scale(bars[u.index].diameter_m, move);
@@ -120,8 +151,14 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
       case Of::bar_material:
         relative += root.col(static_cast<Eigen::Index>(u.index)) * move;
         break;
+      case Of::own_material:
+        own->relative += own->directions.col(static_cast<Eigen::Index>(u.index)) * move;
+        break;
       case Of::temperature:
         relative -= move * with_temperature;
+        if (own) {
+          own->relative -= move * own->with_temperature;
+        }
         break;
       case Of::specimen_length:
         scale(specimen.length_m, move);
@@ -135,6 +172,9 @@ MovedShpb::MovedShpb(const Bench& filed, const std::vector<ShpbStation>& station
     }
   }
   move_parameters(material, relative);
+  if (own) {
+    move_parameters(*bars[1].material, own->relative);
+  }
   for (std::size_t j = 0; j < stations.size(); ++j) {
     // Positions on the input bar count from the impacted end: the specimen is at its length.
     const double filed_m = stations[j].to_specimen_m;

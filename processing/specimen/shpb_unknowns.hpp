@@ -25,6 +25,7 @@ struct ShpbUnknown {
     bar_poisson,
     bar_modulus,   ///< of an elastic bar
     bar_material,  ///< one of the independent directions of a viscoelastic bar's moduli
+    own_material,  ///< the same of an output bar's own material
     temperature,   ///< at which viscoelastic bars soften
     specimen_length,
     specimen_diameter,
@@ -34,7 +35,7 @@ struct ShpbUnknown {
   Of of = Of::gain;
   std::size_t index = 0;  ///< station, bar (0 input, 1 output) or direction
   double sd = 0.0;        ///< relative, but metres for position and length; seconds for delay;
-                          ///< 1 for bar_material; for temperature that of the moduli
+                    ///< 1 for bar_material and own_material; for temperature that of the moduli
 };
 
 [[nodiscard]] std::vector<ShpbUnknown> shpb_unknowns(const Bench& bench,

@@ -57,15 +57,21 @@ void add_density(Sources& sources, const Bench& bench, const BarPrior& bars, boo
   const auto bar = [input](Bench& b) -> Bar& { return input ? b.input : *b.output; };
   const Measured density = (input ? bench.input : *bench.output).density_kg_m3;
   const bool with_moduli = bar_of_density(bench, bars) == std::size_t{input ? 0U : 1U};
+  const bool with_own =
+      !input && bench.output->material && own_moduli_go_with_density(*bench.output);
   if (density.sd > 0.0) {
     sources.push_back({std::string("bars.") + (input ? "input" : "output") + ".density_kg_m3",
                        "bar densities", density.value, density.sd,
-                       [bar, with_moduli](ShotNumbers& moved, double deviations) {
+                       [bar, with_moduli, with_own](ShotNumbers& moved, double deviations) {
                          Measured& at = bar(moved.bench).density_kg_m3;
                          const double move = deviations * relative_sd(at);
                          at.value *= 1.0 + move;
                          if (with_moduli) {
                            move_parameters(moved.bars, move * moves_with_density(moved.bars));
+                         }
+                         if (with_own) {
+                           Material& own = *bar(moved.bench).material;
+                           move_parameters(own, move * moves_with_density(own));
                          }
                        }});
   }
@@ -98,27 +104,43 @@ void add_bar(Sources& sources, const Bench& bench, const BarPrior& bars, bool in
   add_density(sources, bench, bars, input);
 }
 
-/// Of viscoelastic bars.
-void add_moduli(Sources& sources, const Bench& bench, const BarPrior& bars) {
-  if (all_elastic(bench)) {
-    return;
-  }
-  const Eigen::MatrixXd directions = moduli_directions(bench, bars);
+/// One source for each independent direction of a material's parameters.
+void add_directions(Sources& sources, const std::string& name, const Eigen::MatrixXd& directions,
+                    const std::function<Material&(ShotNumbers&)>& material) {
   for (Eigen::Index i = directions.cols() - 1; i >= 0; --i) {
     const Eigen::VectorXd along = directions.col(i);
     if (along.norm() > 0.0) {
-      sources.push_back({"bar model, direction " + std::to_string(directions.cols() - i),
+      sources.push_back({name + ", direction " + std::to_string(directions.cols() - i),
                          "bar moduli", 0.0, along.norm(),
-                         [along](ShotNumbers& moved, double deviations) {
-                           move_parameters(moved.bars, deviations * along);
+                         [along, material](ShotNumbers& moved, double deviations) {
+                           move_parameters(material(moved), deviations * along);
                          }});
     }
+  }
+}
+
+/// Of viscoelastic bars.
+void add_moduli(Sources& sources, const Bench& bench, const BarPrior& bars) {
+  if (takes_bar_model(bench)) {
+    add_directions(sources, "bar model", moduli_directions(bench, bars),
+                   [](ShotNumbers& numbers) -> Material& { return numbers.bars; });
+  }
+  if (bench.output && bench.output->material) {
+    add_directions(
+        sources, "output bar's material", own_moduli_directions(*bench.output),
+        [](ShotNumbers& numbers) -> Material& { return *numbers.bench.output->material; });
   }
   if (const double change = sd_by_temperature(bench, bars); change > 0.0) {
     sources.push_back({"temperature_K", "temperature", bench.temperature_K->value,
                        bench.temperature_K->sd, [change](ShotNumbers& moved, double deviations) {
-                         move_parameters(moved.bars,
-                                         -deviations * change * moves_with_temperature(moved.bars));
+                         const auto soften = [&](Material& material) {
+                           move_parameters(material,
+                                           -deviations * change * moves_with_temperature(material));
+                         };
+                         soften(moved.bars);
+                         if (moved.bench.output && moved.bench.output->material) {
+                           soften(*moved.bench.output->material);
+                         }
                        }});
   }
 }

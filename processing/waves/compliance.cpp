@@ -16,7 +16,7 @@ std::unique_ptr<const Compliance> compliance_of(const Bar& bar, const Material& 
   if (bar.youngs_modulus_Pa) {
     return std::make_unique<ElasticSolid>(*bar.youngs_modulus_Pa);
   }
-  return compliance_of(viscoelastic);
+  return compliance_of(bar.material ? *bar.material : viscoelastic);
 }
 
 }  // namespace kolsky

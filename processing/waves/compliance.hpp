@@ -54,7 +54,8 @@ class ThreeElementSolid final : public Compliance {
 /// A material's, of whatever family.
 [[nodiscard]] std::unique_ptr<const Compliance> compliance_of(const Material& material);
 
-/// A bar's compliance: elastic where the bench gives its modulus, else the material's.
+/// A bar's compliance: elastic where the bench gives its modulus, of its own material where the
+/// bench has one, else the bar model's.
 [[nodiscard]] std::unique_ptr<const Compliance> compliance_of(const Bar& bar,
                                                               const Material& viscoelastic);
 

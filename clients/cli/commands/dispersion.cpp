@@ -75,7 +75,22 @@ struct BarModel {
   double most_band_Hz = std::numeric_limits<double>::infinity();
 };
 
+/// Its own, as the bench has it.
+BarModel own_model_of(const Settings& settings, const Bench& bench, const Bar& bar) {
+  const Material& own = *bar.material;
+  require_own_material_holds(bench);
+  require_own_band_known(bench, settings.highest_Hz);
+  BarModel model{own};
+  if (own.identified && own.identified->band_limit_Hz) {
+    model.most_band_Hz = *own.identified->band_limit_Hz;
+  }
+  return model;
+}
+
 BarModel bar_model_of(const Settings& settings, const Bench& bench, const Bar& bar) {
+  if (bar.material) {
+    return own_model_of(settings, bench, bar);
+  }
   if (!settings.bar_model) {
     return {};
   }

@@ -88,6 +88,8 @@ std::vector<Shot> read_shots(const Settings& settings, const std::optional<BarMo
   std::vector<Shot> shots = captured_shots(settings.captures);
   for (const Shot& shot : shots) {
     require_specimen(shot);
+    require_own_material_holds(shot);
+    require_own_band_known(shot.bench, settings.band_limit_Hz);
     if (settings.model_out) {
       require_fileable(shot);
     }
@@ -145,9 +147,7 @@ IdentifiedSpecimen identify(const Settings& settings) {
   SpecimenFitOptions options = fit_options(settings, outcome.bars);
   outcome.shots = read_shots(settings, outcome.bars);
   BarPrior prior = bars_of(outcome, settings);
-  if (const auto& identified = prior.material.identified; identified && !options.most_band_Hz) {
-    options.most_band_Hz = identified->band_limit_Hz;
-  }
+  options.most_band_Hz = known_band_Hz(outcome.shots.front().bench, prior.material);
   prior.softening_per_K = settings.softening_per_K.value_or(prior.softening_per_K);
   require_band_known(prior.material, settings.band_limit_Hz, "the capture's bar model");
   try {

@@ -60,6 +60,16 @@ struct NewSettings {
   std::string output;
 };
 
+/// A model has one material for all viscoelastic bars.
+void refuse_own_material(const Bench& bench, const std::string& file) {
+  if (bench.output && bench.output->material) {
+    throw InputError(file + ": bars.output.material",
+                     "is filed, and a model has one material for all viscoelastic bars",
+                     "leave it out where both are of one, or reduce and identify with the bench as "
+                     "it is");
+  }
+}
+
 /// Bars as a material file gives them: where a model of the bar itself starts, what one of a split
 /// bar goes by.
 void take_bar_model(const Material& material, const std::optional<Bench>& bench, Model& model) {
@@ -172,6 +182,7 @@ int make_new(const NewSettings& settings, Context& context) {
                        "is \"" + name_of(bench.kind) + "\" and --kind is " + settings.kind,
                        "give --kind " + name_of(bench.kind));
     }
+    refuse_own_material(bench, *settings.bench);
     elastic = bench.input.youngs_modulus_Pa.has_value() &&
               (!bench.output || bench.output->youngs_modulus_Pa.has_value());
   }

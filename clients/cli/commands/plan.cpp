@@ -205,18 +205,21 @@ std::string report(const ShotPlan& plan, const Bars& bars) {
 }
 
 Bars bars_of(const Settings& settings, const Bench& bench) {
+  require_own_material_holds(bench);
   if (settings.bar_model) {
     const BarModelFile model = read_bar_model(*settings.bar_model);
     require_holds(model, bench);
     const std::string doubt = poorly_identified(model.prior.material);
-    return {model.prior.material, model.name + (doubt.empty() ? "" : " (" + doubt + ")"), false};
+    Material named = model.prior.material;
+    named.source = model.name + (doubt.empty() ? "" : " (" + doubt + ")");
+    return {model.prior.material, viscoelastic_in_words(bench, named), false};
   }
   try {
     const Material material = assumed_bars(bench);
     if (all_elastic(bench)) {
       return {material, "elastic, moduli from the bench", false};
     }
-    return {material, viscoelastic_in_words(bench, std::nullopt), true};
+    return {material, viscoelastic_in_words(bench, std::nullopt), takes_bar_model(bench)};
   } catch (const InputError& error) {
     throw error.inside(settings.bench);
   }

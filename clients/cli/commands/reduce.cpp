@@ -66,7 +66,6 @@ Asked asked_by(const Settings& settings, const std::optional<BarModelFile>& bars
   asked.bench = settings.bench;
   if (bars.has_value()) {
     asked.bar_model = bars->prior.material;
-    asked.most_band_Hz = bars->band_limit_Hz;
     require_band(*bars, settings.request.band_limit_Hz);
   }
   if (settings.draws) {

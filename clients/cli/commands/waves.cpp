@@ -72,7 +72,7 @@ std::string model_in_words(const Told& told) {
   const Bar& bar = bar_named(told.shot.bench, told.options.bar);
   const auto& given = told.options.bar_model ? told.options.bar_model : told.shot.bar_model;
   std::string text = bar_in_words(bar, told.shot.bench, given);
-  if (given && !bar.youngs_modulus_Pa) {
+  if (given && bar.takes_bar_model()) {
     text += doubts_in_brackets(*given, told.shot);
   }
   return text;

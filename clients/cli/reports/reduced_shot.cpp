@@ -6,6 +6,7 @@
 
 #include "drivers/files/captures/capture.hpp"
 #include "drivers/files/settings/bench_file.hpp"
+#include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/reduction/requested.hpp"
 
@@ -17,10 +18,8 @@ std::string absolute_name(const std::filesystem::path& path) {
 }
 
 bool assumes_bar_model(const Shot& shot, const ReductionOptions& options) {
-  const bool all_elastic =
-      shot.bench.input.youngs_modulus_Pa.has_value() &&
-      (!shot.bench.output.has_value() || shot.bench.output->youngs_modulus_Pa.has_value());
-  return !all_elastic && !options.bar_model.has_value() && !shot.bar_model.has_value();
+  return takes_bar_model(shot.bench) && !options.bar_model.has_value() &&
+         !shot.bar_model.has_value();
 }
 
 void rebench(Shot& shot, const std::filesystem::path& path) {
@@ -56,7 +55,6 @@ ReductionOptions options_with(const Asked& asked, const ReductionRequest& reques
   ReductionOptions options = options_of(request);
   options.arrival_s = asked.arrival_s;
   options.bar_model = asked.bar_model;
-  options.most_band_Hz = asked.most_band_Hz;
   return options;
 }
 
@@ -74,6 +72,7 @@ ReducedShot reduce_capture(const std::filesystem::path& capture, const Asked& as
       reduced.as_filed = Reducer(reduced.options).reduce(reduced.shot);
       rebench(reduced.shot, *asked.bench);
     }
+    require_own_band_known(reduced.shot.bench, reduced.options.band_limit_Hz);
     reduced.default_bar_model = assumes_bar_model(reduced.shot, reduced.options);
     reduced.reduction = Reducer(reduced.options).reduce(reduced.shot);
   } catch (const InputError& error) {

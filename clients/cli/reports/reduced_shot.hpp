@@ -44,7 +44,6 @@ struct Asked {
   bool as_filed = true;  ///< by what is filed with the capture where `request` is silent
   std::optional<double> arrival_s{};  ///< these as in ReductionOptions
   std::optional<Material> bar_model{};
-  std::optional<double> most_band_Hz{};
   std::optional<std::string> bench{};  ///< a corrected bench file: the result then holds the one
                                        ///< with the shot's own too
 };

@@ -109,7 +109,7 @@ JsonValue describe(const IdentifiedSpecimen& outcome) {
     entry.push_back({"refused", theory.refused.empty() ? JsonValue(nullptr) : theory.refused});
     tried.push_back(std::move(entry));
   }
-  const bool assumed = !all_elastic(outcome.shots.front().bench) && !outcome.bars &&
+  const bool assumed = takes_bar_model(outcome.shots.front().bench) && !outcome.bars &&
                        !outcome.shots.front().bar_model;
   return JsonObject{
       {"solid", name_of(fit.solid)},

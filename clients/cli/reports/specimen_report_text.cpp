@@ -27,7 +27,9 @@ std::string bars_in_words(const IdentifiedSpecimen& outcome) {
     return "elastic, moduli from the bench";
   }
   if (outcome.bars) {
-    return outcome.bars->name;
+    Material named = outcome.bars->prior.material;
+    named.source = outcome.bars->name;
+    return viscoelastic_in_words(first.bench, named);
   }
   return viscoelastic_in_words(first.bench, first.bar_model);
 }

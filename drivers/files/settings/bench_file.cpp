@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/files/settings/material_file.hpp"
 #include "drivers/files/settings/toml_table.hpp"
 
 namespace kolsky {
@@ -17,7 +18,7 @@ Measured equal_area_diameter(const Measured& side_m) {
 
 Bar read_bar(const TomlTable& table) {
   table.expect({"length_m", "diameter_m", "density_kg_m3", "poisson_ratio", "youngs_modulus_Pa",
-                "section", "side_m", "far_end"});
+                "material", "section", "side_m", "far_end"});
   Bar bar;
   if (table.has("section")) {
     constexpr std::array kSections{Section::round, Section::square};
@@ -34,6 +35,9 @@ Bar read_bar(const TomlTable& table) {
   bar.density_kg_m3 = table.measured("density_kg_m3");
   bar.poisson_ratio = table.measured("poisson_ratio");
   bar.youngs_modulus_Pa = table.optional_measured("youngs_modulus_Pa");
+  if (const auto material = table.optional_table("material")) {
+    bar.material = read_material(*material);
+  }
   return bar;
 }
 

@@ -50,44 +50,6 @@ void refuse_of_other_solids(const TomlTable& table, SolidKind solid) {
   }
 }
 
-Material read(const TomlTable& table) {
-  Material material;
-  material.solid = read_solid(table);
-  refuse_of_other_solids(table, material.solid);
-  std::vector<std::string> keys = {"density_kg_m3", "poisson_ratio"};
-  for (const SolidParameter& parameter : parameters_of(material.solid)) {
-    keys.push_back(parameter.name);
-  }
-  keys.insert(keys.end(), {"solid", "source", "covariance", "identified"});
-  table.expect(keys);
-  material.density_kg_m3 = table.measured("density_kg_m3");
-  material.poisson_ratio = table.measured("poisson_ratio");
-  material.parameters.clear();
-  for (const SolidParameter& parameter : parameters_of(material.solid)) {
-    material.parameters.push_back(table.measured(parameter.name));
-  }
-  material.source = table.optional_text("source").value_or("");
-  if (table.has("covariance")) {
-    material.covariance = table.numbers("covariance");
-  }
-  if (const auto identified = table.optional_table("identified")) {
-    material.identified = Material::Identified{identified->optional_number("band_limit_Hz"),
-                                               identified->optional_number("temperature_K"),
-                                               identified->optional_number("chi2_reduced"),
-                                               identified->optional_flag("passive").value_or(true)};
-    for (const std::string& key : identified->keys()) {
-      identified->accept(key);  // the rest of that is for people
-    }
-  }
-  table.finish();
-  try {
-    check(material);
-  } catch (const InputError& error) {
-    throw table.located(error);
-  }
-  return material;
-}
-
 // The shortest digits that read back as the same bits.
 std::string digits(double value) {
   std::array<char, 32> text{};
@@ -125,12 +87,50 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
+Material read_material(const TomlTable& table) {
+  Material material;
+  material.solid = read_solid(table);
+  refuse_of_other_solids(table, material.solid);
+  std::vector<std::string> keys = {"density_kg_m3", "poisson_ratio"};
+  for (const SolidParameter& parameter : parameters_of(material.solid)) {
+    keys.push_back(parameter.name);
+  }
+  keys.insert(keys.end(), {"solid", "source", "covariance", "identified"});
+  table.expect(keys);
+  material.density_kg_m3 = table.measured("density_kg_m3");
+  material.poisson_ratio = table.measured("poisson_ratio");
+  material.parameters.clear();
+  for (const SolidParameter& parameter : parameters_of(material.solid)) {
+    material.parameters.push_back(table.measured(parameter.name));
+  }
+  material.source = table.optional_text("source").value_or("");
+  if (table.has("covariance")) {
+    material.covariance = table.numbers("covariance");
+  }
+  if (const auto identified = table.optional_table("identified")) {
+    material.identified = Material::Identified{identified->optional_number("band_limit_Hz"),
+                                               identified->optional_number("temperature_K"),
+                                               identified->optional_number("chi2_reduced"),
+                                               identified->optional_flag("passive").value_or(true)};
+    for (const std::string& key : identified->keys()) {
+      identified->accept(key);  // the rest of that is for people
+    }
+  }
+  table.finish();
+  try {
+    check(material);
+  } catch (const InputError& error) {
+    throw table.located(error);
+  }
+  return material;
+}
+
 Material read_material(const std::filesystem::path& path) {
-  return read(TomlTable::open(path));
+  return read_material(TomlTable::open(path));
 }
 
 Material parse_material(const std::string& text, const std::string& name) {
-  return read(TomlTable::parse(text, name));
+  return read_material(TomlTable::parse(text, name));
 }
 
 std::string format_material(const Material& material) {

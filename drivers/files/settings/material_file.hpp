@@ -7,8 +7,12 @@
 
 namespace kolsky {
 
+class TomlTable;
+
 /// @throws InputError: file, key and mend
 [[nodiscard]] Material read_material(const std::filesystem::path& path);
+/// Of a table of another file.
+[[nodiscard]] Material read_material(const TomlTable& table);
 [[nodiscard]] Material parse_material(const std::string& text, const std::string& name);
 
 /// TOML with as many digits as it takes for the same bits to be read back. What is said of the

@@ -418,6 +418,84 @@ TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
   EXPECT_EQ(plan("near", {}).code, 0);
 }
 
+/// An output rod that has aged: its own material stands in the bench, which captures hold.
+class UnlikeRodFiles : public SpecimenFiles {
+ protected:
+  UnlikeRodFiles() { model_.output = {1180.0, 5.0e9, 30.0e9, 2.0e6}; }
+
+  [[nodiscard]] std::string bench_with(const std::string& further = "") const {
+    return replaced(kBench, "[[gauges]]",
+                    "[bars.output.material]\nsource = \"output rod, shots of May\"\n"
+                    "density_kg_m3 = 1180.0\npoisson_ratio = 0.36\nE1_Pa = 5.0e9\n"
+                    "E1_Pa_sd = 3e5\nE2_Pa = 30e9\nE2_Pa_sd = 4e7\neta2_Pa_s = 2e6\n" +
+                        further + "[[gauges]]");
+  }
+};
+
+TEST_F(UnlikeRodFiles, AreReducedPlannedAndIdentifiedByEachRodsOwnMaterial) {
+  folder_.write("rods.toml", bench_with());
+  const std::string rods = folder_ / "rods.toml";
+  const std::string corrected = folder_ / "corrected.h5";
+  const json told =
+      json_of(kolsky({"reduce", captures_.front(), "--bar-model", folder_ / "pmma.toml", "--bench",
+                      rods, "--save", corrected, "--json"}));
+  EXPECT_NE(told["bar_model"].dump().find("output bar by itself: output rod, shots of May"),
+            std::string::npos)
+      << told["bar_model"];
+  const double alike_Pa = told["as_filed"]["summary"]["peak_stress_Pa"];
+  const double stress_Pa = told["summary"]["peak_stress_Pa"];
+  EXPECT_GT(std::abs(alike_Pa / stress_Pa - 1.0), 0.04);
+  // The rod stays in the capture.
+  const json again = json_of(kolsky({"reduce", corrected, "--bar-model", folder_ / "pmma.toml",
+                                     "--uncertainty", "--draws", "100", "--json"}));
+  EXPECT_EQ(again["stress_Pa"], told["stress_Pa"]);
+  EXPECT_NE(again["uncertainty"]["sources"].dump().find("output bar's material"),
+            std::string::npos);
+  folder_.write("core.toml",
+                "density_kg_m3 = 1140\npoisson_ratio = 0.376\nE1_Pa = 121e6\nE2_Pa = 143e6\n"
+                "eta2_Pa_s = 2860\n");
+  const auto planned = [&](const std::string& bench) {
+    return json_of(kolsky({"plan", "--bench", bench, "--specimen", folder_ / "core.toml",
+                           "--bar-model", folder_ / "pmma.toml", "--pulse-strain", "0.001",
+                           "--pulse-duration", "170e-6", "--rise", "40e-6", "--json"}));
+  };
+  EXPECT_NE(planned(rods)["peak_stress_Pa"], planned(folder_ / "bench.toml")["peak_stress_Pa"]);
+  const json waves = json_of(kolsky({"waves", corrected, "--bar", "output", "--json"}));
+  EXPECT_EQ(waves["bar_model"], "output rod, shots of May");
+  std::vector<std::string> words{
+      "identify", "specimen", corrected, "--bar-model", folder_ / "pmma.toml", "--json"};
+  const json fit = json_of(kolsky(words));
+  EXPECT_LT(fit["chi2_reduced"], 1.2);
+  for (const auto& [name, truth] :
+       {std::pair{"E1_Pa", 121e6}, {"E2_Pa", 143e6}, {"eta2_Pa_s", 2860.0}}) {
+    const json& own = fit["parameters"][name];
+    EXPECT_NEAR(own["value"].get<double>(), truth, 4.0 * own["sd"].get<double>()) << name;
+  }
+}
+
+TEST_F(UnlikeRodFiles, AreRefusedOutsideWhatTheRodWasIdentifiedInAndWhereOneMaterialIsMeant) {
+  folder_.write("cold.toml", bench_with("[bars.output.material.identified]\ntemperature_K = 285.0\n"
+                                        "band_limit_Hz = 20e3\n"));
+  const std::string cold = folder_ / "cold.toml";
+  EXPECT_TRUE(refused(kolsky({"reduce", captures_.front(), "--bench", cold}),
+                      {"bars.output.material", "285.0 K", "296.0 K"}));
+  folder_.write("rods.toml", bench_with("[bars.output.material.identified]\n"
+                                        "temperature_K = 296.0\nband_limit_Hz = 20e3\n"));
+  const std::string rods = folder_ / "rods.toml";
+  EXPECT_EQ(
+      json_of(kolsky({"reduce", captures_.front(), "--bench", rods, "--json"}))["band_limit_Hz"],
+      20e3);
+  EXPECT_TRUE(
+      refused(kolsky({"reduce", captures_.front(), "--bench", rods, "--band-limit", "30e3"}),
+              {"bars.output.material", "20000 Hz", "30000 Hz"}));
+  const std::vector<std::string> one{"bars.output.material", "one material", "leave it out"};
+  EXPECT_TRUE(refused(
+      kolsky({"model", "new", "--kind", "shpb", "--bench", rods, "-o", folder_ / "model.toml"}),
+      one));
+  EXPECT_TRUE(refused(kolsky({"calibrate", captures_.front(), "--bench", rods}),
+                      {"bars.output.material", "leave it out"}));
+}
+
 /// A core that creeps over two times.
 class TwoBranchSpecimenFiles : public SpecimenFiles {
  protected:

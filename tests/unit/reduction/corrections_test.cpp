@@ -287,5 +287,45 @@ INSTANTIATE_TEST_SUITE_P(ElasticAndViscoelastic, UnlikeBars,
                                            std::pair{kPmma, kAluminium},
                                            std::pair{kTitanium, kAluminium}));
 
+constexpr RodMaterial kAged{
+    .density_kg_m3 = 1180, .E1_Pa = 5.0e9, .E2_Pa = 30.0e9, .eta2_Pa_s = 2.0e6};
+
+Material aged() {
+  return three_element_material({1180.0}, {0.36}, {5.0e9}, {30.0e9}, {2.0e6}, "the aged rod");
+}
+
+/// Two viscoelastic rods that differ: the output bar's own is in the bench, the bar model is the
+/// input bar's.
+TEST(UnlikeRods, AreReducedToTheTimeDomainSolution) {
+  SolvedShot solved = solve(kPmma, kAged, 0.004);
+  Reducer reducer;
+  const Reduction alike = reducer.reduce(solved.shot);
+  EXPECT_GT(worst(alike, alike.force_back_N, solved, solved.truth.force_back_N), 0.05);
+  solved.shot.bench.output->material = aged();
+  const Reduction r = reducer.reduce(solved.shot);
+  ASSERT_TRUE(r.quality.reducible) << r.quality.reason;
+  EXPECT_LT(worst(r, r.force_back_N, solved, solved.truth.force_back_N), 3e-3);
+  EXPECT_LT(worst(r, r.strain, solved, solved.truth.strain), 3e-3);
+  EXPECT_NE(r.bar_model.find("output bar by itself: the aged rod"), std::string::npos)
+      << r.bar_model;
+  EXPECT_EQ(r.stress_Pa, Reducer().reduce(solved.shot).stress_Pa) << "by the tables of others";
+}
+
+TEST(UnlikeRods, AreHeldToWhatTheOutputBarWasIdentifiedIn) {
+  SolvedShot solved = solve(kPmma, kAged, 0.004);
+  Material own = aged();
+  own.identified = Material::Identified{.band_limit_Hz = 12e3, .temperature_K = 293.0};
+  solved.shot.bench.output->material = own;
+  EXPECT_EQ(Reducer().reduce(solved.shot).band_limit_Hz, 12e3);
+  solved.shot.meta["temperature_K"] = "296.5";
+  try {
+    (void)Reducer().reduce(solved.shot);
+    ADD_FAILURE() << "at another temperature";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "bars.output.material");
+    EXPECT_NE(error.problem().find("296.5 K"), std::string::npos) << error.problem();
+  }
+}
+
 }  // namespace
 }  // namespace kolsky

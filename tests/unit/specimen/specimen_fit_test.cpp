@@ -216,6 +216,34 @@ TEST(FitSpecimen, TheBarsDeviationIsCarried) {
   expect_material(once, model.specimen);
 }
 
+/// An output bar of another viscoelastic material, with what is not known of it.
+TEST(FitSpecimen, AnOutputBarOfItsOwnMaterialIsGoneByAndItsDeviationCarried) {
+  LinearShpb model;
+  model.output = {1180.0, 5.0e9, 30.0e9, 2.0e6};
+  std::vector<Shot> shots = shots_of(model, 4);
+  SpecimenFitOptions options;
+  options.bars = WaveTheory::elementary;
+  options.specimen = SpecimenWaves::massless;
+  const SpecimenFit alike = fit_specimen(shots, BarPrior(paper_pmma()), options);
+  EXPECT_GT(alike.chi2_reduced, 2.0);
+  const auto with_own = [&](double E1_Pa, double sd_Pa) {
+    for (Shot& shot : shots) {
+      shot.bench.output->material = three_element_material({1180.0}, {0.36}, {E1_Pa, sd_Pa},
+                                                           {30.0e9}, {2.0e6}, "the output rod");
+    }
+    return fit_specimen(shots, BarPrior(paper_pmma()), options);
+  };
+  const SpecimenFit fit = with_own(5.0e9, 0.0);
+  expect_material(fit, model.specimen);
+  EXPECT_NEAR(fit.chi2_reduced, 1.0, 0.2);
+  EXPECT_TRUE(fit.bench.empty());
+  const SpecimenFit carried = with_own(5.0e9 * 1.002, 5.0e9 * 0.002);
+  expect_material(carried, model.specimen);
+  ASSERT_EQ(carried.bench.size(), 1U);
+  EXPECT_TRUE(carried.bench.front().name.starts_with("output-bar-model:"));
+  EXPECT_NEAR(std::abs(carried.bench.front().value), 1.0, 4.0 * carried.bench.front().sd + 0.1);
+}
+
 // What two specimens on the same bars share: a bar that is filed higher by its deviation moves the
 // material by just that covariance.
 TEST(FitSpecimen, TheCovarianceWithTheBarsIsWhatMovingTheirPriorDoes) {

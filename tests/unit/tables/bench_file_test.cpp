@@ -279,6 +279,60 @@ TEST(BenchFile, EveryNumberMayHaveADeviation) {
   }
 }
 
+/// The bench with a viscoelastic output bar of its own material.
+std::string with_own_material(const std::string& table) {
+  std::string text = kShpb;
+  const std::string modulus = "youngs_modulus_Pa = 210e9\n";
+  text.replace(text.find("7800"), 4, "1180");
+  text.replace(text.find(modulus), modulus.size(), table);
+  return text;
+}
+
+const std::string kOwnMaterial =
+    "[bars.output.material]\ndensity_kg_m3 = 1180\npoisson_ratio = 0.36\nE1_Pa = 5.2e9\n"
+    "E2_Pa = 30e9\neta2_Pa_s = 2e6\n";
+
+TEST(BenchFile, AnOutputBarMayHaveAMaterialOfItsOwn) {
+  const Bench bench = parse_bench(
+      with_own_material(kOwnMaterial +
+                        "covariance = [1e12, 0, 0, 0, 1e16, 0, 0, 0, 1e6]\n"
+                        "[bars.output.material.identified]\nband_limit_Hz = 20e3\nshots = 4\n"),
+      "b.toml");
+  EXPECT_FALSE(bench.input.material);
+  EXPECT_TRUE(bench.input.takes_bar_model());
+  ASSERT_TRUE(bench.output->material);
+  EXPECT_FALSE(bench.output->takes_bar_model());
+  EXPECT_EQ(bench.output->material->E1_Pa().value, 5.2e9);
+  EXPECT_EQ(bench.output->material->covariance->at(4), 1e16);
+  EXPECT_EQ(bench.output->material->identified->band_limit_Hz, 20e3);
+}
+
+TEST(BenchFile, RefusesAMaterialThatIsNotThatBars) {
+  const auto refusal = [](const std::string& text) {
+    return refusal_of([&] { (void)parse_bench(text, "b.toml"); });
+  };
+  const auto holds = [](const std::string& said, const std::string& words) {
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  holds(refusal(with_own_material("youngs_modulus_Pa = 5e9\n" + kOwnMaterial)),
+        "bars.output.material: is filed beside youngs_modulus_Pa");
+  std::string other = kOwnMaterial;
+  other.replace(other.find("1180"), 4, "1240");
+  holds(refusal(with_own_material(other)),
+        "bars.output.material.density_kg_m3: is of bars of 1240");
+  holds(refusal(with_own_material(kOwnMaterial +
+                                  "[bars.output.material.identified]\npassive = false\n")),
+        "identified.passive: is false");
+  std::string unknown = kOwnMaterial;
+  unknown.replace(unknown.find("eta2"), 4, "eta4");
+  holds(refusal(with_own_material(unknown)), "bars.output.material.eta4_Pa_s");
+  std::string on_input = kShpb;
+  std::string table = kOwnMaterial;
+  table.replace(table.find("output"), 6, "input");
+  on_input.insert(on_input.find("[bars.output]"), table);
+  holds(refusal(on_input), "bars.input.material: is for an output bar");
+}
+
 TEST(BenchFile, KeepsTheTextItWasReadFrom) {
   const ScratchFolder folder;
   const std::string text = std::string("# a remark\n") + kShpb;

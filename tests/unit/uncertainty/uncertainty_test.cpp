@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 #include <thread>
@@ -213,6 +214,45 @@ TEST(Uncertainty, ABarOfAnotherFamilyMovesByItsWholeCovariance) {
   EXPECT_LT((moved_by - relative).norm(), 1e-9 * relative.norm());
   const Eigen::VectorXd springs = (Eigen::VectorXd(5) << 1, 1, 0, 1, 0).finished();
   EXPECT_LT((warmer + 0.5 * kSofteningPerK * springs).norm(), 1e-12);
+}
+
+TEST(Uncertainty, AnOutputBarsOwnMaterialMovesByItself) {
+  testing::LinearShpb model;
+  Bench bench = model.bench();
+  bench.temperature_K = Measured{296.0, 0.5};
+  bench.output->density_kg_m3.sd = 2.0;
+  Material own = paper_pmma();
+  own.density_kg_m3.sd = 2.0;
+  own.identified.emplace();
+  // From waves: the density's share is in all of them.
+  const double density = std::pow(2.0 / 1180.0, 2);
+  own.covariance.emplace();
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      own.covariance->push_back((density + (i == j ? 12e-6 : 0.0)) * own.parameters[i] *
+                                own.parameters[j]);
+    }
+  }
+  bench.output->material = own;
+  Material bars = paper_pmma();
+  bars.E1_Pa().sd = 0.001 * bars.E1_Pa();
+  std::map<std::string, double> of_own;
+  std::map<std::string, double> of_bars;
+  for (const UncertaintySource& source : uncertainty_sources(bench, BarPrior(bars))) {
+    ShotNumbers moved{bench, bars};
+    source.move(moved, 1.0);
+    const auto by = [](const Material& at, const Material& filed) {
+      return std::pow(at.E1_Pa() / filed.E1_Pa() - 1.0, 2);
+    };
+    of_own[source.group] += by(*moved.bench.output->material, own);
+    of_bars[source.group] += by(moved.bars, bars);
+  }
+  EXPECT_NEAR(of_own["bar moduli"], 12e-6, 1e-9) << "the density's share is its own";
+  EXPECT_NEAR(of_own["bar densities"], density, 1e-9);
+  EXPECT_NEAR(of_bars["bar moduli"], 1e-6, 1e-9);
+  EXPECT_EQ(of_bars["bar densities"], 0.0);
+  EXPECT_NEAR(of_own["temperature"], std::pow(0.5 * kSofteningPerK, 2), 1e-12);
+  EXPECT_NEAR(of_bars["temperature"], std::pow(0.5 * kSofteningPerK, 2), 1e-12);
 }
 
 TEST(Uncertainty, ModuliFromWavesGoWithTheDensity) {
