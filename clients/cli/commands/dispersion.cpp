@@ -120,9 +120,13 @@ Tabulated tabulate(const Settings& settings) {
     result.theory = wave_theory(*settings.dispersion);
   }
   const BarModel model = bar_model_of(settings, bench, bar);
-  result.bar_model = bar_in_words(bar, bench, model.material);
-  const auto compliance =
-      compliance_of(bar, model.material ? *model.material : assumed_bars(bench));
+  std::unique_ptr<const Compliance> compliance;
+  try {
+    result.bar_model = bar_in_words(bar, bench, model.material);
+    compliance = compliance_of(bar, model.material ? *model.material : assumed_bars(bench));
+  } catch (const InputError& error) {
+    throw error.inside(settings.bench);
+  }
   const double highest_Hz =
       settings.highest_Hz.value_or(std::min(thick_from_Hz(bar, *compliance), model.most_band_Hz));
   for (std::size_t i = 0; i < kTheories.size(); ++i) {

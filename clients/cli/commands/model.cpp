@@ -70,6 +70,15 @@ void refuse_own_material(const Bench& bench, const std::string& file) {
   }
 }
 
+/// Bars that are held as the paper's PMMA must be near enough to it.
+void require_assumable(const Bench& bench, const std::string& file) {
+  try {
+    static_cast<void>(assumed_bars(bench));
+  } catch (const InputError& error) {
+    throw error.inside(file);
+  }
+}
+
 /// Bars as a material file gives them: where a model of the bar itself starts, what one of a split
 /// bar goes by.
 void take_bar_model(const Material& material, const std::optional<Bench>& bench, Model& model) {
@@ -199,9 +208,16 @@ int make_new(const NewSettings& settings, Context& context) {
   } else if (settings.bar_model) {
     const Material bars = read_material(*settings.bar_model);
     require_passive(bars, *settings.bar_model);
+    // A bar's own model only starts there.
+    if (kind == BenchKind::shpb && filed) {
+      require_bar_model_holds(bars, *filed, *settings.bar_model);
+    }
     take_from(*settings.bar_model, [&] { take_bar_model(bars, filed, file.model); });
     file.bar_source = *settings.bar_model;
   } else if (!elastic) {
+    if (kind == BenchKind::shpb && filed) {
+      require_assumable(*filed, *settings.bench);
+    }
     file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"
                                              : "the paper's PMMA (Table 4, row 1), held";
   }

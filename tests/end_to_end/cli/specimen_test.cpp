@@ -298,6 +298,9 @@ TEST_F(SpecimenFiles, RefuseABarModelOutsideWhereItWasIdentified) {
   EXPECT_TRUE(refused(kolsky({"reduce", capture, "--bar-model", folder_ / "cold.toml"}),
                       {"cold.toml", "285.0 K", "296.0 K"}));
   EXPECT_TRUE(refused(kolsky(identify({"--bar-model", folder_ / "cold.toml"})), {"285.0 K"}));
+  EXPECT_TRUE(refused(kolsky({"model", "new", "--kind", "shpb", "--bench", folder_ / "bench.toml",
+                              "--bar-model", folder_ / "cold.toml", "-o", folder_ / "model.toml"}),
+                      {"cold.toml", "285.0 K", "296.0 K"}));
   EXPECT_TRUE(refused(
       kolsky({"reduce", capture, "--bar-model", folder_ / "pmma.toml", "--band-limit", "60000"}),
       {"pmma.toml", "40000 Hz", "60000 Hz"}));
@@ -406,11 +409,21 @@ TEST_F(SpecimenFiles, RefuseBarsOfWhichNoModuliAreKnown) {
   said_of_capture.push_back("dense.h5");
   EXPECT_TRUE(refused(kolsky({"identify", "specimen", dense}), said_of_capture));
   EXPECT_TRUE(refused(plan("dense", {}), said));
+  const std::string model = folder_ / "model.toml";
+  const std::vector<std::string> new_model{
+      "model", "new", "--kind", "shpb", "--bench", folder_ / "dense.toml", "-o", model};
+  std::vector<std::string> said_of_bench = said;
+  said_of_bench.push_back("dense.toml");
+  EXPECT_TRUE(refused(kolsky(new_model), said_of_bench));
+  EXPECT_TRUE(refused(kolsky({"dispersion", "--bench", folder_ / "dense.toml"}), said_of_bench));
   // With their moduli they are bars like others.
   const std::vector<std::string> known{"--bar-model", folder_ / "nylon.toml"};
   EXPECT_EQ(kolsky({"reduce", dense, known[0], known[1]}).code, 0);
   EXPECT_EQ(kolsky({"identify", "specimen", dense, known[0], known[1]}).code, 0);
   EXPECT_EQ(plan("dense", known).code, 0);
+  std::vector<std::string> known_model = new_model;
+  known_model.insert(known_model.end(), known.begin(), known.end());
+  EXPECT_EQ(kolsky(known_model).code, 0);
   // PMMA is cast at densities some percent apart.
   const std::string near = import("near", bench_of("1220.0"));
   EXPECT_EQ(kolsky({"reduce", near}).code, 0);
