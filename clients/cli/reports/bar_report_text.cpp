@@ -49,7 +49,7 @@ std::string alternatives_text(const BarIdentification& result) {
     text += fmt::format("    {:<11}{:<20}far end {:<8}", name_of(a.theory.waves),
                         a.theory.lossless ? "elastic" : name_of(a.theory.solid),
                         name_of(a.theory.far_end));
-    text += a.failed.empty() ? fmt::format("{:>12.1f}{:>11.4f}{}\n", a.log_evidence - best,
+    text += a.failed.empty() ? fmt::format("{:>12.1f} {:>10.4f}{}\n", a.log_evidence - best,
                                            a.chi2_reduced, a.left_behind ? "  roughly" : "")
                              : " " + a.failed + "\n";
   }
@@ -59,7 +59,7 @@ std::string alternatives_text(const BarIdentification& result) {
 /// J at a few frequencies, for people.
 std::string spectrum_text(const BarSpectrum& spectrum) {
   std::string text =
-      "  frequency by frequency\n"
+      "  frequency by frequency (mean of the shots ± deviation of one)\n"
       "          Hz      J1 [1/GPa]        J2 [1/GPa]       alpha [1/m]   c [m/s]\n";
   double next = 0.0;
   for (std::size_t k = 0; k < spectrum.frequency_Hz.size(); ++k) {

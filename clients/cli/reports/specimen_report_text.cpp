@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "clients/cli/reports/budget.hpp"
 #include "clients/cli/reports/fit_draws.hpp"
 #include "clients/cli/reports/specimen_report.hpp"
@@ -15,6 +17,28 @@ std::string table_of(const std::vector<FittedNumber>& list) {
   for (const FittedNumber& p : list) {
     text +=
         fmt::format("    {:<12}{:>12.5g} ± {:.2g} %\n", p.name, p.value, 100.0 * p.sd / p.value);
+  }
+  return text;
+}
+
+std::string deviation(double sd) {
+  return std::isnan(sd) ? "       -" : fmt::format("± {:<6.2g}", sd);
+}
+
+/// J at a few frequencies, for people.
+std::string spectrum_text(const std::vector<CompliancePoint>& spectrum) {
+  constexpr double kPerGPa = 1e9;
+  std::string text =
+      "      mean of the shots ± deviation of one\n"
+      "          Hz        J1 [1/GPa]        J2 [1/GPa]\n";
+  double next = 0.0;
+  for (const CompliancePoint& point : spectrum) {
+    if (point.frequency_Hz >= next) {
+      next = point.frequency_Hz * 1.35;
+      text += fmt::format("    {:>8.0f}  {:>8.4g} {}  {:>8.4g} {}\n", point.frequency_Hz,
+                          kPerGPa * point.J1_per_Pa, deviation(kPerGPa * point.J1_sd),
+                          kPerGPa * point.J2_per_Pa, deviation(kPerGPa * point.J2_sd));
+    }
   }
   return text;
 }
@@ -58,6 +82,7 @@ std::string report(const IdentifiedSpecimen& outcome) {
     text +=
         fmt::format("    three elements leave {:.1f} more of chi2\n", fit.three_element->chi2_gain);
   }
+  text += spectrum_text(fit.spectrum);
   if (outcome.spectral) {
     text += fmt::format("  strain over stress, frequency by frequency (eq. 25, up to {})\n",
                         with_unit(outcome.spectral->band_limit_Hz, "Hz"));
@@ -68,6 +93,7 @@ std::string report(const IdentifiedSpecimen& outcome) {
     if (outcome.spectral->separation == Separation::equilibrium) {
       text += "    waves overlap: told apart by the output bar's force, as if in equilibrium\n";
     }
+    text += spectrum_text(outcome.spectral->spectrum);
     for (const std::string& warning : outcome.spectral->warnings) {
       text += "    warning: " + warning + "\n";
     }

@@ -172,6 +172,16 @@ TEST_F(SpecimenFiles, AreIdentifiedWithBothEstimatorsAndAFileToGoOnWith) {
   EXPECT_EQ(told["spectral"]["separation"], "never");
   EXPECT_TRUE(told["spectral"]["warnings"].empty());
 
+  // For people: mean and scatter at some frequencies, by both estimators.
+  const std::string text = kolsky(identify({"--bar-model", folder_ / "pmma.toml"})).out;
+  const std::string head = "J1 [1/GPa]        J2 [1/GPa]\n";
+  const std::size_t direct = text.find(head);
+  ASSERT_NE(direct, std::string::npos) << text;
+  EXPECT_NE(text.find(head, direct + 1), std::string::npos) << text;
+  const std::string row = text.substr(direct + head.size(),
+                                      text.find('\n', direct + head.size()) - direct - head.size());
+  EXPECT_NE(row.find("±"), row.rfind("±")) << row;
+
   const std::vector<double> first = model_.solve().front();
   const double pulse_strain = *std::max_element(first.begin(), first.end());
   const json plan = json_of(kolsky({"plan", "--bench", folder_ / "bench.toml", "--specimen", file,
