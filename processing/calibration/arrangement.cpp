@@ -298,10 +298,6 @@ void prepare(CalibrationPart& part, const BarPrior& bars, Channels channels) {
   }
   Bench bench = part.shots.front().bench;
   part.two_passes = bench.gauges.size() == 1;
-  if (part.two_passes && part.lay == BarsLay::one_bar) {
-    throw InputError("gauges", "are too few: one on a bar to be characterised",
-                     "record the pulse with two gauges");
-  }
   if (channels == Channels::as_they_read) {
     part.swapped = set_in_order(bench, part.shots.front());
   }

@@ -548,6 +548,24 @@ TEST(InputBarAlone, OneGaugeGivesTheBarsOwnSpeedFromTwoPasses) {
   std::printf("one gauge: c %.2f +- %.2f m/s, E1 %.4g +- %.2g, E2 %.4g +- %.2g\n",
               part.wave_speed_m_per_s.value, part.wave_speed_m_per_s.sd, E1.combined.value,
               E1.combined.sd, E2.combined.value, E2.combined.sd);
+
+  // The same rod on a bench of its own: the same records, the same numbers.
+  Bench alone = model.bench();
+  alone.kind = BenchKind::bar;
+  alone.output.reset();
+  alone.specimen.reset();
+  alone.gauges.resize(1);
+  std::vector<Shot> by_itself = shots;
+  for (Shot& shot : by_itself) {
+    shot.bench = alone;
+    shot.channels.resize(1);
+  }
+  const Calibration as_bar = calibrate(by_itself, options);
+  ASSERT_EQ(as_bar.parts.size(), 1U);
+  EXPECT_EQ(as_bar.parts.front().lay, BarsLay::one_bar);
+  EXPECT_TRUE(as_bar.parts.front().two_passes);
+  EXPECT_EQ(as_bar.parts.front().wave_speed_m_per_s.value, part.wave_speed_m_per_s.value);
+  EXPECT_EQ(number(as_bar.parts.front(), "E1_Pa").combined.value, E1.combined.value);
 }
 
 /// A gauge filed 3 mm nearer to the end than it is.
