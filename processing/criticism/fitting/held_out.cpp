@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/record_parts.hpp"
@@ -11,41 +12,71 @@ namespace kolsky {
 
 namespace {
 
+using Places = std::vector<Eigen::Index>;  ///< of free numbers
+
 /// What first order says of one shot that is left out.
 struct Foretold {
-  std::vector<double> theta;  ///< with the shared numbers where the other shots have them
+  std::vector<double> theta;  ///< all as the other shots have them, but what is this shot's alone
   double square = 0.0;
-  double own = 0.0;  ///< twice the strengths that are this shot's alone
 };
+
+Places numbers_of_shot(const Composition& composition, Eigen::Index shot) {
+  Places own;
+  for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+    if (composition.numbers()[i].shot == shot) {
+      own.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  return own;
+}
+
+Places all_but(const Places& own, std::size_t numbers) {
+  Places others;
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(numbers); ++i) {
+    if (!std::ranges::binary_search(own, i)) {
+      others.push_back(i);
+    }
+  }
+  return others;
+}
+
+/// What strengths found in the shot itself took of its noise, which is put back.
+double noise_taken_by(const Places& own) {
+  return 2.0 * static_cast<double>(own.size());
+}
+
+std::vector<double> moved_inside(const Composition& composition, std::vector<double> theta,
+                                 const Places& places, const Eigen::VectorXd& move) {
+  for (std::size_t a = 0; a < places.size(); ++a) {
+    const auto at = static_cast<std::size_t>(places[a]);
+    theta[at] = composition.numbers()[at].inside(theta[at] + move[static_cast<Eigen::Index>(a)]);
+  }
+  return theta;
+}
 
 Foretold foretold(const Studied& studied, Eigen::Index shot, Eigen::Index size) {
   const ModelFit& fit = studied.fit;
   const auto rows = fit.jacobian.middleRows(shot * size, size);
-  const auto residual = fit.residual.segment(shot * size, size);
-  Foretold out{fit.theta, 0.0, 0.0};
-  // Shared numbers move to where the other shots alone would have them; those of this shot stay.
-  std::vector<Eigen::Index> shared;
-  for (std::size_t i = 0; i < fit.theta.size(); ++i) {
-    const std::ptrdiff_t of = studied.composition.numbers()[i].shot;
-    if (of < 0) {
-      shared.push_back(static_cast<Eigen::Index>(i));
-    } else if (of == shot) {
-      out.own += 2.0;
+  Eigen::VectorXd residual = fit.residual.segment(shot * size, size);
+  const Places own = numbers_of_shot(studied.composition, shot);
+  const Places others = all_but(own, fit.theta.size());
+  Foretold out{fit.theta, 0.0};
+  if (!others.empty()) {
+    const Eigen::MatrixXd columns = rows(Eigen::all, others);
+    const Eigen::MatrixXd left = fit.information(others, others) - columns.transpose() * columns;
+    const Eigen::VectorXd move = least_norm_solution(left, columns.transpose() * residual);
+    out.theta = moved_inside(studied.composition, std::move(out.theta), others, move);
+    const Eigen::VectorXd changed = columns * move;
+    residual += changed;
+    if (!own.empty()) {
+      const Eigen::MatrixXd strengths = rows(Eigen::all, own);
+      const Eigen::VectorXd follow =
+          -solve_symmetric(fit.information(own, own), strengths.transpose() * changed);
+      out.theta = moved_inside(studied.composition, std::move(out.theta), own, follow);
+      residual += strengths * follow;
     }
   }
-  if (shared.empty()) {
-    out.square = residual.squaredNorm() + out.own;
-    return out;
-  }
-  const Eigen::MatrixXd columns = rows(Eigen::all, shared);
-  const Eigen::MatrixXd others = fit.information(shared, shared) - columns.transpose() * columns;
-  const Eigen::VectorXd move = least_norm_solution(others, columns.transpose() * residual);
-  for (std::size_t a = 0; a < shared.size(); ++a) {
-    const auto at = static_cast<std::size_t>(shared[a]);
-    const FreeNumber& number = studied.composition.numbers()[at];
-    out.theta[at] = number.inside(fit.theta[at] + move[static_cast<Eigen::Index>(a)]);
-  }
-  out.square = (residual + columns * move).squaredNorm() + out.own;
+  out.square = residual.squaredNorm() + noise_taken_by(own);
   return out;
 }
 
@@ -77,16 +108,97 @@ class AllButOne : public ShotResiduals {
   std::size_t left_out_;
 };
 
+/// A shot under numbers that other shots have foretold.
+class LeftOut {
+ public:
+  LeftOut(const Studied& studied, ShotResiduals& residuals, std::size_t shot, std::size_t worker)
+      : studied_(studied),
+        residuals_(residuals),
+        shot_(shot),
+        worker_(worker),
+        own_(numbers_of_shot(studied.composition, static_cast<Eigen::Index>(shot))),
+        precision_(studied.composition.prior_precision()(own_, own_)) {}
+
+  [[nodiscard]] double square_at(const std::vector<double>& theta) const {
+    return residual_at(theta).squaredNorm() + noise_taken_by(own_);
+  }
+
+  /// With the strengths that are its alone as this shot has them: no other tells of them, and a fit
+  /// to the others leaves them where they are filed. @param theta  those among the rest
+  [[nodiscard]] std::vector<double> own_found(std::vector<double> theta) const {
+    if (own_.empty()) {
+      return theta;
+    }
+    constexpr int kMostSteps = 8;
+    constexpr double kSettled = 1e-2;  ///< of chi2
+    for (const Eigen::Index i : own_) {
+      theta[static_cast<std::size_t>(i)] = studied_.fit.theta[static_cast<std::size_t>(i)];
+    }
+    Place here = at(std::move(theta));
+    for (int step = 0; step < kMostSteps; ++step) {
+      Place next = at(stepped(here));
+      const double gain = here.objective - next.objective;
+      if (gain > 0.0) {
+        here = std::move(next);
+      }
+      if (!(gain > kSettled)) {
+        break;
+      }
+    }
+    return std::move(here.theta);
+  }
+
+ private:
+  struct Place {
+    std::vector<double> theta;
+    Eigen::VectorXd residual;
+    Eigen::VectorXd strain;  ///< of what is filed of this shot alone: half the penalty's gradient
+    double objective = 0.0;
+  };
+
+  [[nodiscard]] Place at(std::vector<double> theta) const {
+    Eigen::VectorXd off(static_cast<Eigen::Index>(own_.size()));
+    for (std::size_t a = 0; a < own_.size(); ++a) {
+      const auto i = static_cast<std::size_t>(own_[a]);
+      const FreeNumber& number = studied_.composition.numbers()[i];
+      off[static_cast<Eigen::Index>(a)] = theta[i] - number.theta_of(number.prior_mean);
+    }
+    Place place{std::move(theta), {}, precision_ * off, 0.0};
+    place.residual = residual_at(place.theta);
+    place.objective = place.residual.squaredNorm() + off.dot(place.strain);
+    return place;
+  }
+
+  /// By the common fit's derivatives.
+  [[nodiscard]] std::vector<double> stepped(const Place& here) const {
+    const ModelFit& fit = studied_.fit;
+    const auto size = static_cast<Eigen::Index>(residuals_.per_shot());
+    const Eigen::MatrixXd columns =
+        fit.jacobian.middleRows(static_cast<Eigen::Index>(shot_) * size, size)(Eigen::all, own_);
+    const Eigen::VectorXd downhill = -(columns.transpose() * here.residual + here.strain);
+    return moved_inside(studied_.composition, here.theta, own_,
+                        solve_symmetric(fit.information(own_, own_), downhill));
+  }
+
+  [[nodiscard]] Eigen::VectorXd residual_at(const std::vector<double>& theta) const {
+    return residuals_.evaluate_shot(studied_.composition, theta, shot_, worker_);
+  }
+
+  const Studied& studied_;
+  ShotResiduals& residuals_;
+  std::size_t shot_;
+  std::size_t worker_;
+  Places own_;
+  Eigen::MatrixXd precision_;  ///< of what is filed of them
+};
+
 double held_out_square(const Studied& studied, ShotResiduals& residuals, std::size_t shot,
                        std::size_t worker) {
   const auto size = static_cast<Eigen::Index>(residuals.per_shot());
   const auto at = static_cast<Eigen::Index>(shot);
   const Foretold first_order = foretold(studied, at, size);
-  const auto square_at = [&](const std::vector<double>& theta) {
-    return residuals.evaluate_shot(studied.composition, theta, shot, worker).squaredNorm() +
-           first_order.own;
-  };
-  const double square = square_at(first_order.theta);
+  const LeftOut left_out(studied, residuals, shot, worker);
+  const double square = left_out.square_at(first_order.theta);
   const double seen = studied.fit.residual.segment(at * size, size).squaredNorm();
   // Less than this share of what leaving out costs decides nothing.
   constexpr double kShare = 0.2;
@@ -100,7 +212,7 @@ double held_out_square(const Studied& studied, ShotResiduals& residuals, std::si
   chord.middleRows(at * size, size).setZero();
   const ModelFit fit =
       fit_model(studied.composition, others, serial_on(worker), studied.fit.theta, &chord);
-  return square_at(fit.theta);
+  return left_out.square_at(left_out.own_found(fit.theta));
 }
 
 }  // namespace

@@ -7,8 +7,9 @@
 namespace kolsky {
 
 /// Each shot's sum of squared whitened residuals with the shared parameters fitted to the other
-/// shots, to first order around the common fit. Strengths of a shot's own are found in the shot
-/// itself, and their share of its noise is put back. With one shot: its own.
+/// shots, to first order around the common fit. Strengths of a shot's own (a drift, how warm its
+/// bars were) are found in the shot itself, and their share of its noise is put back. With one
+/// shot: its own.
 [[nodiscard]] std::vector<double> held_out_squares(const Studied& studied,
                                                    std::size_t residuals_per_shot);
 

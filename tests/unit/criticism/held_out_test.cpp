@@ -12,6 +12,7 @@
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/record_parts.hpp"
 #include "tests/generators/campaign.hpp"
+#include "tests/unit/criticism/filed_bars.hpp"
 
 namespace kolsky {
 namespace {
@@ -106,6 +107,53 @@ TEST(HeldOut, IsExactWhereFirstOrderIsNot) {
     most_wrong = std::max(most_wrong, std::abs(first_order[left_out] - truth) / truth);
   }
   EXPECT_GT(most_wrong, 0.5);
+}
+
+/// A split bar of whose bars no shot says how warm they are, only about.
+testing::Campaign unsure_of_warmth(const std::string& effect) {
+  testing::Campaign truth = testing::draw_campaign({.seed = 5,
+                                                    .shots = 4,
+                                                    .gauges = 4,
+                                                    .noise_strain = 4e-6,
+                                                    .tolerances = testing::Tolerances::filed,
+                                                    .samples = 1000,
+                                                    .rate_Hz = 5e5,
+                                                    .split = true});
+  constexpr std::array kWarmer{0.5, -0.4, 0.3, -0.6};
+  for (std::size_t i = 0; i < kWarmer.size(); ++i) {
+    truth.world.shots[i].temperature_K = truth.world.reference_K + kWarmer[i];
+  }
+  truth.world.material.per_kelvin = 3e-3;
+  truth.bench.temperature_K->sd = 0.4;
+  testing::hide(truth, testing::parse_effect(effect));
+  return truth;
+}
+
+std::vector<Shot> of_unknown_warmth(const testing::Campaign& truth) {
+  std::vector<Shot> shots = testing::shots_of(truth);
+  for (Shot& shot : shots) {
+    shot.meta.erase("temperature_K");
+  }
+  return shots;
+}
+
+// Other shots do not tell how warm the bars were in the one that is left out: fitted to them, its
+// warmth went back to what is filed, and whatever bends so much that its folds are fitted was held
+// against bars of the wrong moduli.
+TEST(HeldOut, LeavesAShotWhatIsItsAlone) {
+  const testing::Campaign truth = unsure_of_warmth("specimen-second-relaxation=6e-10,tau=3e-5");
+  const Campaign campaign = read_campaign(of_unknown_warmth(truth));
+  Study study(campaign, 0.0, Workers{});
+  Model model = filed_split_bar(truth);
+  model.effects.push_back(use_named("specimen-second-relaxation"));
+  for (ModelValue& value : model.effects.back().values) {
+    value.free = true;
+  }
+  const Studied studied = study.fit(model);
+  const std::vector<double> squares = held_out_squares(studied, study);
+  const double cost = std::accumulate(squares.begin(), squares.end(), 0.0) - studied.fit.chi2;
+  EXPECT_GT(cost, 0.0);
+  EXPECT_LT(cost, 4.0 * static_cast<double>(studied.fit.theta.size()));
 }
 
 /// Spectra, two channels side by side, of columns that are given in time.
