@@ -23,12 +23,11 @@ namespace kolsky {
 
 namespace {
 
-HeldOut held_out(const Studied& before, const Studied& after, Left left, Study& study) {
-  const auto mean = [&](const Studied& studied) {
-    return held_out_misfit(held_out_squares(studied, study), studied.fit.penalty,
-                           static_cast<double>(study.residuals().size()));
-  };
-  return {mean(before), mean(after), floor_of(after, left, study.campaign().shots.size())};
+/// @param studied  what the residuals are frozen for: what was bent is straightened with what they
+///                 left then, and without that fit they are another's
+double misfit_held_out(const Studied& studied, Study& study) {
+  return held_out_misfit(held_out_squares(studied, study), studied.fit.penalty,
+                         static_cast<double>(study.residuals().size()));
 }
 
 /// What the model leaves with all that is claimed.
@@ -148,16 +147,20 @@ std::optional<LeftOver> conclude(Study& study, const DiagnosisOptions& options, 
   const Studied& current = found.current;
   Diagnosis& diagnosis = found.diagnosis;
   const Unexplained left = unexplained(study, current);
+  const bool nothing_claimed = diagnosis.effects.empty();
+  const double misfit_after = misfit_held_out(current, study);
   // Both by the same measure of the noise, which what was found and let go again has changed.
-  const Studied before = diagnosis.effects.empty() ? current : study.refit(found.first);
+  const Studied before = nothing_claimed ? current : study.refit(found.first);
+  const double misfit_before = nothing_claimed ? misfit_after : misfit_held_out(before, study);
   diagnosis.unexplained_log_p = left.log_p;
   diagnosis.before = before.misfit;
   diagnosis.after = current.misfit;
   diagnosis.model = current.model;
   const double noise = noise_of(current.misfit, shots);
   const Remainder rest = remainder_of(study, options, found, before, left, noise);
-  diagnosis.held_out =
-      held_out(before, current, left.log_p < options.log_alpha ? Left::more : Left::noise, study);
+  diagnosis.held_out = {
+      misfit_before, misfit_after,
+      floor_of(current, left.log_p < options.log_alpha ? Left::more : Left::noise, shots)};
   std::vector<std::string> reasons =
       doubts(study, options, found, before,
              rest.is_of_something_else() ? std::optional(left) : std::nullopt, noise);

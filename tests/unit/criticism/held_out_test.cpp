@@ -11,6 +11,7 @@
 
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/record_parts.hpp"
+#include "processing/criticism/verdict/diagnosis.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/unit/criticism/filed_bars.hpp"
 
@@ -154,6 +155,20 @@ TEST(HeldOut, LeavesAShotWhatIsItsAlone) {
   const double cost = std::accumulate(squares.begin(), squares.end(), 0.0) - studied.fit.chi2;
   EXPECT_GT(cost, 0.0);
   EXPECT_LT(cost, 4.0 * static_cast<double>(studied.fit.theta.size()));
+}
+
+// What an amplifier bent is straightened with what the fit leaves: of a model that lacks the
+// return of an end that is no noise.
+TEST(HeldOut, IsOfAModelsOwnStraightening) {
+  testing::Campaign truth = testing::draw_campaign(
+      {.seed = 8, .shots = 3, .noise_strain = 6e-6, .samples = 1500, .rate_Hz = 5e5});
+  testing::hide(truth, testing::parse_effect("end-reflection=0"));
+  testing::hide(truth, testing::parse_effect("bridge-nonlinearity=-60"));
+  const Campaign campaign = read_campaign(testing::shots_of(truth));
+  Study study(campaign, 0.0, Workers{});
+  const Diagnosis diagnosis = diagnose(study, paper_model(BenchKind::bar, false), {});
+  EXPECT_EQ(diagnosis.effects.size(), 2u);
+  EXPECT_LT(diagnosis.held_out.after, 1.1 * diagnosis.held_out.floor);
 }
 
 /// Spectra, two channels side by side, of columns that are given in time.
