@@ -38,6 +38,17 @@ bool alike(const std::vector<ArrivalWindow>& a, const std::vector<ArrivalWindow>
                     [](const auto& one, const auto& other) { return one.weight == other.weight; });
 }
 
+/// What noise leaves in the one tells of the other.
+bool nearly_alike(const std::vector<ArrivalWindow>& a, const std::vector<ArrivalWindow>& b) {
+  constexpr double kApart = 0.03;
+  const auto near = [](const ArrivalWindow& one, const ArrivalWindow& other) {
+    const auto square = as_vector(one.weight).array().square();
+    const auto others = as_vector(other.weight).array().square();
+    return one.name == other.name && (square - others).abs().sum() < kApart * square.sum();
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), near);
+}
+
 /// A place that holds less of its shot's misfit than this is not where the model fails, however far
 /// it stands out of the noise: a wave that is missing pulls at sources and moduli, and they at the
 /// rest of the record.
@@ -81,6 +92,9 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
     noise_.emplace_back();
     for (const auto& of_gauge : windows_.back()) {
       quiet_.back().push_back(mean_before(of_gauge));
+      if (deviations_.draws()) {
+        continue;
+      }
       // Gauges of one station have the same windows.
       auto& noise = noise_.back();
       const auto end = windows_.back().begin() + static_cast<std::ptrdiff_t>(noise.size());
@@ -140,19 +154,75 @@ void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t 
   }
 }
 
-std::vector<Comparer::Windowed> Comparer::windowed(std::vector<double> record, std::size_t shot,
-                                                   std::size_t gauge) {
-  level(record, shot, gauge);
+/// @param of_shots  of the reading's records, that of the shot
+std::vector<Comparer::Windowed> Comparer::windowed(const GaugeDeviation& reading,
+                                                   std::size_t of_shots, std::size_t shot) {
+  const std::vector<std::vector<TileNoise>>& noise = noise_of(reading, shot);
+  std::vector<double> record = reading.records[of_shots];
+  level(record, shot, reading.gauge);
   std::vector<Windowed> list;
   std::vector<double> part(record.size());
-  for (std::size_t w = 0; w < windows_[shot][gauge].size(); ++w) {
-    const ArrivalWindow& window = windows_[shot][gauge][w];
-    for (std::size_t n = 0; n < record.size(); ++n) {
-      part[n] = record[n] * window.weight[n];
-    }
-    Windowed own{&window, &noise_[shot][gauge][w], Spectrum(transform_.bins())};
+  for (std::size_t w = 0; w < noise.size(); ++w) {
+    const ArrivalWindow& window = windows_[shot][reading.gauge][w];
+    std::transform(record.begin(), record.end(), window.weight.begin(), part.begin(),
+                   std::multiplies<>());
+    Windowed own{&window, &noise[w], Spectrum(transform_.bins())};
     transform_.forward(part, own.spectrum);
     list.push_back(std::move(own));
+  }
+  return list;
+}
+
+const std::vector<std::vector<TileNoise>>& Comparer::noise_of(const GaugeDeviation& reading,
+                                                              std::size_t shot) {
+  const std::size_t gauge = reading.gauge;
+  if (reading.drawn == nullptr) {
+    return noise_[shot][gauge];
+  }
+  const std::pair<const void*, std::size_t> key(reading.drawn, shot);
+  const auto known = drawn_.find(key);
+  if (known != drawn_.end()) {
+    return known->second;
+  }
+  for (std::size_t n = 0; n < windows_.size(); ++n) {
+    const auto other = drawn_.find({reading.drawn, n});
+    if (other != drawn_.end() && nearly_alike(windows_[n][gauge], windows_[shot][gauge])) {
+      return drawn_.emplace(key, other->second).first->second;
+    }
+  }
+  std::vector<std::vector<TileNoise>> list;
+  for (const ArrivalWindow& window : windows_[shot][gauge]) {
+    list.push_back(drawn_noise(reading, shot, window));
+  }
+  return drawn_.emplace(key, std::move(list)).first->second;
+}
+
+/// By band.
+std::vector<TileNoise> Comparer::drawn_noise(const GaugeDeviation& reading, std::size_t shot,
+                                             const ArrivalWindow& window) {
+  const auto bins = static_cast<Eigen::Index>(transform_.bins());
+  Eigen::MatrixXd real(bins, static_cast<Eigen::Index>(reading.drawn->size()));
+  Eigen::MatrixXd imaginary(bins, real.cols());
+  Spectrum spectrum(transform_.bins());
+  for (Eigen::Index d = 0; d < real.cols(); ++d) {
+    std::vector<double> record = (*reading.drawn)[static_cast<std::size_t>(d)];
+    level(record, shot, reading.gauge);
+    std::transform(record.begin(), record.end(), window.weight.begin(), record.begin(),
+                   std::multiplies<>());
+    transform_.forward(record, spectrum);
+    spectrum.front() *= std::sqrt(0.5);
+    spectrum.back() *= std::sqrt(0.5);
+    const Eigen::Map<const Eigen::VectorXcd> values(spectrum.data(), bins);
+    real.col(d) = values.real();
+    imaginary.col(d) = values.imag();
+  }
+  std::vector<TileNoise> list;
+  for (const ComparedBand& band : bands_) {
+    const auto first = static_cast<Eigen::Index>(band.bins.first);
+    const auto size = static_cast<Eigen::Index>(band.bins.end) - first;
+    Eigen::MatrixXd parts(2 * size, real.cols());
+    parts << real.middleRows(first, size), imaginary.middleRows(first, size);
+    list.push_back(tile_noise_of(parts));
   }
   return list;
 }
@@ -192,7 +262,7 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
 std::vector<Tile> Comparer::compare_shot(std::size_t shot) {
   std::vector<Tile> tiles;
   for (const GaugeDeviation& own : deviations_.of_shots(shot, shot + 1)) {
-    add_tiles(own, windowed(own.records.front(), shot, own.gauge), shot, tiles);
+    add_tiles(own, windowed(own, 0, shot), shot, tiles);
   }
   mark_significant(tiles);
   unmark_traces(tiles);
@@ -315,7 +385,7 @@ std::map<Comparer::Key, std::vector<Comparer::Following>> Comparer::add_all_tile
   std::map<Key, std::vector<Following>> following;
   for (const GaugeDeviation& reading : deviations_.of_shots(0, shots)) {
     for (std::size_t n = 0; n < shots; ++n) {
-      const auto windows = windowed(reading.records[n], n, reading.gauge);
+      const auto windows = windowed(reading, n, n);
       add_tiles(reading, windows, n, tiles);
       for (std::size_t w = 0; !sources.empty() && w < windows.size(); ++w) {
         follow(windows[w], sources[n], reading.gauge, following);

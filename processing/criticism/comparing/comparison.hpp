@@ -119,8 +119,12 @@ class Comparer {
   };
 
   void choose_bands();
-  [[nodiscard]] std::vector<Windowed> windowed(std::vector<double> record, std::size_t shot,
-                                               std::size_t gauge);
+  [[nodiscard]] std::vector<Windowed> windowed(const GaugeDeviation& reading, std::size_t of_shots,
+                                               std::size_t shot);
+  [[nodiscard]] const std::vector<std::vector<TileNoise>>& noise_of(const GaugeDeviation& reading,
+                                                                    std::size_t shot);
+  [[nodiscard]] std::vector<TileNoise> drawn_noise(const GaugeDeviation& reading, std::size_t shot,
+                                                   const ArrivalWindow& window);
   void add_tiles(const GaugeDeviation& reading, const std::vector<Windowed>& windows,
                  std::size_t shot, std::vector<Tile>& tiles);
   [[nodiscard]] std::vector<std::vector<TileNoise>> noise_in(
@@ -144,8 +148,10 @@ class Comparer {
   std::vector<std::vector<double>> peaks_;                        ///< by shot and gauge
   /// Weights of the mean before the pulse, by shot and gauge; empty where nothing is before it.
   std::vector<std::vector<std::vector<double>>> quiet_;
-  /// By shot, gauge, window and band.
+  /// By shot, gauge, window and band; of stationary noise.
   std::vector<std::vector<std::vector<std::vector<TileNoise>>>> noise_;
+  /// By draws of a gauge's noise and shot, then by window and band.
+  std::map<std::pair<const void*, std::size_t>, std::vector<std::vector<TileNoise>>> drawn_;
 };
 
 /// Compares a model where it stands. @param studied  of this study, the last one evaluated

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/comparing/drawn_noise.hpp"
 
 namespace kolsky {
 
@@ -24,6 +24,10 @@ constexpr double kFilterPasses = 0.1;
 constexpr double kLeftOut = 1e8;
 /// A long reference gauge's blind frequency: nothing is divided by less.
 constexpr double kBlind = 0.1;
+/// Draws of noise: more shots together show smaller errors of what is drawn.
+constexpr std::size_t kFewestDraws = 48;
+constexpr std::size_t kDrawsPerShot = 16;
+constexpr std::size_t kMostDraws = 256;
 
 }  // namespace
 
@@ -34,21 +38,20 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
           DampedTransform::of_window(2 * residuals.band().judged, residuals.judged_period_s())) {
   const JudgedBand& band = residuals.band();
   const PlainResiduals plain = residuals.plain(composition, theta);
-  std::vector<double> filter;
   while (bins_ < transform_.bins()) {
     const double ratio = static_cast<double>(bins_) * transform_.bin_width_Hz() / band.filter_Hz;
     const double passes = std::exp(-std::numbers::ln2 * std::pow(ratio, 4));
     if (passes <= kFilterPasses) {
       break;
     }
-    filter.push_back(passes);
+    filter_.push_back(passes);
     ++bins_;
   }
   const std::size_t last = 2 * band.bins_judged;
   double held = 0.0;
   for (std::size_t f = 0; f < bins_; ++f) {
-    gain_.push_back(1.0 / filter[std::min(f, last)]);
-    held += f > last ? std::pow(filter[f] * gain_.back(), 2) : 0.0;
+    gain_.push_back(1.0 / filter_[std::min(f, last)]);
+    held += f > last ? std::pow(filter_[f] * gain_.back(), 2) : 0.0;
   }
   bins_held_ = band.bins_judged + static_cast<std::size_t>(held / 2.0);
 
@@ -64,30 +67,46 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
     responses.emplace_back(transform_.bins());
     transform_.forward(lags, responses.back());
   }
-  const auto mean = [&](std::size_t f) -> Complex {
-    if (responses.size() == others) {
-      return 1.0;
-    }
-    const Complex own = responses[others][f] / filter[f];
-    return std::abs(own) > kBlind ? own : Complex(kBlind);
-  };
+  for (std::size_t f = 0; responses.size() > others && f < bins_; ++f) {
+    const Complex own = responses[others][f] / filter_[f];
+    mean_.push_back(std::abs(own) > kBlind ? own : Complex(kBlind));
+  }
   const std::size_t gauges = residuals.campaign().gauges();
   waves_.setOnes(static_cast<Eigen::Index>(gauges), static_cast<Eigen::Index>(bins_));
   for (std::size_t f = 0; f < bins_; ++f) {
     for (std::size_t i = 0; i < others; ++i) {
       waves_(static_cast<Eigen::Index>(residuals.others()[i]), static_cast<Eigen::Index>(f)) =
-          responses[i][f] / (filter[f] * mean(f));
+          responses[i][f] / (filter_[f] * (mean_.empty() ? 1.0 : mean_[f]));
     }
   }
   for (const auto& of_shot : plain.records) {
-    y_.emplace_back(gauges, Spectrum(transform_.bins(), 0.0));
-    for (std::size_t i = 0; i < others; ++i) {
-      Spectrum& own = y_.back()[residuals.others()[i]];
-      transform_.forward(of_shot[i], own);
-      for (std::size_t f = 0; f < bins_; ++f) {
-        own[f] /= mean(f);
-      }
+    y_.push_back(received(of_shot));
+  }
+  if (rings_on(plain, band.judged)) {
+    draw_noise(plain);
+  }
+}
+
+/// By gauge, of a shot's residuals: the reference has none.
+std::vector<GaugeDeviations::Spectrum> GaugeDeviations::received(
+    const std::vector<std::vector<double>>& residuals) {
+  std::vector<Spectrum> out(residuals_.campaign().gauges(), Spectrum(transform_.bins(), 0.0));
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    Spectrum& own = out[residuals_.others()[i]];
+    transform_.forward(residuals[i], own);
+    for (std::size_t f = 0; f < mean_.size(); ++f) {
+      own[f] /= mean_[f];
     }
+  }
+  return out;
+}
+
+void GaugeDeviations::draw_noise(const PlainResiduals& plain) {
+  const std::size_t draws =
+      std::min(kMostDraws, kFewestDraws + kDrawsPerShot * residuals_.campaign().shots.size());
+  DrawnNoise noise(residuals_, plain);
+  while (drawn_.size() < draws) {
+    drawn_.push_back(received(noise.next()));
   }
 }
 
@@ -128,39 +147,105 @@ GaugeDeviations::Estimate GaugeDeviations::estimate(const std::vector<bool>& lef
   return out;
 }
 
-GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate, std::size_t first,
-                                              std::size_t end) const {
-  const std::size_t gauges = y_.front().size();
-  const std::size_t last = 2 * residuals_.band().bins_judged;
-  Found out;
-  out.energy.assign(gauges, 0.0);
-  for (std::size_t n = first; n < end; ++n) {
-    out.spectra.emplace_back(gauges, Spectrum(transform_.bins(), 0.0));
-    for (std::size_t f = 0; f < bins_; ++f) {
-      const auto bin = static_cast<Eigen::Index>(f);
-      Complex source = 0.0;
-      for (std::size_t j = 0; j < gauges; ++j) {
-        source += std::conj(estimate.weight(static_cast<Eigen::Index>(j), bin)) * y_[n][j][f];
-      }
-      for (std::size_t j = 0; j < gauges; ++j) {
-        const auto at = static_cast<Eigen::Index>(j);
-        Complex& z = out.spectra.back()[j][f];
-        z = std::numbers::sqrt2 * gain_[f] * (y_[n][j][f] - waves_(at, bin) * source) /
-            estimate.sd(at, bin);
-        // Bins are half as wide as judged ones.
-        out.energy[j] += f > 0 && f <= last ? 0.5 * std::norm(z) : 0.0;
-      }
+/// By gauge, over their standard deviations.
+std::vector<GaugeDeviations::Spectrum> GaugeDeviations::deviations(
+    const Estimate& estimate, const std::vector<Spectrum>& received) const {
+  const std::size_t gauges = received.size();
+  std::vector<Spectrum> out(gauges, Spectrum(transform_.bins(), 0.0));
+  for (std::size_t f = 0; f < bins_; ++f) {
+    const auto bin = static_cast<Eigen::Index>(f);
+    Complex source = 0.0;
+    for (std::size_t j = 0; j < gauges; ++j) {
+      source += std::conj(estimate.weight(static_cast<Eigen::Index>(j), bin)) * received[j][f];
+    }
+    for (std::size_t j = 0; j < gauges; ++j) {
+      const auto at = static_cast<Eigen::Index>(j);
+      out[j][f] = std::numbers::sqrt2 * gain_[f] * (received[j][f] - waves_(at, bin) * source) /
+                  estimate.sd(at, bin);
     }
   }
   return out;
 }
 
+double GaugeDeviations::energy_of(const Spectrum& deviation) const {
+  double energy = 0.0;
+  for (std::size_t f = 1; f <= 2 * residuals_.band().bins_judged; ++f) {
+    // Bins are half as wide as judged ones.
+    energy += 0.5 * std::norm(deviation[f]);
+  }
+  return energy;
+}
+
+GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate, std::size_t first,
+                                              std::size_t end) const {
+  Found out;
+  out.energy.assign(y_.front().size(), 0.0);
+  for (std::size_t n = first; n < end; ++n) {
+    out.spectra.push_back(deviations(estimate, y_[n]));
+    for (std::size_t j = 0; j < out.energy.size(); ++j) {
+      out.energy[j] += energy_of(out.spectra.back()[j]);
+    }
+  }
+  return out;
+}
+
+GaugeDeviations::Drawn& GaugeDeviations::drawn(const std::vector<bool>& left_out,
+                                               const Estimate& estimate) {
+  const auto known = drawn_of_.find(left_out);
+  if (known != drawn_of_.end()) {
+    return known->second;
+  }
+  const auto size = static_cast<Eigen::Index>(2 * residuals_.band().bins_judged);
+  std::vector<Eigen::MatrixXd> parts(
+      left_out.size(), Eigen::MatrixXd(2 * size, static_cast<Eigen::Index>(drawn_.size())));
+  for (std::size_t d = 0; d < drawn_.size(); ++d) {
+    const std::vector<Spectrum> own = deviations(estimate, drawn_[d]);
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      const Eigen::Map<const Eigen::VectorXcd> judged(own[j].data() + 1, size);
+      auto out = parts[j].col(static_cast<Eigen::Index>(d));
+      out.head(size) = std::sqrt(0.5) * judged.real();
+      out.tail(size) = std::sqrt(0.5) * judged.imag();
+    }
+  }
+  Drawn out;
+  for (const Eigen::MatrixXd& of_gauge : parts) {
+    out.energy.push_back(tile_noise_of(of_gauge));
+  }
+  return drawn_of_.emplace(left_out, std::move(out)).first->second;
+}
+
+void GaugeDeviations::put_drawn_records(const Estimate& estimate, Drawn& out) {
+  out.records.resize(y_.front().size());
+  for (const std::vector<Spectrum>& draw : drawn_) {
+    const std::vector<Spectrum> own = deviations(estimate, draw);
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      transform_.inverse(own[j], out.records[j].emplace_back(residuals_.band().judged));
+    }
+  }
+}
+
+/// By gauge, over the judged bins and so many shots.
+std::vector<TileNoise> GaugeDeviations::noise_energy(const std::vector<bool>& left_out,
+                                                     const Estimate& estimate, std::size_t shots) {
+  const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged);
+  const std::vector<TileNoise> of_one =
+      draws() ? drawn(left_out, estimate).energy
+              : std::vector<TileNoise>(left_out.size(), {freedom, freedom, freedom});
+  std::vector<TileNoise> sum(left_out.size());
+  for (std::size_t n = 0; n < shots; ++n) {
+    for (std::size_t j = 0; j < sum.size(); ++j) {
+      sum[j] += of_one[j];
+    }
+  }
+  return sum;
+}
+
 /// What the gauges that are not left out have beyond noise.
 double GaugeDeviations::excess_of_others(const Found& now, const std::vector<bool>& left_out,
-                                         double freedom) {
+                                         const std::vector<TileNoise>& noise) {
   double excess = 0.0;
   for (std::size_t j = 0; j < left_out.size(); ++j) {
-    excess += left_out[j] ? 0.0 : now.energy[j] - freedom;
+    excess += left_out[j] ? 0.0 : now.energy[j] - noise[j].mean;
   }
   return excess;
 }
@@ -168,31 +253,37 @@ double GaugeDeviations::excess_of_others(const Found& now, const std::vector<boo
 /// The gauges that stand out beyond doubt, each beside those before it, until the others agree; as
 /// long as more are left. Where they never do the fault is in the waves, which all gauges read, and
 /// none is left out: of an end's reflection the gauge that shows most of it is not to blame.
-std::vector<bool> GaugeDeviations::at_fault(const Found& all, std::size_t first,
-                                            std::size_t end) const {
+std::vector<bool> GaugeDeviations::at_fault(const Found& all, const Estimate& estimate_of_all,
+                                            std::size_t first, std::size_t end) {
   const std::size_t gauges = all.energy.size();
-  const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged * (end - first));
   std::vector<bool> out(gauges, false);
-  const double whole = excess_of_others(all, out, freedom);
+  std::vector<TileNoise> noise = noise_energy(out, estimate_of_all, end - first);
+  const double whole = excess_of_others(all, out, noise);
   const auto unit_share = [gauges](std::size_t left) {
     return static_cast<double>(left * (left - 1)) / static_cast<double>(gauges * (gauges - 1));
   };
   Found now = all;
   for (std::size_t left = gauges - 1; left > gauges - 1 - (gauges - 1) / 2; --left) {
     std::size_t worst = gauges;
+    const auto beyond = [&](std::size_t j) { return now.energy[j] / noise[j].mean; };
     for (std::size_t j = 0; j < gauges; ++j) {
-      if (!out[j] && (worst == gauges || now.energy[j] > now.energy[worst])) {
+      if (!out[j] && (worst == gauges || beyond(j) > beyond(worst))) {
         worst = j;
       }
     }
-    if (log_chi2_tail(now.energy[worst], freedom) > kBeyondDoubt) {
+    if (noise[worst].log_tail(now.energy[worst]) > kBeyondDoubt) {
       break;
     }
     out[worst] = true;
-    now = found(estimate(out), first, end);
-    const double chance =
-        kDeviationsOfChance * std::sqrt(2.0 * freedom * static_cast<double>(left));
-    if (excess_of_others(now, out, freedom) < kStillOff * unit_share(left) * whole + chance) {
+    const Estimate without = estimate(out);
+    now = found(without, first, end);
+    noise = noise_energy(out, without, end - first);
+    double variance = 0.0;
+    for (std::size_t j = 0; j < gauges; ++j) {
+      variance += out[j] ? 0.0 : 2.0 * noise[j].second;
+    }
+    if (excess_of_others(now, out, noise) <
+        kStillOff * unit_share(left) * whole + kDeviationsOfChance * std::sqrt(variance)) {
       return out;
     }
   }
@@ -203,14 +294,18 @@ std::vector<GaugeDeviation> GaugeDeviations::of_shots(std::size_t first, std::si
   const std::size_t gauges = y_.front().size();
   Estimate used = estimate(std::vector<bool>(gauges, false));
   Found all = found(used, first, end);
-  const std::vector<bool> faulty = at_fault(all, first, end);
+  const std::vector<bool> faulty = at_fault(all, used, first, end);
   if (std::find(faulty.begin(), faulty.end(), true) != faulty.end()) {
     used = estimate(faulty);
     all = found(used, first, end);
   }
+  Drawn* noise = draws() ? &drawn(faulty, used) : nullptr;
+  if (noise != nullptr && noise->records.empty()) {
+    put_drawn_records(used, *noise);
+  }
   std::vector<GaugeDeviation> list;
   for (std::size_t j = 0; j < gauges; ++j) {
-    GaugeDeviation own{j, {}, {}};
+    GaugeDeviation own{j, {}, {}, noise != nullptr ? &noise->records[j] : nullptr};
     for (const std::vector<Spectrum>& of_shot : all.spectra) {
       own.records.emplace_back(residuals_.band().judged);
       transform_.inverse(of_shot[j], own.records.back());

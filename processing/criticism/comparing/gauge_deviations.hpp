@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
+#include "processing/criticism/comparing/tile_noise.hpp"
 #include "processing/criticism/fitting/residuals.hpp"
 #include "processing/waves/transform.hpp"
 
@@ -15,6 +17,8 @@ struct GaugeDeviation {
   /// (2 per bin of the window's transform), with a smooth end above them.
   std::vector<std::vector<double>> records;
   std::vector<double> scale;  ///< strain per unit, by judged bin
+  /// The same of shots of noise alone, where that is not of unit power; null: it is.
+  const std::vector<std::vector<double>>* drawn = nullptr;
 };
 
 /// Each gauge's deviation from the wave common to all, the shots' sources at their best, over its
@@ -28,6 +32,10 @@ struct GaugeDeviation {
 /// beyond doubt, and the others agree without it, they are taken without it, or a free source would
 /// book a part of its fault to them; where they do not agree, the next is left out too, as long as
 /// more are left than that.
+///
+/// Deviations are of unit power as long as noise is stationary. Where waves ring to the record's
+/// end it is not: what they carry of it begins with the record, and a gauge may be told by the
+/// others early and tell them late. Then noise is drawn and goes the same way.
 class GaugeDeviations {
  public:
   /// @param residuals  as frozen at theta
@@ -39,6 +47,8 @@ class GaugeDeviations {
 
   /// As many judged bins would have the records' power.
   [[nodiscard]] std::size_t bins_held() const { return bins_held_; }
+  /// Whether deviations come with those of drawn noise.
+  [[nodiscard]] bool draws() const { return !drawn_.empty(); }
 
  private:
   using Spectrum = std::vector<Complex>;
@@ -51,22 +61,40 @@ class GaugeDeviations {
     std::vector<std::vector<Spectrum>> spectra;  ///< by shot and gauge, over their deviations
     std::vector<double> energy;                  ///< by gauge, over the judged bins and all shots
   };
+  /// What drawn noise leaves of an estimate.
+  struct Drawn {
+    std::vector<TileNoise> energy;                          ///< by gauge, of one shot
+    std::vector<std::vector<std::vector<double>>> records;  ///< by gauge and draw; where asked for
+  };
 
   [[nodiscard]] Estimate estimate(const std::vector<bool>& left_out) const;
+  [[nodiscard]] std::vector<Spectrum> received(const std::vector<std::vector<double>>& residuals);
+  void draw_noise(const PlainResiduals& plain);
+  [[nodiscard]] std::vector<Spectrum> deviations(const Estimate& estimate,
+                                                 const std::vector<Spectrum>& received) const;
+  [[nodiscard]] double energy_of(const Spectrum& deviation) const;
   [[nodiscard]] Found found(const Estimate& estimate, std::size_t first, std::size_t end) const;
+  [[nodiscard]] Drawn& drawn(const std::vector<bool>& left_out, const Estimate& estimate);
+  void put_drawn_records(const Estimate& estimate, Drawn& out);
+  [[nodiscard]] std::vector<TileNoise> noise_energy(const std::vector<bool>& left_out,
+                                                    const Estimate& estimate, std::size_t shots);
   [[nodiscard]] static double excess_of_others(const Found& now, const std::vector<bool>& left_out,
-                                               double freedom);
-  [[nodiscard]] std::vector<bool> at_fault(const Found& all, std::size_t first,
-                                           std::size_t end) const;
+                                               const std::vector<TileNoise>& noise);
+  [[nodiscard]] std::vector<bool> at_fault(const Found& all, const Estimate& estimate,
+                                           std::size_t first, std::size_t end);
   [[nodiscard]] std::size_t judged_bin(std::size_t fine) const;
 
   const WhiteResiduals& residuals_;
   DampedTransform transform_;  ///< twice the judged window long
   std::size_t bins_ = 0;       ///< of it, as far as the filter passes anything
   std::size_t bins_held_ = 0;
+  std::vector<double> filter_;            ///< by bin
   std::vector<double> gain_;              ///< by bin: what makes filtered records' power even
+  Spectrum mean_;                         ///< by bin: over a long reference gauge; empty: a point
   Eigen::MatrixXcd waves_;                ///< by gauge and bin: per unit source
   std::vector<std::vector<Spectrum>> y_;  ///< by shot and gauge: records less what is foretold
+  std::vector<std::vector<Spectrum>> drawn_;     ///< by draw and gauge: the same of noise alone
+  std::map<std::vector<bool>, Drawn> drawn_of_;  ///< by gauges left out
 };
 
 }  // namespace kolsky

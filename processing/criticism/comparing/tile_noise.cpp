@@ -294,6 +294,21 @@ TileNoise& TileNoise::operator+=(const TileNoise& other) {
   return *this;
 }
 
+TileNoise tile_noise_of(const Eigen::MatrixXd& draws) {
+  const auto count = static_cast<double>(draws.cols());
+  Eigen::MatrixXd products = draws.transpose() * draws;
+  TileNoise noise{products.trace() / count, 0.0, 0.0};
+  products.diagonal().setZero();
+  const Eigen::MatrixXd twice = products * products;
+  noise.second = products.squaredNorm() / (count * (count - 1.0));
+  noise.third = twice.cwiseProduct(products).sum() / (count * (count - 1.0) * (count - 2.0));
+  // What traces of a covariance of so many components cannot be less than.
+  const auto most = static_cast<double>(draws.rows());
+  noise.second = std::max(noise.second, noise.mean * noise.mean / most);
+  noise.third = std::max(noise.third, noise.second * noise.second / noise.mean);
+  return noise;
+}
+
 QuietMean::QuietMean(DampedTransform& transform, std::span<const double> of, std::size_t judged)
     : weights(of.size()) {
   std::vector<Complex> v(transform.bins());

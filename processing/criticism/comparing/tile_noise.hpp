@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -24,6 +25,10 @@ struct TileNoise {
 
   TileNoise& operator+=(const TileNoise& other);
 };
+
+/// As drawn noise shows it, of any variables of unit variance: products of different draws have the
+/// traces as their means. @param draws  components by draw
+[[nodiscard]] TileNoise tile_noise_of(const Eigen::MatrixXd& draws);
 
 /// Bins of a transform of the judged window, first to last.
 struct BinRange {
