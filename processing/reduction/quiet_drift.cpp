@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <vector>
 
 #include "processing/reduction/formatted.hpp"
+#include "processing/reduction/pulse.hpp"
 
 namespace kolsky {
 namespace {
@@ -21,29 +23,17 @@ constexpr double kBeyondDoubt = 8.0;
 
 using Codes = std::span<const std::int32_t>;
 
-double mean_of(Codes codes) {
-  return std::accumulate(codes.begin(), codes.end(), 0.0) / static_cast<double>(codes.size());
-}
-
-double variance_of(Codes codes, double mean) {
-  double squares = 0.0;
-  for (const std::int32_t code : codes) {
-    squares += std::pow(static_cast<double>(code) - mean, 2);
-  }
-  return squares / static_cast<double>(codes.size() - 1);
-}
-
 /// Codes a sample, 0 where noise does as much. Slow noise shows in how far the parts' means lie
 /// from the line, white noise within the parts.
-double slope_of(Codes quiet) {
+double slope_of(std::span<const double> quiet) {
   const std::size_t count = quiet.size() / kParts;
   constexpr double kMiddle = (kParts - 1) / 2.0;
   std::array<double, kParts> means{};
   double within = 0.0;
   for (std::size_t part = 0; part < kParts; ++part) {
-    const Codes codes = quiet.subspan(part * count, count);
-    means[part] = mean_of(codes);
-    within += variance_of(codes, means[part]) / static_cast<double>(kParts * count);
+    const Quiet own = quiet_before(quiet.subspan(part * count, count), count);
+    means[part] = own.baseline;
+    within += own.noise_rms * own.noise_rms / static_cast<double>(kParts * count);
   }
   const double level = std::accumulate(means.begin(), means.end(), 0.0) / kParts;
   double product = 0.0;
@@ -85,12 +75,14 @@ std::optional<Check> quiet_drift(const Shot& shot, std::size_t quiet, std::size_
   const ChannelRecord* moves = nullptr;
   for (std::size_t i = 0; i < gauges; ++i) {
     const Codes codes = shot.channels[i].codes;
-    const Codes before = codes.first(quiet);
+    const std::vector<double> before(codes.begin(),
+                                     codes.begin() + static_cast<std::ptrdiff_t>(quiet));
     const double slope = slope_of(before);
     if (slope == 0.0) {
       continue;
     }
-    const double most = largest(codes.subspan(quiet, end - quiet), mean_of(before));
+    const double most =
+        largest(codes.subspan(quiet, end - quiet), quiet_before(before, quiet).baseline);
     const double share = std::abs(slope) * way / most;
     if (share > worst) {
       worst = share;

@@ -42,11 +42,11 @@ Model model_of(Kind kind, const std::vector<Shot>& shots) {
 }
 
 /// As the daemon does it after a shot's reduction.
-void compare_one_shot(benchmark::State& state) {
-  const std::vector<Shot> shots = shots_with(Kind::bar, 3, nullptr);
+void compare_one_shot(benchmark::State& state, Kind kind) {
+  const std::vector<Shot> shots = shots_with(kind, 3, nullptr);
   const Campaign all = read_campaign(shots);
   Study fitting(all, 0.0, Workers{});
-  const Model model = fitting.fit(model_of(Kind::bar, shots)).model;
+  const Model model = fitting.fit(model_of(kind, shots)).model;
   for (auto _ : state) {
     const Campaign one = read_campaign({shots.front()});
     Study study(one, 0.0, Workers{});
@@ -55,7 +55,8 @@ void compare_one_shot(benchmark::State& state) {
   }
   hold_to(state, 2e-3);
 }
-BENCHMARK(compare_one_shot)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(compare_one_shot, bar, Kind::bar)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(compare_one_shot, shpb, Kind::shpb)->Unit(benchmark::kMillisecond);
 
 void diagnose_shots(benchmark::State& state, Kind kind, int count, const char* effect) {
   const std::vector<Shot> shots = shots_with(kind, count, effect);

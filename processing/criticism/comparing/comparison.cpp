@@ -81,6 +81,9 @@ Comparer::Comparer(WhiteResiduals& residuals, const Composition& composition,
       deviations_(residuals, composition, theta) {
   choose_bands();
   const Campaign& campaign = residuals.campaign();
+  if (campaign.shots.size() > 1) {
+    deviations_.draw_where_waves_ring();
+  }
   for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
     windows_.push_back(arrival_windows(residuals, composition, theta, n));
     std::vector<double> peaks;
@@ -154,11 +157,10 @@ void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t 
   }
 }
 
-/// @param of_shots  of the reading's records, that of the shot
 std::vector<Comparer::Windowed> Comparer::windowed(const GaugeDeviation& reading,
-                                                   std::size_t of_shots, std::size_t shot) {
+                                                   std::size_t shot) {
   const std::vector<std::vector<TileNoise>>& noise = noise_of(reading, shot);
-  std::vector<double> record = reading.records[of_shots];
+  std::vector<double> record = reading.records[shot];
   level(record, shot, reading.gauge);
   std::vector<Windowed> list;
   std::vector<double> part(record.size());
@@ -179,13 +181,13 @@ const std::vector<std::vector<TileNoise>>& Comparer::noise_of(const GaugeDeviati
   if (reading.drawn == nullptr) {
     return noise_[shot][gauge];
   }
-  const std::pair<const void*, std::size_t> key(reading.drawn, shot);
+  const std::pair key(gauge, shot);
   const auto known = drawn_.find(key);
   if (known != drawn_.end()) {
     return known->second;
   }
   for (std::size_t n = 0; n < windows_.size(); ++n) {
-    const auto other = drawn_.find({reading.drawn, n});
+    const auto other = drawn_.find({gauge, n});
     if (other != drawn_.end() && nearly_alike(windows_[n][gauge], windows_[shot][gauge])) {
       return drawn_.emplace(key, other->second).first->second;
     }
@@ -259,24 +261,16 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
   }
 }
 
-std::vector<Tile> Comparer::compare_shot(std::size_t shot) {
-  std::vector<Tile> tiles;
-  for (const GaugeDeviation& own : deviations_.of_shots(shot, shot + 1)) {
-    add_tiles(own, windowed(own, 0, shot), shot, tiles);
+Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit) {
+  Comparison comparison = compared(white, misfit);
+  const bool fails = std::ranges::any_of(comparison.tiles, &Tile::significant);
+  if (fails && !deviations_.draws() && deviations_.draw_where_waves_ring()) {
+    comparison = compared(white, misfit);
   }
-  mark_significant(tiles);
-  unmark_traces(tiles);
-  double excess = 0.0;
-  for (const Tile& tile : tiles) {
-    excess += over(tile);
-  }
-  for (Tile& tile : tiles) {
-    tile.share = excess > 0.0 ? over(tile) / excess : 0.0;
-  }
-  return tiles;
+  return comparison;
 }
 
-Comparison Comparer::compare(const Eigen::VectorXd& white, const Misfit& misfit) {
+Comparison Comparer::compared(const Eigen::VectorXd& white, const Misfit& misfit) {
   Comparison comparison;
   comparison.misfit = misfit;
   comparison.bands = bands_;
@@ -383,9 +377,9 @@ std::map<Comparer::Key, std::vector<Comparer::Following>> Comparer::add_all_tile
     sources.push_back(residuals_.source_spectrum(n, white));
   }
   std::map<Key, std::vector<Following>> following;
-  for (const GaugeDeviation& reading : deviations_.of_shots(0, shots)) {
+  for (const GaugeDeviation& reading : deviations_.by_gauge()) {
     for (std::size_t n = 0; n < shots; ++n) {
-      const auto windows = windowed(reading, n, n);
+      const auto windows = windowed(reading, n);
       add_tiles(reading, windows, n, tiles);
       for (std::size_t w = 0; !sources.empty() && w < windows.size(); ++w) {
         follow(windows[w], sources[n], reading.gauge, following);

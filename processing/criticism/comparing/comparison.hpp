@@ -77,11 +77,9 @@ class Comparer {
            const std::vector<double>& theta);
 
   /// Of all shots together. False discovery is held at 0.5 % over the tiles and over the regions
-  /// (Benjamini and Hochberg).
+  /// (Benjamini and Hochberg). What rings is judged by drawn noise, which takes ten times as long:
+  /// of one shot, which is compared as it comes in, only where something fails without it.
   [[nodiscard]] Comparison compare(const Eigen::VectorXd& white, const Misfit& misfit);
-
-  /// Of one shot by itself, as it comes in.
-  [[nodiscard]] std::vector<Tile> compare_shot(std::size_t shot);
 
   [[nodiscard]] ComparedRecord record(std::span<const double> white, std::size_t shot,
                                       std::size_t gauge);
@@ -119,8 +117,8 @@ class Comparer {
   };
 
   void choose_bands();
-  [[nodiscard]] std::vector<Windowed> windowed(const GaugeDeviation& reading, std::size_t of_shots,
-                                               std::size_t shot);
+  [[nodiscard]] Comparison compared(const Eigen::VectorXd& white, const Misfit& misfit);
+  [[nodiscard]] std::vector<Windowed> windowed(const GaugeDeviation& reading, std::size_t shot);
   [[nodiscard]] const std::vector<std::vector<TileNoise>>& noise_of(const GaugeDeviation& reading,
                                                                     std::size_t shot);
   [[nodiscard]] std::vector<TileNoise> drawn_noise(const GaugeDeviation& reading, std::size_t shot,
@@ -150,8 +148,8 @@ class Comparer {
   std::vector<std::vector<std::vector<double>>> quiet_;
   /// By shot, gauge, window and band; of stationary noise.
   std::vector<std::vector<std::vector<std::vector<TileNoise>>>> noise_;
-  /// By draws of a gauge's noise and shot, then by window and band.
-  std::map<std::pair<const void*, std::size_t>, std::vector<std::vector<TileNoise>>> drawn_;
+  /// By gauge and shot, then by window and band; of drawn noise.
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::vector<TileNoise>>> drawn_;
 };
 
 /// Compares a model where it stands. @param studied  of this study, the last one evaluated

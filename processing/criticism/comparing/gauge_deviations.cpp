@@ -34,10 +34,10 @@ constexpr std::size_t kMostDraws = 256;
 GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& composition,
                                  const std::vector<double>& theta)
     : residuals_(residuals),
+      plain_(residuals.plain(composition, theta)),
       transform_(
           DampedTransform::of_window(2 * residuals.band().judged, residuals.judged_period_s())) {
   const JudgedBand& band = residuals.band();
-  const PlainResiduals plain = residuals.plain(composition, theta);
   while (bins_ < transform_.bins()) {
     const double ratio = static_cast<double>(bins_) * transform_.bin_width_Hz() / band.filter_Hz;
     const double passes = std::exp(-std::numbers::ln2 * std::pow(ratio, 4));
@@ -58,11 +58,11 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
   const std::size_t others = residuals.others().size();
   std::vector<Spectrum> responses;
   std::vector<double> lags(transform_.length());
-  for (const std::vector<double>& response : plain.responses) {
+  for (const std::vector<double>& response : plain_.responses) {
     // Only what comes back within the record is carried in it.
     std::fill(lags.begin(), lags.end(), 0.0);
-    for (std::size_t i = 0; i < plain.before + band.judged; ++i) {
-      lags[(i + lags.size() - plain.before) % lags.size()] = response[i];
+    for (std::size_t i = 0; i < plain_.before + band.judged; ++i) {
+      lags[(i + lags.size() - plain_.before) % lags.size()] = response[i];
     }
     responses.emplace_back(transform_.bins());
     transform_.forward(lags, responses.back());
@@ -79,11 +79,8 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
           responses[i][f] / (filter_[f] * (mean_.empty() ? 1.0 : mean_[f]));
     }
   }
-  for (const auto& of_shot : plain.records) {
+  for (const auto& of_shot : plain_.records) {
     y_.push_back(received(of_shot));
-  }
-  if (rings_on(plain, band.judged)) {
-    draw_noise(plain);
   }
 }
 
@@ -101,13 +98,17 @@ std::vector<GaugeDeviations::Spectrum> GaugeDeviations::received(
   return out;
 }
 
-void GaugeDeviations::draw_noise(const PlainResiduals& plain) {
+bool GaugeDeviations::draw_where_waves_ring() {
+  if (draws() || !rings_on(plain_, residuals_.band().judged)) {
+    return draws();
+  }
   const std::size_t draws =
       std::min(kMostDraws, kFewestDraws + kDrawsPerShot * residuals_.campaign().shots.size());
-  DrawnNoise noise(residuals_, plain);
+  DrawnNoise noise(residuals_, plain_);
   while (drawn_.size() < draws) {
     drawn_.push_back(received(noise.next()));
   }
+  return true;
 }
 
 std::size_t GaugeDeviations::judged_bin(std::size_t fine) const {
@@ -176,12 +177,11 @@ double GaugeDeviations::energy_of(const Spectrum& deviation) const {
   return energy;
 }
 
-GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate, std::size_t first,
-                                              std::size_t end) const {
+GaugeDeviations::Found GaugeDeviations::found(const Estimate& estimate) const {
   Found out;
   out.energy.assign(y_.front().size(), 0.0);
-  for (std::size_t n = first; n < end; ++n) {
-    out.spectra.push_back(deviations(estimate, y_[n]));
+  for (const std::vector<Spectrum>& of_shot : y_) {
+    out.spectra.push_back(deviations(estimate, of_shot));
     for (std::size_t j = 0; j < out.energy.size(); ++j) {
       out.energy[j] += energy_of(out.spectra.back()[j]);
     }
@@ -224,15 +224,15 @@ void GaugeDeviations::put_drawn_records(const Estimate& estimate, Drawn& out) {
   }
 }
 
-/// By gauge, over the judged bins and so many shots.
+/// By gauge, over the judged bins and all shots.
 std::vector<TileNoise> GaugeDeviations::noise_energy(const std::vector<bool>& left_out,
-                                                     const Estimate& estimate, std::size_t shots) {
+                                                     const Estimate& estimate) {
   const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged);
   const std::vector<TileNoise> of_one =
       draws() ? drawn(left_out, estimate).energy
               : std::vector<TileNoise>(left_out.size(), {freedom, freedom, freedom});
   std::vector<TileNoise> sum(left_out.size());
-  for (std::size_t n = 0; n < shots; ++n) {
+  for (std::size_t n = 0; n < y_.size(); ++n) {
     for (std::size_t j = 0; j < sum.size(); ++j) {
       sum[j] += of_one[j];
     }
@@ -253,11 +253,10 @@ double GaugeDeviations::excess_of_others(const Found& now, const std::vector<boo
 /// The gauges that stand out beyond doubt, each beside those before it, until the others agree; as
 /// long as more are left. Where they never do the fault is in the waves, which all gauges read, and
 /// none is left out: of an end's reflection the gauge that shows most of it is not to blame.
-std::vector<bool> GaugeDeviations::at_fault(const Found& all, const Estimate& estimate_of_all,
-                                            std::size_t first, std::size_t end) {
+std::vector<bool> GaugeDeviations::at_fault(const Found& all, const Estimate& estimate_of_all) {
   const std::size_t gauges = all.energy.size();
   std::vector<bool> out(gauges, false);
-  std::vector<TileNoise> noise = noise_energy(out, estimate_of_all, end - first);
+  std::vector<TileNoise> noise = noise_energy(out, estimate_of_all);
   const double whole = excess_of_others(all, out, noise);
   const auto unit_share = [gauges](std::size_t left) {
     return static_cast<double>(left * (left - 1)) / static_cast<double>(gauges * (gauges - 1));
@@ -276,8 +275,8 @@ std::vector<bool> GaugeDeviations::at_fault(const Found& all, const Estimate& es
     }
     out[worst] = true;
     const Estimate without = estimate(out);
-    now = found(without, first, end);
-    noise = noise_energy(out, without, end - first);
+    now = found(without);
+    noise = noise_energy(out, without);
     double variance = 0.0;
     for (std::size_t j = 0; j < gauges; ++j) {
       variance += out[j] ? 0.0 : 2.0 * noise[j].second;
@@ -290,14 +289,14 @@ std::vector<bool> GaugeDeviations::at_fault(const Found& all, const Estimate& es
   return std::vector<bool>(gauges, false);
 }
 
-std::vector<GaugeDeviation> GaugeDeviations::of_shots(std::size_t first, std::size_t end) {
+std::vector<GaugeDeviation> GaugeDeviations::by_gauge() {
   const std::size_t gauges = y_.front().size();
   Estimate used = estimate(std::vector<bool>(gauges, false));
-  Found all = found(used, first, end);
-  const std::vector<bool> faulty = at_fault(all, used, first, end);
+  Found all = found(used);
+  const std::vector<bool> faulty = at_fault(all, used);
   if (std::find(faulty.begin(), faulty.end(), true) != faulty.end()) {
     used = estimate(faulty);
-    all = found(used, first, end);
+    all = found(used);
   }
   Drawn* noise = draws() ? &drawn(faulty, used) : nullptr;
   if (noise != nullptr && noise->records.empty()) {

@@ -42,8 +42,12 @@ class GaugeDeviations {
   GaugeDeviations(WhiteResiduals& residuals, const Composition& composition,
                   const std::vector<double>& theta);
 
-  /// Of shots `first` to `end`.
-  [[nodiscard]] std::vector<GaugeDeviation> of_shots(std::size_t first, std::size_t end);
+  /// Of all shots.
+  [[nodiscard]] std::vector<GaugeDeviation> by_gauge();
+
+  /// From now on deviations come with those of drawn noise, where waves ring to the record's end.
+  /// Nothing new where they do already. @return whether they do
+  bool draw_where_waves_ring();
 
   /// As many judged bins would have the records' power.
   [[nodiscard]] std::size_t bins_held() const { return bins_held_; }
@@ -69,22 +73,21 @@ class GaugeDeviations {
 
   [[nodiscard]] Estimate estimate(const std::vector<bool>& left_out) const;
   [[nodiscard]] std::vector<Spectrum> received(const std::vector<std::vector<double>>& residuals);
-  void draw_noise(const PlainResiduals& plain);
   [[nodiscard]] std::vector<Spectrum> deviations(const Estimate& estimate,
                                                  const std::vector<Spectrum>& received) const;
   [[nodiscard]] double energy_of(const Spectrum& deviation) const;
-  [[nodiscard]] Found found(const Estimate& estimate, std::size_t first, std::size_t end) const;
+  [[nodiscard]] Found found(const Estimate& estimate) const;
   [[nodiscard]] Drawn& drawn(const std::vector<bool>& left_out, const Estimate& estimate);
   void put_drawn_records(const Estimate& estimate, Drawn& out);
   [[nodiscard]] std::vector<TileNoise> noise_energy(const std::vector<bool>& left_out,
-                                                    const Estimate& estimate, std::size_t shots);
+                                                    const Estimate& estimate);
   [[nodiscard]] static double excess_of_others(const Found& now, const std::vector<bool>& left_out,
                                                const std::vector<TileNoise>& noise);
-  [[nodiscard]] std::vector<bool> at_fault(const Found& all, const Estimate& estimate,
-                                           std::size_t first, std::size_t end);
+  [[nodiscard]] std::vector<bool> at_fault(const Found& all, const Estimate& estimate);
   [[nodiscard]] std::size_t judged_bin(std::size_t fine) const;
 
   const WhiteResiduals& residuals_;
+  PlainResiduals plain_;
   DampedTransform transform_;  ///< twice the judged window long
   std::size_t bins_ = 0;       ///< of it, as far as the filter passes anything
   std::size_t bins_held_ = 0;

@@ -42,6 +42,19 @@ Bench three_gauges() {
   return bench;
 }
 
+/// Of a gauge: "gauge-factor:bridge".
+CalibratedNumber number_of(CalibratedNumber::Of of, const std::string& effect,
+                           const std::string& gauge, const Measured& filed,
+                           const Measured& measured) {
+  CalibratedNumber number;
+  number.of = of;
+  number.id = effect + ":" + gauge;
+  number.gauge = gauge;
+  number.filed = filed;
+  number.measured = number.combined = measured;
+  return number;
+}
+
 Calibration with_part(const PartResult& part) {
   Calibration calibration;
   calibration.parts.push_back(part);
@@ -61,13 +74,9 @@ TEST(CalibrationReport, AGaugeOfTheOtherSignIsFiledAsInverted) {
   PartResult part;
   part.inverted = {"bridge", "factor", "shunt"};
   // Beside the sign the plain factor is off by 1 %.
-  CalibratedNumber gain;
-  gain.of = CalibratedNumber::Of::gain;
-  gain.id = "gauge-factor:factor";
-  gain.gauge = "factor";
+  CalibratedNumber gain =
+      number_of(CalibratedNumber::Of::gain, "gauge-factor", "factor", {1.0, 0.001}, {1.01, 0.001});
   gain.standing = Standing::differs;
-  gain.filed = {1.0, 0.001};
-  gain.measured = gain.combined = {1.01, 0.001};
   part.numbers.push_back(gain);
   const Bench bench = three_gauges();
   const std::string text = report(with_part(part), bench);
@@ -85,14 +94,9 @@ TEST(CalibrationReport, AGaugeOfTheOtherSignIsFiledAsInverted) {
 }
 
 TEST(CalibrationReport, NothingIsFiledOfAFitThatDescribesNothing) {
-  CalibratedNumber place;
-  place.of = CalibratedNumber::Of::position;
-  place.id = "gauge-position:bridge";
-  place.gauge = "bridge";
-  place.filed = {0.5, 3e-4};
-  place.measured = place.combined = {0.5001, 1e-4};
   PartResult part;
-  part.numbers.push_back(place);
+  part.numbers.push_back(number_of(CalibratedNumber::Of::position, "gauge-position", "bridge",
+                                   {0.5, 3e-4}, {0.5001, 1e-4}));
   part.chi2_reduced = 1.0;
   EXPECT_FALSE(corrections(with_part(part), three_gauges()).empty());
   part.chi2_reduced = 3e4;
@@ -119,13 +123,9 @@ TEST(CalibrationReport, EachBarsOwnModulusGoesToThatBar) {
 
 // What the shots do not show of a number is no measurement of it.
 TEST(CalibrationReport, WhatIsUnseenIsSaidToBeToldOnlySoWell) {
-  CalibratedNumber gain;
-  gain.of = CalibratedNumber::Of::gain;
-  gain.id = "gauge-factor:bridge";
-  gain.gauge = "bridge";
+  CalibratedNumber gain = number_of(CalibratedNumber::Of::gain, "gauge-factor", "bridge",
+                                    {1.0, 0.006}, {9.718551, 98.0});
   gain.standing = Standing::unseen;
-  gain.filed = {1.0, 0.006};
-  gain.measured = {9.718551, 98.0};
   PartResult part;
   part.numbers.push_back(gain);
   const std::string text = report(with_part(part), three_gauges());

@@ -207,6 +207,13 @@ TEST(Comparison, TakesNoiseThatRingsForNoFailure) {
       EXPECT_FALSE(region.significant) << seed;
       EXPECT_NEAR(region.sigma(), 1.0, 5.0 / std::sqrt(2.0 * region.noise.freedom())) << seed;
     }
+    for (const CampaignShot& shot : compared.campaign.shots) {
+      Campaign one = compared.campaign;
+      one.shots = {shot};
+      Study study(one, 0.0, Workers{});
+      const Studied alone = study.as_it_is(compared.studied->model);
+      EXPECT_TRUE(std::ranges::none_of(compare(study, alone).tiles, &Tile::significant)) << seed;
+    }
   }
 }
 
@@ -443,18 +450,6 @@ TEST(Comparison, OfASplitBarNamesItsWaves) {
         << region.window;
     EXPECT_NE(region.window, "after the pulse");
   }
-}
-
-TEST(Comparison, OfOneShotIsThatOfTheCampaign) {
-  const Compared compared(make(12, {"gauge-factor:g2=0.02"}).shots);
-  Comparer comparer(compared.study->residuals(), compared.studied->composition,
-                    compared.studied->fit.theta);
-  const std::vector<Tile> tiles = comparer.compare_shot(2);
-  const auto worst = std::max_element(
-      tiles.begin(), tiles.end(), [](const Tile& a, const Tile& b) { return a.share < b.share; });
-  EXPECT_EQ(worst->gauge, 1U);
-  EXPECT_EQ(worst->window, "incident pulse");
-  EXPECT_TRUE(worst->significant);
 }
 
 }  // namespace

@@ -398,8 +398,12 @@ int intervals_that_hold_the_peak(const ElasticShpb& model, double noise_rms) {
   int inside = 0;
   for (unsigned repeat = 1; repeat <= 40; ++repeat) {
     const Shot shot = model.shot(records, noise_rms, 16, 0.01, 500 + repeat);
-    const UncertainFigure peak = figure(propagated(shot, 60), "peak_stress_Pa");
+    const Uncertainty u = propagated(shot, 60);
+    const UncertainFigure peak = figure(u, "peak_stress_Pa");
     inside += truth_Pa > peak.low && truth_Pa < peak.high ? 1 : 0;
+    // Wide enough it would hold anything: twice a single sample's interval at most.
+    const double sample_sd_Pa = *std::ranges::max_element(u.stress_Pa.sd);
+    EXPECT_LT(peak.high - peak.low, 2.0 * 3.92 * sample_sd_Pa);
   }
   return inside;
 }
