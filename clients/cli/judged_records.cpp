@@ -8,6 +8,7 @@
 #include "clients/cli/captures.hpp"
 #include "drivers/files/captures/capture.hpp"
 #include "processing/base/error.hpp"
+#include "processing/criticism/records/campaign.hpp"
 
 namespace kolsky::cli {
 
@@ -27,9 +28,13 @@ std::vector<Shot> read_shots(const JudgedRecords& judged) {
                      "give a time in seconds from the records' first sample");
   }
   std::vector<Shot> shots = read_shots(judged.captures);
-  if (judged.until_s) {
-    for (Shot& shot : shots) {
+  for (Shot& shot : shots) {
+    if (judged.until_s && bad_data(shot).empty()) {
       cut_at(shot, *judged.until_s);
+      if (const std::string left = bad_data(shot); !left.empty()) {
+        throw InputError("--until", "leaves nothing of " + shot.id + " to judge: " + left,
+                         "give a later time, in seconds from the records' first sample");
+      }
     }
   }
   return shots;

@@ -249,7 +249,7 @@ TEST_P(DigitiserContract, TicksGoOnAfterADisconnection) {
   EXPECT_FALSE(digitiser->reconnect());
   EXPECT_EQ(digitiser->read(block), ReadStatus::disconnected);
   rig_->mend();
-  ASSERT_TRUE(digitiser->reconnect());
+  ASSERT_TRUE(comes_back(*digitiser));
   const Tick before = check.next_tick();
   ASSERT_TRUE(next_block(*digitiser, block));
   EXPECT_NE(block.missing_before.kind, Missing::Kind::none);

@@ -122,7 +122,7 @@ TEST(CountedLosses, AreUnknownWhenTheDeviceCountsFromAnew) {
   Block block;
   ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
   ASSERT_EQ(digitiser->read(block), ReadStatus::disconnected);
-  ASSERT_TRUE(digitiser->reconnect());
+  ASSERT_TRUE(comes_back(*digitiser));
   ASSERT_EQ(digitiser->read(block), ReadStatus::samples);
   EXPECT_EQ(block.missing_before.kind, Missing::Kind::unknown);
   EXPECT_EQ(block.first_tick, kBlock);
@@ -140,7 +140,7 @@ TEST(CountedLosses, AcrossADisconnectionAreKnownWhenTheDeviceCountsOn) {
   EXPECT_EQ(read_while(*digitiser, [](const Block&) { return true; }), ReadStatus::disconnected);
   std::this_thread::sleep_for(milliseconds(200));
   device.switch_on();
-  ASSERT_TRUE(digitiser->reconnect());
+  ASSERT_TRUE(comes_back(*digitiser));
   ASSERT_EQ(digitiser->read(block), ReadStatus::samples)
       << "no overflow: the disconnection said it";
   EXPECT_EQ(block.missing_before.kind, Missing::Kind::known);

@@ -300,7 +300,7 @@ TEST(IioReconnect, ShowsAnotherDeviceUnderTheSameNameByItsInfo) {
   EXPECT_EQ(read_while(*digitiser, [](const Block&) { return true; }), ReadStatus::disconnected);
   settings.channels[0].scale_mV = 77.0;
   device = std::make_unique<SimulatedDevice>(settings, uri.substr(3));
-  ASSERT_TRUE(digitiser->reconnect());
+  ASSERT_TRUE(comes_back(*digitiser));
   EXPECT_EQ(digitiser->info().channels[0].scale, 0.077);
 }
 

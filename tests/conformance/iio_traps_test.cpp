@@ -76,7 +76,7 @@ TEST(IioTraps, UriIsCopiedBecauseLibiioCutsItsPortOffInPlace) {
   EXPECT_EQ(uri, same);
   const auto digitiser = open_digitiser(uri, pattern_options());
   digitiser->start();
-  EXPECT_TRUE(digitiser->reconnect());
+  EXPECT_TRUE(comes_back(*digitiser));
   EXPECT_EQ(uri, same);
   EXPECT_EQ(digitiser->info().uri, same);
 }
@@ -166,7 +166,7 @@ TEST(IioTraps, StalledNetworkEndsTheSessionBecauseItsStreamIsOutOfStep) {
   const auto begin = Clock::now();
   ASSERT_EQ(digitiser->read(block), ReadStatus::disconnected);
   EXPECT_LT(seconds_since(begin), 1.4);
-  ASSERT_TRUE(digitiser->reconnect());
+  ASSERT_TRUE(comes_back(*digitiser));
   std::this_thread::sleep_for(milliseconds(700));
   const Tick resumed = stream.tick;
   ASSERT_EQ(digitiser->read(block), ReadStatus::samples);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
 #include <functional>
+#include <thread>
 
 #include "drivers/digitiser/digitiser.hpp"
 
@@ -38,6 +40,18 @@ inline ReadStatus read_while(Digitiser& digitiser, const std::function<bool(cons
     }
   }
   return ReadStatus::timeout;
+}
+
+/// As the daemon does it: a server lets go of a stream some time after it was dropped, and the
+/// device is busy until then.
+inline bool comes_back(Digitiser& digitiser) {
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    if (digitiser.reconnect()) {
+      return true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
 }
 
 /// Reads the next block, whatever precedes it. @return whether there was one

@@ -317,11 +317,12 @@ int add(const EditSettings& settings, Context& context) {
     print(file, output, context);
     return kDone;
   }
-  context.out << output
-              << (freed ? ": freed of what the bench files, to be fitted; "
-                        : ": added, to be fitted; ")
-              << counted(file.model.effects.size(), "effect") << "\n"
-              << effect_text(use);
+  context.out
+      << output
+      << (freed ? ": freed of what the bench files, to be fitted; " : ": added, to be fitted; ")
+      << counted(file.model.effects.size(), "effect") << "\n"
+      << effect_text(use)
+      << (use.form_open ? "      of all shots, or each shot's own: the next fit settles it\n" : "");
   return kDone;
 }
 

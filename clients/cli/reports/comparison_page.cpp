@@ -347,13 +347,15 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
     page.notes.push_back("next: " + next.change);
   }
   page.sections.push_back(held_out_section(diagnosis, campaign.shots.size()));
-  const Studied first = study.fit(before);
+  // Beside the quiet, as `compare` has it: a fit counts as noise what differs from shot to shot.
+  const auto fitted = [&](const Model& model) { return study.beside_quiet(study.fit(model)); };
+  const Studied first = fitted(before);
   const Comparison failed = compare(study, first);
   page.sections.push_back(where_section("Where the model failed before", failed, campaign));
   add_places(page, failed, campaign);
   page.sections.push_back(
       {"What might be missing", {}, {}, {}, {candidates_table(diagnosis, "shots")}});
-  const Studied last = diagnosis.model ? study.fit(*diagnosis.model) : first;
+  const Studied last = diagnosis.model ? fitted(*diagnosis.model) : first;
   Comparer comparer(study.residuals(), last.composition, last.fit.theta);
   const Comparison after = comparer.compare(last.fit.residual, last.misfit);
   if (diagnosis.model) {

@@ -1,6 +1,7 @@
 // From a model's first form to the noise, as a user goes there.
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 
 #include "tests/end_to_end/cli/kolsky.hpp"
@@ -309,8 +310,9 @@ TEST_F(SimulatedBar, SaysWhichSafeguardsADiagnosisDidWithout) {
   }
 }
 
-/// Copies a table of voltages; from a time on its second gauge reads half a volt more.
-void knock_late(const std::string& from, const std::string& to, double time_s) {
+/// Copies a table of voltages, with what its second gauge reads more at a time.
+void copy_with_more(const std::string& from, const std::string& to,
+                    const std::function<double(double)>& more_V) {
   std::ifstream table(from);
   std::ofstream copy(to);
   std::string line;
@@ -321,8 +323,7 @@ void knock_late(const std::string& from, const std::string& to, double time_s) {
     const std::size_t g2 = line.find(',', g1) + 1;
     const std::size_t g3 = line.find(',', g2);
     const double voltage = std::stod(line.substr(g2, g3 - g2));
-    copy << line.substr(0, g2) << (std::stod(line) > time_s ? voltage + 0.5 : voltage)
-         << line.substr(g3) << "\n";
+    copy << line.substr(0, g2) << voltage + more_V(std::stod(line)) << line.substr(g3) << "\n";
   }
 }
 
@@ -330,7 +331,8 @@ TEST_F(SimulatedBar, IsJudgedOnlyAsFarAsAsked) {
   std::filesystem::create_directory(file("knocked"));
   // A quarter of a millisecond of quiet is before time 0 of these tables.
   for (const char* shot : {"shot01", "shot02", "shot03", "shot04"}) {
-    knock_late(file(std::string("campaign/") + shot + ".csv"), file("knocked.csv"), 0.9e-3);
+    copy_with_more(file(std::string("campaign/") + shot + ".csv"), file("knocked.csv"),
+                   [](double time_s) { return time_s > 0.9e-3 ? 0.5 : 0.0; });
     ASSERT_EQ(kolsky({"import", "csv", file("knocked.csv"), "--bench", file("campaign/bench.toml"),
                       "-o", file(std::string("knocked/") + shot + ".h5")})
                   .code,
@@ -365,6 +367,30 @@ TEST_F(SimulatedBar, IsJudgedOnlyAsFarAsAsked) {
   EXPECT_TRUE(
       refused(kolsky({"compare", file("knocked"), "--model", file("d.toml"), "--until", "0"}),
               {"--until", "above 0 s"}));
+  EXPECT_TRUE(
+      refused(kolsky({"compare", file("knocked"), "--model", file("d.toml"), "--until", "1e-5"}),
+              {"--until", "leaves nothing of shot01.h5 to judge", "give a later time"}));
+}
+
+/// The first table after a heading.
+std::string table_after(const std::string& heading, const std::string& page) {
+  const std::size_t begin = page.find("<table", page.find(heading));
+  return page.substr(begin, page.find("</table>", begin) - begin);
+}
+
+// A fit counts as noise what differs from shot to shot; where it is people are to see all the same.
+TEST_F(SimulatedBar, FailedBeforeWhereCompareSaysSo) {
+  ASSERT_EQ(
+      kolsky({"compare", file("shots"), "--model", file("m.toml"), "--report", file("c.html")})
+          .code,
+      0);
+  ASSERT_EQ(
+      kolsky({"diagnose", file("shots"), "--model", file("m.toml"), "--report", file("d.html")})
+          .code,
+      0);
+  const std::string compared = table_after("Where it is", content(file("c.html")));
+  EXPECT_NE(compared.find("g3"), std::string::npos);
+  EXPECT_EQ(table_after("Where the model failed before", content(file("d.html"))), compared);
 }
 
 TEST_F(SimulatedBar, RefusesAPlaceForItsResultBeforeTheWork) {
