@@ -1,10 +1,21 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "processing/criticism/fitting/residual_workspace.hpp"
 #include "processing/criticism/fitting/residuals.hpp"
 
 namespace kolsky {
+
+namespace {
+
+/// Quiet parts tell all of white noise and little of slow noise.
+constexpr double kWhite = 0.98;
+/// Noise is there whether waves pass or not: where only so little a chance (ln) leaves residuals
+/// more where they pass, what was learned is no noise.
+constexpr double kFollowsWaves = -6.9;
+
+}  // namespace
 
 void WhiteResiduals::freeze(const Composition& composition, const std::vector<double>& theta) {
   Workspace& work = *work_.front();
@@ -135,11 +146,25 @@ void WhiteResiduals::calibrate(const Composition& composition, const std::vector
   constexpr int kSteps = 6;
   // From below, for too much of it goes slowly.
   believe_quiet();
+  // Of noise that is not white the quiet parts are known to show too little.
+  const bool white = noise_.flatness() >= kWhite;
+  const std::optional<GaugeNoise::QuietPower> quiet =
+      shown == NoiseShown::what_quiet_hides && white
+          ? std::optional(noise_.quiet_power_over_known())
+          : std::nullopt;
   for (int step = 0; step < kSteps; ++step) {
     freeze(composition, theta);
-    share_out_noise(evaluate(composition, theta), shown);
+    share_out_noise(evaluate(composition, theta), quiet ? NoiseShown::pink_alone : shown);
+    if (quiet) {
+      noise_.hold_to(*quiet);
+      forget_whitener();
+    }
   }
   freeze(composition, theta);
+  if (quiet && log_p_of_more_where_waves_pass(frozen_) < kFollowsWaves) {
+    believe_quiet();
+    freeze(composition, theta);
+  }
 }
 
 void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white, NoiseShown shown) {

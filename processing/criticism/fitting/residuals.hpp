@@ -207,6 +207,10 @@ class WhiteResiduals : public ShotResiduals {
                                         const std::vector<std::vector<Spectrum>>& noise,
                                         const std::vector<Spectrum>& sources) const;
 
+  /// ln of the probability that noise by itself leaves as much more, in its own deviations, in the
+  /// samples where waves pass a gauge (residual_places.cpp). @param white  as frozen
+  [[nodiscard]] double log_p_of_more_where_waves_pass(const Eigen::VectorXd& white) const;
+
   const Campaign& campaign_;
   JudgedBand band_;
   GaugeNoise noise_;

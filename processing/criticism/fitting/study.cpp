@@ -142,13 +142,11 @@ Studied Study::as_it_is(const Model& model) {
 }
 
 Studied Study::beside_quiet(Studied studied) {
-  // Quiet stretches tell all of white noise and little of slow noise.
-  constexpr double kWhite = 0.98;
   const Composition& composition = studied.composition;
   ModelFit& fit = studied.fit;
   residuals_.believe_quiet();
   residuals_.freeze(composition, fit.theta);
-  if (campaign_.shots.size() > 1 && residuals_.noise().flatness() < kWhite) {
+  if (campaign_.shots.size() > 1) {
     residuals_.calibrate(composition, fit.theta, NoiseShown::what_quiet_hides);
   }
   if (residuals_.know_steps()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <numeric>
 
 #include "processing/algebra/algebra.hpp"
@@ -132,6 +133,22 @@ double quiet_square(const Campaign& campaign, std::size_t gauge) {
     samples += static_cast<double>(shot.quiet_samples);
   }
   return sum / samples;
+}
+
+/// The largest share that is not contradicted. @param against  of a share, growing with it
+template <typename Against>
+double most_of(const Against& against) {
+  constexpr double kContradicted = 2.0;  // ln of likelihoods
+  if (against(1.0) <= kContradicted) {
+    return 1.0;
+  }
+  double least = 0.0;
+  double beyond = 1.0;
+  for (int step = 0; step < 20; ++step) {
+    const double middle = 0.5 * (least + beyond);
+    (against(middle) <= kContradicted ? least : beyond) = middle;
+  }
+  return least;
 }
 
 double rounding_square(double step) {
@@ -265,7 +282,12 @@ double GaugeNoise::most_hidden(std::size_t bin) const {
 
 void GaugeNoise::learn(std::size_t gauge, const std::vector<double>& power_over_quiet,
                        NoiseShown shown) {
-  const SmoothPower smooth = smooth_power(power_over_quiet);
+  SmoothPower smooth = smooth_power(power_over_quiet);
+  if (shown == NoiseShown::pink_alone) {
+    // The quiet tells all of white noise, and drifts are slower than that.
+    smooth.white = std::min(1.0, smooth.white);
+    smooth.walk = 0.0;
+  }
   for (std::size_t k = 0; k < scale_[gauge].size(); ++k) {
     scale_[gauge][k] = smooth.at(static_cast<double>(k + 1));
   }
@@ -273,10 +295,97 @@ void GaugeNoise::learn(std::size_t gauge, const std::vector<double>& power_over_
     for (double& scale : scale_[gauge]) {
       scale = std::clamp(scale, 1.0, kMostHidden);
     }
-  } else if (shown == NoiseShown::what_quiet_hides && !is_coarse(gauge)) {
+  } else if (shown != NoiseShown::all && !is_coarse(gauge)) {
     for (std::size_t k = 0; k < scale_[gauge].size(); ++k) {
       scale_[gauge][k] = std::min(scale_[gauge][k], most_hidden(k));
     }
+  }
+}
+
+GaugeNoise::QuietPower GaugeNoise::quiet_power_over_known() const {
+  QuietPower out;
+  std::size_t samples = campaign_.shots.front().quiet_samples;
+  for (const CampaignShot& shot : campaign_.shots) {
+    samples = std::min(samples, shot.quiet_samples);
+  }
+  const double stretch_s = static_cast<double>(samples) * campaign_.period_s;
+  for (std::size_t m = 1; static_cast<double>(m) <= band_.limit_Hz * stretch_s; ++m) {
+    out.at_bin.push_back(static_cast<double>(m) / (stretch_s * band_.bin_width_Hz));
+  }
+  out.shots = static_cast<double>(campaign_.shots.size());
+  std::vector<Complex> turn;
+  for (std::size_t t = 0; t < samples; ++t) {
+    turn.push_back(std::polar(
+        1.0, -2.0 * std::numbers::pi * static_cast<double>(t) / static_cast<double>(samples)));
+  }
+  const double window = static_cast<double>(band_.judged) / static_cast<double>(band_.decimation);
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    std::vector<double>& own = out.by_gauge.emplace_back();
+    for (std::size_t m = 1; m <= out.at_bin.size(); ++m) {
+      double sum = 0.0;
+      for (const CampaignShot& shot : campaign_.shots) {
+        Complex part = 0.0;
+        for (std::size_t t = 0; t < samples; ++t) {
+          part += shot.strain[j][t] * turn[m * t % samples];
+        }
+        sum += std::norm(part) / static_cast<double>(samples);
+      }
+      const auto bin = static_cast<std::size_t>(std::lround(out.at_bin[m - 1]));
+      const double known = power(j, std::clamp<std::size_t>(bin, 1, band_.bins_judged) - 1);
+      own.push_back(window * sum / (out.shots * known));
+    }
+  }
+  return out;
+}
+
+/// By how much (ln of likelihoods, Whittle's) a gauge's quiet parts speak against so much of what
+/// was learned, for the noise as it was known.
+double GaugeNoise::against(const QuietPower& quiet, std::size_t gauge, double share) const {
+  double sum = 0.0;
+  for (std::size_t m = 0; m < quiet.at_bin.size(); ++m) {
+    const auto bin = static_cast<std::size_t>(std::lround(quiet.at_bin[m]));
+    const std::size_t k = std::clamp<std::size_t>(bin, 1, band_.bins_judged) - 1;
+    const double scale = 1.0 + share * (scale_[gauge][k] - 1.0);
+    sum += quiet.shots * (std::log(scale) + quiet.by_gauge[gauge][m] * (1.0 / scale - 1.0));
+  }
+  return sum;
+}
+
+/// Amplifiers are mostly of a kind: what one gauge has far more of than another is no noise.
+void GaugeNoise::keep_alike() {
+  constexpr double kAlike = 1.5;
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    double least = scale_.front()[k];
+    for (const std::vector<double>& own : scale_) {
+      least = std::min(least, own[k]);
+    }
+    for (std::vector<double>& own : scale_) {
+      own[k] = std::min(own[k], kAlike * std::max(1.0, least));
+    }
+  }
+}
+
+void GaugeNoise::keep_share(std::size_t gauge, double share) {
+  for (double& scale : scale_[gauge]) {
+    scale = 1.0 + share * (scale - 1.0);
+  }
+}
+
+void GaugeNoise::hold_to(const QuietPower& quiet) {
+  keep_alike();
+  for (std::size_t j = 0; j < scale_.size(); ++j) {
+    const auto own = [&](double share) { return against(quiet, j, share); };
+    keep_share(j, is_coarse(j) ? 0.0 : most_of(own));
+  }
+  const double share_of_all = most_of([&](double share) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < scale_.size(); ++j) {
+      sum += against(quiet, j, share);
+    }
+    return sum;
+  });
+  for (std::size_t j = 0; j < scale_.size(); ++j) {
+    keep_share(j, share_of_all);
   }
 }
 

@@ -16,8 +16,9 @@ class NoiseSpectrum;
 
 /// How much of what residuals show counts as noise.
 enum class NoiseShown {
-  all,              ///< scatter from shot to shot too, whatever it comes from
-  what_quiet_hides  ///< as much as the quiet parts are too short to show
+  all,               ///< scatter from shot to shot too, whatever it comes from
+  what_quiet_hides,  ///< as much as the quiet parts are too short to show
+  pink_alone         ///< of that, what grows as 1/f; see `hold_to`
 };
 
 /// The noise of all gauges at the judged bins: its spectrum and how far gauges share it from the
@@ -62,6 +63,18 @@ class GaugeNoise {
   /// @param power_over_quiet  of a gauge at each bin, as residuals show it; made smooth
   void learn(std::size_t gauge, const std::vector<double>& power_over_quiet, NoiseShown shown);
 
+  /// What the quiet parts show of each gauge's noise at the frequencies that they resolve within
+  /// the judged band, over what is known of it.
+  struct QuietPower {
+    std::vector<double> at_bin;                 ///< of the judged window's transform
+    std::vector<std::vector<double>> by_gauge;  ///< mean over the shots, by frequency
+    double shots = 0.0;
+  };
+  [[nodiscard]] QuietPower quiet_power_over_known() const;
+  /// Takes back of what was learned what not all gauges have and what the quiet parts contradict,
+  /// each gauge's its own and all together. Of a coarse converter nothing is learned.
+  void hold_to(const QuietPower& quiet);
+
   /// How near the least white gauge's noise is to white: the geometric over the arithmetic mean of
   /// its power over the judged bins. Where it is 1, all frequencies tell of the noise at each.
   [[nodiscard]] double flatness() const;
@@ -69,6 +82,9 @@ class GaugeNoise {
  private:
   [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
   [[nodiscard]] double most_hidden(std::size_t bin) const;
+  [[nodiscard]] double against(const QuietPower& quiet, std::size_t gauge, double share) const;
+  void keep_alike();
+  void keep_share(std::size_t gauge, double share);
   void measure(const std::vector<NoiseSpectrum>& spectra, const Eigen::MatrixXd& correlation);
 
   const Campaign& campaign_;
