@@ -51,8 +51,8 @@ void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis,
   for (const CandidateResult& candidate : diagnosis.candidates) {
     step.tests.push_back(test_of(candidate, diagnosis));
   }
-  // What was tried and rejected has no place in the model.
-  if (diagnosis.model && diagnosis.verdict != DiagnosisVerdict::unknown) {
+  // Where nothing explains the misfit it is as it was, fitted.
+  if (diagnosis.model) {
     file.model = *diagnosis.model;
   }
 }

@@ -57,11 +57,15 @@ TEST(AddDiagnosis, KeepsAllThatALedgerTellsOfIt) {
   EXPECT_EQ(step.tests.front().tied_with, std::vector<std::string>{"bar-modulus"});
 }
 
-TEST(AddDiagnosis, LeavesTheModelWhereNothingExplainsTheMisfit) {
+/// The ledger told of a fit whose numbers the file did not have.
+TEST(AddDiagnosis, KeepsTheFitWhereNothingExplainsTheMisfit) {
   ModelFile file;
   file.model = paper_model(BenchKind::bar, false);
-  add_diagnosis(file, found(DiagnosisVerdict::unknown), {}, "");
-  EXPECT_EQ(file.model.find("temperature"), nullptr);
+  Diagnosis diagnosis = found(DiagnosisVerdict::unknown);
+  diagnosis.model = file.model;
+  diagnosis.model->effects.front().values.front().value = 5.7e9;
+  add_diagnosis(file, diagnosis, {}, "");
+  EXPECT_EQ(file.model.effects.front().values.front().value, 5.7e9);
   EXPECT_EQ(file.history.front().verdict, "unknown");
 }
 
