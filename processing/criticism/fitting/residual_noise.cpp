@@ -161,9 +161,14 @@ void WhiteResiduals::calibrate(const Composition& composition, const std::vector
     }
   }
   freeze(composition, theta);
-  if (quiet && log_p_of_more_where_waves_pass(frozen_) < kFollowsWaves) {
+  if (shown == NoiseShown::all || around_waves().log_p > kFollowsWaves) {
+    return;
+  }
+  if (quiet) {
     believe_quiet();
     freeze(composition, theta);
+  } else {
+    keep_what_is_between_waves(composition, theta);
   }
 }
 

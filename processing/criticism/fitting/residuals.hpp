@@ -207,9 +207,16 @@ class WhiteResiduals : public ShotResiduals {
                                         const std::vector<std::vector<Spectrum>>& noise,
                                         const std::vector<Spectrum>& sources) const;
 
-  /// ln of the probability that noise by itself leaves as much more, in its own deviations, in the
-  /// samples where waves pass a gauge (residual_places.cpp). @param white  as frozen
-  [[nodiscard]] double log_p_of_more_where_waves_pass(const Eigen::VectorXd& white) const;
+  // Noise is there whether waves pass or not (residual_beneath_waves.cpp).
+  struct AroundWaves {
+    double log_p = 0.0;       ///< that noise leaves as much more where waves pass their gauge
+    double between = 1.0;     ///< mean square of deviations where none does, over that of noise
+    double between_sd = 0.0;  ///< of that, if it is noise
+  };
+  /// Of the frozen residuals.
+  [[nodiscard]] AroundWaves around_waves() const;
+  /// Takes back of what was learned what would leave too little between the waves.
+  void keep_what_is_between_waves(const Composition& composition, const std::vector<double>& theta);
 
   const Campaign& campaign_;
   JudgedBand band_;

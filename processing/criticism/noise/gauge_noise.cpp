@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 
 #include "processing/algebra/algebra.hpp"
@@ -303,39 +302,37 @@ void GaugeNoise::learn(std::size_t gauge, const std::vector<double>& power_over_
 }
 
 GaugeNoise::QuietPower GaugeNoise::quiet_power_over_known() const {
-  QuietPower out;
   std::size_t samples = campaign_.shots.front().quiet_samples;
   for (const CampaignShot& shot : campaign_.shots) {
     samples = std::min(samples, shot.quiet_samples);
   }
-  const double stretch_s = static_cast<double>(samples) * campaign_.period_s;
-  for (std::size_t m = 1; static_cast<double>(m) <= band_.limit_Hz * stretch_s; ++m) {
-    out.at_bin.push_back(static_cast<double>(m) / (stretch_s * band_.bin_width_Hz));
+  DampedTransform transform = DampedTransform::of_window(samples / 2 * 2, campaign_.period_s);
+  const auto bins = std::min(
+      transform.bins(), static_cast<std::size_t>(band_.limit_Hz / transform.bin_width_Hz()) + 1);
+  QuietPower out;
+  for (std::size_t m = 1; m < bins; ++m) {
+    out.at_bin.push_back(static_cast<double>(m) * transform.bin_width_Hz() / band_.bin_width_Hz);
   }
   out.shots = static_cast<double>(campaign_.shots.size());
-  std::vector<Complex> turn;
-  for (std::size_t t = 0; t < samples; ++t) {
-    turn.push_back(std::polar(
-        1.0, -2.0 * std::numbers::pi * static_cast<double>(t) / static_cast<double>(samples)));
-  }
+  // Sums over the decimated window, as `measure` has them.
   const double window = static_cast<double>(band_.judged) / static_cast<double>(band_.decimation);
+  const double per_power = window / (static_cast<double>(transform.length()) * out.shots);
+  std::vector<Complex> spectrum(bins);
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
-    std::vector<double>& own = out.by_gauge.emplace_back();
-    for (std::size_t m = 1; m <= out.at_bin.size(); ++m) {
-      double sum = 0.0;
-      for (const CampaignShot& shot : campaign_.shots) {
-        Complex part = 0.0;
-        for (std::size_t t = 0; t < samples; ++t) {
-          part += shot.strain[j][t] * turn[m * t % samples];
-        }
-        sum += std::norm(part) / static_cast<double>(samples);
+    std::vector<double>& own = out.by_gauge.emplace_back(out.at_bin.size(), 0.0);
+    for (const CampaignShot& shot : campaign_.shots) {
+      transform.forward(std::span(shot.strain[j]).first(transform.length()), spectrum);
+      for (std::size_t m = 0; m < own.size(); ++m) {
+        own[m] += per_power * std::norm(spectrum[m + 1]) / power(j, judged_bin(out.at_bin[m]));
       }
-      const auto bin = static_cast<std::size_t>(std::lround(out.at_bin[m - 1]));
-      const double known = power(j, std::clamp<std::size_t>(bin, 1, band_.bins_judged) - 1);
-      own.push_back(window * sum / (out.shots * known));
     }
   }
   return out;
+}
+
+std::size_t GaugeNoise::judged_bin(double at) const {
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(at)), 1, band_.bins_judged) -
+         1;
 }
 
 /// By how much (ln of likelihoods, Whittle's) a gauge's quiet parts speak against so much of what
@@ -343,9 +340,7 @@ GaugeNoise::QuietPower GaugeNoise::quiet_power_over_known() const {
 double GaugeNoise::against(const QuietPower& quiet, std::size_t gauge, double share) const {
   double sum = 0.0;
   for (std::size_t m = 0; m < quiet.at_bin.size(); ++m) {
-    const auto bin = static_cast<std::size_t>(std::lround(quiet.at_bin[m]));
-    const std::size_t k = std::clamp<std::size_t>(bin, 1, band_.bins_judged) - 1;
-    const double scale = 1.0 + share * (scale_[gauge][k] - 1.0);
+    const double scale = 1.0 + share * (scale_[gauge][judged_bin(quiet.at_bin[m])] - 1.0);
     sum += quiet.shots * (std::log(scale) + quiet.by_gauge[gauge][m] * (1.0 / scale - 1.0));
   }
   return sum;
@@ -368,6 +363,13 @@ void GaugeNoise::keep_alike() {
 void GaugeNoise::keep_share(std::size_t gauge, double share) {
   for (double& scale : scale_[gauge]) {
     scale = 1.0 + share * (scale - 1.0);
+  }
+}
+
+void GaugeNoise::scale_by(const Scales& learned, double share) {
+  scale_ = learned;
+  for (std::size_t j = 0; j < scale_.size(); ++j) {
+    keep_share(j, share);
   }
 }
 

@@ -75,6 +75,11 @@ class GaugeNoise {
   /// each gauge's its own and all together. Of a coarse converter nothing is learned.
   void hold_to(const QuietPower& quiet);
 
+  using Scales = std::vector<std::vector<double>>;  ///< by gauge and bin
+  [[nodiscard]] const Scales& scales() const { return scale_; }
+  /// Learns a share of what was learned once.
+  void scale_by(const Scales& learned, double share);
+
   /// How near the least white gauge's noise is to white: the geometric over the arithmetic mean of
   /// its power over the judged bins. Where it is 1, all frequencies tell of the noise at each.
   [[nodiscard]] double flatness() const;
@@ -83,6 +88,8 @@ class GaugeNoise {
   [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
   [[nodiscard]] double most_hidden(std::size_t bin) const;
   [[nodiscard]] double against(const QuietPower& quiet, std::size_t gauge, double share) const;
+  /// The judged bin next to a place between bins.
+  [[nodiscard]] std::size_t judged_bin(double at) const;
   void keep_alike();
   void keep_share(std::size_t gauge, double share);
   void measure(const std::vector<NoiseSpectrum>& spectra, const Eigen::MatrixXd& correlation);
