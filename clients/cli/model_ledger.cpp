@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "clients/cli/reports/model_text.hpp"
+#include "drivers/files/captures/new_file.hpp"
 #include "processing/base/error.hpp"
 
 namespace kolsky::cli {
@@ -29,7 +29,55 @@ bool certified(const StepTest& test) {
   return test.verdict == "named" || test.verdict == "tied";
 }
 
+/// Whether two steps did the same from the same beginning on the same data: one of them taken again
+/// loses nothing.
+bool same_step(const ModelStep& a, const ModelStep& b) {
+  return a.parent == b.parent && a.action == b.action && a.data_sha256 == b.data_sha256;
+}
+
+bool begins_with(const std::vector<ModelStep>& history, const std::vector<ModelStep>& earlier) {
+  return earlier.size() <= history.size() &&
+         std::ranges::equal(earlier.begin(), earlier.end(), history.begin(),
+                            history.begin() + static_cast<std::ptrdiff_t>(earlier.size()),
+                            same_step);
+}
+
+/// @return the name that a model's file has now
+std::string give_free_name(const std::filesystem::path& path) {
+  std::filesystem::path kept;
+  for (int n = 1; kept.empty() || !rename_without_overwriting(path, kept); ++n) {
+    kept = path.parent_path() /
+           fmt::format("{}.{}{}", path.stem().string(), n, path.extension().string());
+  }
+  return kept.string();
+}
+
 }  // namespace
+
+std::string write_model(const std::filesystem::path& path, const ModelFile& file) {
+  const std::string text = format_model(file);
+  std::string kept;
+  if (std::filesystem::exists(path)) {
+    require_replaceable(path, text);
+    if (!begins_with(file.history, read_model(path).history)) {
+      kept = give_free_name(path);
+    }
+  }
+  replace_file(path, text);
+  return kept;
+}
+
+std::string kept_text(const std::string& name, const std::string& kept) {
+  return kept.empty()
+             ? ""
+             : fmt::format("{} had a history of its own; with it, it is {} now\n", name, kept);
+}
+
+void add_kept(const std::string& kept, JsonObject& answer) {
+  if (!kept.empty()) {
+    answer.push_back({"kept", kept});
+  }
+}
 
 ModelFile model_named(const std::string& name) {
   const auto at = name.rfind('@');

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "clients/cli/reports/json_value.hpp"
@@ -18,6 +19,18 @@ namespace kolsky::cli {
 /// @throws InputError where captures of this bench are not what the model is of: its kind, and the
 /// gauges that its effects name
 void require_model_of(const Bench& bench, const Model& model, const std::string& name);
+
+/// Writes a model in the place of the one that had this name. Where that one took steps that this
+/// one did not, it is given another name: no history is lost.
+/// @return that name; empty where there was nothing to lose
+/// @throws InputError as replace_file, and where what is there is no model that can be read
+[[nodiscard]] std::string write_model(const std::filesystem::path& path, const ModelFile& file);
+
+/// What is said of that name, a line; empty where there is none.
+[[nodiscard]] std::string kept_text(const std::string& name, const std::string& kept);
+
+/// The same for programs: `kept`.
+void add_kept(const std::string& kept, JsonObject& answer);
 
 /// A step as `kolsky model history --json` gives it.
 [[nodiscard]] JsonValue describe(const ModelStep& step);

@@ -1,6 +1,7 @@
 #include "clients/cli/outputs.hpp"
 
 #include "drivers/files/captures/new_file.hpp"
+#include "drivers/files/models/model_file.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -21,6 +22,9 @@ void require_new_output(const std::optional<std::string>& path) {
 
 void require_model_output(const std::optional<std::string>& path) {
   require(path, "kolsky_model");
+  if (path && std::filesystem::exists(*path)) {
+    static_cast<void>(read_model(*path));  // its history may be one to keep
+  }
 }
 
 void require_page_output(const std::optional<std::string>& path) {

@@ -10,7 +10,7 @@ namespace kolsky::cli {
 
 /// @throws InputError where the name is taken or the folder cannot be written
 void require_new_output(const std::optional<std::string>& path);
-/// @throws InputError where the file cannot be written or is there and no model
+/// @throws InputError where the file cannot be written or is there and no model that can be read
 void require_model_output(const std::optional<std::string>& path);
 /// @throws InputError where the file cannot be written or is there and no page
 void require_page_output(const std::optional<std::string>& path);

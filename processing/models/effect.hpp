@@ -68,7 +68,7 @@ struct EffectAbout {
   bool per_shot = false;     ///< its strength may differ from shot to shot
   bool shot_facts = false;   ///< depends on the shot's amplitude or temperature
   bool base = false;         ///< of the paper's model; never a candidate
-  bool told_only = false;    ///< no candidate either: people are told of it where it explains
+  bool told_only = false;    ///< no candidate either, unless it is filed: people are told of it
   std::size_t strength = 0;  ///< the parameter that people call its strength
   bool quadrature = false;   ///< its first two parameters are cosine and sine of one amplitude
 };

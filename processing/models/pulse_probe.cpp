@@ -8,7 +8,7 @@ namespace kolsky {
 
 namespace {
 
-constexpr std::size_t kSamples = 1024;
+constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kPulse = 24;
 
 }  // namespace

@@ -21,16 +21,6 @@ PositiveSense other(PositiveSense sense) {
   return sense == PositiveSense::tension ? PositiveSense::compression : PositiveSense::tension;
 }
 
-/// What the first pulse is at a gauge; nothing where none is seen.
-std::optional<PositiveSense> first_sense(const Shot& shot, std::size_t gauge) {
-  const std::vector<double> strain = strain_of_gauge(shot, gauge);
-  const auto pulse = first_pulse(strain, shot.rate.Hz());
-  if (!pulse) {
-    return std::nullopt;
-  }
-  return strain[pulse->rise + 1] < 0.0 ? PositiveSense::tension : PositiveSense::compression;
-}
-
 /// How the faces' forces go together, -1 to 1.
 double correlation(const std::vector<double>& front, const std::vector<double>& back) {
   double together = 0.0;
@@ -53,14 +43,6 @@ std::string joined(const std::vector<std::string>& names) {
   return list;
 }
 
-std::string some_text(const std::vector<std::string>& odd, PositiveSense loading, bool on_input) {
-  const std::string others = odd.size() == 1 ? odd.front() + " seems" : joined(odd) + " seem";
-  return "the first pulse is a " + std::string(name_of_sense(other(loading))) + " at " +
-         joined(odd) + " and a " + name_of_sense(loading) + " at the other gauges: " + others +
-         " to read with the other sign (leads exchanged?): file inverted = true there" +
-         (on_input ? "; or the record begins within the incident pulse or behind it" : "");
-}
-
 std::string all_text(PositiveSense loading) {
   const std::string seen = name_of_sense(other(loading));
   return "the incident pulse is a " + seen + ", and the bars are loaded in " +
@@ -70,6 +52,23 @@ std::string all_text(PositiveSense loading) {
 }
 
 }  // namespace
+
+std::optional<PositiveSense> first_sense(const std::vector<double>& strain, double sample_rate_Hz) {
+  const auto pulse = first_pulse(strain, sample_rate_Hz);
+  if (!pulse) {
+    return std::nullopt;
+  }
+  return strain[pulse->rise + 1] < 0.0 ? PositiveSense::tension : PositiveSense::compression;
+}
+
+std::string other_sign_text(const std::vector<std::string>& odd, PositiveSense loading,
+                            bool on_input) {
+  const std::string others = odd.size() == 1 ? odd.front() + " seems" : joined(odd) + " seem";
+  return "the first pulse is a " + std::string(name_of_sense(other(loading))) + " at " +
+         joined(odd) + " and a " + name_of_sense(loading) + " at the other gauges: " + others +
+         " to read with the other sign (leads exchanged?): file inverted = true there" +
+         (on_input ? "; or the record begins within the incident pulse or behind it" : "");
+}
 
 bool signs_in_doubt(const Shot& shot, const Reduction& reduction) {
   constexpr double kAgainst = -0.5;
@@ -86,7 +85,7 @@ std::optional<Check> gauge_sign(const Shot& shot) {
   std::size_t seen = 0;
   bool on_input = false;
   for (std::size_t i = 0; i < bench.gauges.size(); ++i) {
-    const auto sense = first_sense(shot, i);
+    const auto sense = first_sense(strain_of_gauge(shot, i), shot.rate.Hz());
     seen += sense ? 1 : 0;
     if (sense && *sense != bench.loading) {
       odd.push_back(bench.gauges[i].name);
@@ -97,12 +96,13 @@ std::optional<Check> gauge_sign(const Shot& shot) {
     return std::nullopt;
   }
   const bool all = odd.size() == seen;
-  return Check{.name = "gauge_sign",
-               .value = static_cast<double>(odd.size()),
-               .limit = 0.0,
-               .unit = "gauges",
-               .verdict = all ? Verdict::warn : Verdict::fail,
-               .text = all ? all_text(bench.loading) : some_text(odd, bench.loading, on_input)};
+  return Check{
+      .name = "gauge_sign",
+      .value = static_cast<double>(odd.size()),
+      .limit = 0.0,
+      .unit = "gauges",
+      .verdict = all ? Verdict::warn : Verdict::fail,
+      .text = all ? all_text(bench.loading) : other_sign_text(odd, bench.loading, on_input)};
 }
 
 }  // namespace kolsky

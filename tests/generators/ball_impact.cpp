@@ -108,6 +108,7 @@ class Strike {
         stress(t);
       }
       const double force = contact();
+      follow();
       quiet_s = force > 0.0 || time_s < 100e-6 ? 0.0 : quiet_s + dt_;
       for (std::size_t n = 0; n < r_.size(); ++n) {
         vr_[n] += fr_[n] / mass_[n] * dt_;
@@ -204,6 +205,8 @@ class Strike {
     }
     surface_ = rings_.back();
     plane_m_ = z_[surface_.front()];
+    sabot_m_ = z_[surface_.back()];
+    sabot_speed_m_per_s_ = -impact_.speed_m_per_s;
     for (std::size_t i = 0; i < surface_.size(); ++i) {
       const std::size_t before = surface_[i == 0 ? i : i - 1];
       const std::size_t after = surface_[std::min(i + 1, surface_.size() - 1)];
@@ -417,6 +420,22 @@ class Strike {
     return force;
   }
 
+  /// The sabot's push on the ball's rear, without friction.
+  void follow() {
+    if (impact_.sabot_mass_kg == 0.0) {
+      return;
+    }
+    double push_N = 0.0;
+    for (std::size_t i = surface_.size() / 2; i < surface_.size(); ++i) {
+      const std::size_t n = surface_[i];
+      const double held_N = std::max(0.0, penalty_per_s2_ * mass_[n] * (z_[n] - sabot_m_));
+      fz_[n] -= held_N;
+      push_N += held_N;
+    }
+    sabot_speed_m_per_s_ += push_N / impact_.sabot_mass_kg * dt_;
+    sabot_m_ += sabot_speed_m_per_s_ * dt_;
+  }
+
   BallImpact impact_;
   Relaxing core_, cover_;
   std::vector<double> r_, z_, vr_, vz_, fr_, fz_, mass_;
@@ -428,6 +447,8 @@ class Strike {
   std::vector<double> area_m2_;  ///< of each of the surface's nodes, undeformed
   std::vector<Triangle> triangles_;
   double plane_m_ = 0.0;
+  double sabot_m_ = 0.0;
+  double sabot_speed_m_per_s_ = 0.0;
   double penalty_per_s2_ = 0.0;
   double dt_ = 0.0;
 };

@@ -29,9 +29,10 @@ struct BallImpact {
   double friction = 0.3;
   double impedance_kg_per_s = 0.0;  ///< of the endless bar it strikes
   double target_radius_m = 0.0;
-  double offset_m = 0.0;   ///< of the ball's axis; the cover that overhangs is let go as a bed of
-                           ///< springs, bending is left out
-  std::size_t across = 8;  ///< cells over half the inner square's side
+  double offset_m = 0.0;  ///< of the ball's axis; the cover that overhangs is let go as a bed of
+                          ///< springs, bending is left out
+  double sabot_mass_kg = 0.0;  ///< a rigid plane that follows at the ball's speed and pushes it
+  std::size_t across = 8;      ///< cells over half the inner square's side
 };
 
 struct BallForce {

@@ -15,6 +15,8 @@ namespace {
 constexpr double kGauge_m = 0.25;
 constexpr std::size_t kSamples = 2000;
 constexpr double kTrigger_s = 400e-6;
+constexpr double kHum_Hz = 50.0;
+constexpr double kPi = std::numbers::pi;
 
 Bench paper_bench() {
   Bench bench;
@@ -115,6 +117,7 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
   impact.cover.tau_s = wishes.cover_tau_s;
   impact.offset_m = wishes.offset_m;
   impact.friction = wishes.friction;
+  impact.sabot_mass_kg = wishes.sabot_mass_kg;
   impact.impedance_kg_per_s = bar.density_kg_m3 * c0 * bar.area_m2();
   impact.target_radius_m = bar.diameter_m / 2.0;
   impact.across = wishes.across;
@@ -140,6 +143,7 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
       const auto force = [&](double time_s) {
         return (1.0 - share) * at(ends[0], time_s) + share * at(ends[1], time_s);
       };
+      const double phase = wishes.hum_strain != 0.0 ? 2.0 * kPi * uniform(random) : 0.0;
       std::vector<double> reading(kSamples);
       const std::vector<double> bent =
           bending ? bending->strain_per_m(force, touch_s) : std::vector<double>(kSamples, 0.0);
@@ -149,7 +153,10 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
         const double e =
             (force(t - x / c0) - force(t - (2.0 * bar.length_m - x) / c0)) / stiffness_N +
             wishes.bending_m * bent[i];
-        reading[i] = (1.0 + wishes.gauge_factor) * e * (1.0 + wishes.bridge_b * e);
+        const double since_s = static_cast<double>(i) / bench.sampling_frequency_Hz - kTrigger_s;
+        reading[i] = (1.0 + wishes.gauge_factor) * e * (1.0 + wishes.bridge_b * e) +
+                     wishes.drift_per_s * since_s +
+                     wishes.hum_strain * std::cos(2.0 * kPi * kHum_Hz * since_s + phase);
       }
       Digitiser digitiser;
       digitiser.noise_strain = wishes.noise_strain;

@@ -34,7 +34,10 @@ struct ImpactWishes {
   double offset_m = 0.0;  ///< of the ball's axis from the bar's
   double bending_m =
       0.0;  ///< of the push's line from where gauges read no bending, times imbalance
-  std::size_t across = 8;  ///< cells, see BallImpact
+  double sabot_mass_kg = 0.0;
+  double drift_per_s = 0.0;  ///< reading + so much times the time since the trigger
+  double hum_strain = 0.0;   ///< reading + a sine of 50 Hz, a phase of its own in each shot
+  std::size_t across = 8;    ///< cells, see BallImpact
   bool rebound = true;
 };
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <ostream>
 
@@ -127,9 +128,7 @@ int run(const Settings& settings, Context& context) {
   const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
   const ShotGroups groups = by_strength(comparison, studied.model, campaign);
   std::vector<std::string> notes{how(settings, file)};
-  if (auto exchanged = out_of_order(campaign)) {
-    notes.push_back(*std::move(exchanged));
-  }
+  std::ranges::move(misfiled_gauges(campaign), std::back_inserter(notes));
   if (settings.report) {
     replace_file(*settings.report,
                  render_html(comparison_page(settings.model + " against the measurements", notes,

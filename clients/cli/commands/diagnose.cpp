@@ -213,18 +213,20 @@ int run(const Settings& settings, Context& context) {
   for (const std::string& name : without) {
     diagnosis.notes.push_back("without the safeguard " + name + ": nothing of this is certified");
   }
+  std::string kept;
   if (settings.output && diagnosis.model) {
     add_diagnosis(file, diagnosis, files_of(settings.judged.captures), noted(settings, without));
-    replace_file(*settings.output, format_model(file));
+    kept = write_model(*settings.output, file);
   }
   if (!context.json) {
-    context.out << diagnosis_text(diagnosis);
+    context.out << diagnosis_text(diagnosis) << kept_text(settings.output.value_or(""), kept);
     return kDone;
   }
   JsonObject answer = describe(diagnosis);
   if (!without.empty()) {
     answer.push_back({"without", without});
   }
+  add_kept(kept, answer);
   context.out << to_text(std::move(answer)) << "\n";
   return kDone;
 }

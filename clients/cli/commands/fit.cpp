@@ -13,7 +13,6 @@
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/models/diagnosis_step.hpp"
 #include "processing/criticism/fitting/study.hpp"
 
@@ -54,20 +53,21 @@ int run(const Settings& settings, Context& context) {
   file.history.back().note = settings.note.value_or("");
   file.model = studied.model;
   file.gauges = gauges_of(campaign.bench);
-  replace_file(settings.output, format_model(file));
+  const std::string kept = write_model(settings.output, file);
   if (context.json) {
-    context.out << to_text(JsonObject{{"model", settings.output},
-                                      {"parameters", describe_parameters(file.model)},
-                                      {"misfit", describe(studied.misfit)},
-                                      {"effects", describe_effects(file.model)},
-                                      {"strained", describe_strained(file.model)},
-                                      {"at_bounds", describe_bounds(file.model)},
-                                      {"converged", studied.fit.converged},
-                                      {"parent", file.parent()}})
-                << "\n";
+    JsonObject answer{{"model", settings.output},
+                      {"parameters", describe_parameters(file.model)},
+                      {"misfit", describe(studied.misfit)},
+                      {"effects", describe_effects(file.model)},
+                      {"strained", describe_strained(file.model)},
+                      {"at_bounds", describe_bounds(file.model)},
+                      {"converged", studied.fit.converged},
+                      {"parent", file.parent()}};
+    add_kept(kept, answer);
+    context.out << to_text(answer) << "\n";
     return kDone;
   }
-  context.out << settings.output << "\n"
+  context.out << kept_text(settings.output, kept) << settings.output << "\n"
               << model_table(file.model) << misfit_text(studied.misfit)
               << in_words(studied.misfit, campaign.shots.size()) << "\n"
               << strained_text(file.model) << bounds_text(file.model);

@@ -10,7 +10,6 @@
 #include "clients/cli/model_ledger.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
-#include "drivers/files/captures/new_file.hpp"
 #include "drivers/files/models/model_file.hpp"
 #include "drivers/files/settings/bench_file.hpp"
 #include "drivers/files/settings/material_file.hpp"
@@ -25,23 +24,18 @@ namespace {
 
 /// @param kept  where the model now is that had this name before, if there was one
 void print(const ModelFile& file, const std::string& name, Context& context,
-           const std::string& kept = "") {
+           const std::string& kept) {
   if (context.json) {
     JsonObject object{{"model", name},
                       {"kind", name_of(file.model.kind)},
                       {"effects", describe_effects(file.model)},
                       {"parameters", describe_parameters(file.model)},
                       {"parent", file.parent()}};
-    if (!kept.empty()) {
-      object.push_back({"kept", kept});
-    }
+    add_kept(kept, object);
     context.out << to_text(object) << "\n";
     return;
   }
-  if (!kept.empty()) {
-    context.out << fmt::format("{} had a history; with it, it is {} now\n", name, kept);
-  }
-  context.out << name << ": " << name_of(file.model.kind) << ", "
+  context.out << kept_text(name, kept) << name << ": " << name_of(file.model.kind) << ", "
               << counted(file.model.effects.size(), "effect") << "\n"
               << (file.bar_source.empty()
                       ? ""
@@ -156,24 +150,6 @@ std::string take_ball(const NewSettings& settings, const std::optional<Bench>& b
   return source;
 }
 
-/// Where a model with steps of history stands under the name of a new one: gives it another name.
-/// @return that name; empty where there was no history to lose
-std::string keep_ledger_of(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) {
-    return "";
-  }
-  require_replaceable(path, format_model({}));
-  if (read_model(path).history.empty()) {
-    return "";
-  }
-  std::filesystem::path kept;
-  for (int n = 1; kept.empty() || !rename_without_overwriting(path, kept); ++n) {
-    kept = path.parent_path() /
-           fmt::format("{}.{}{}", path.stem().string(), n, path.extension().string());
-  }
-  return kept.string();
-}
-
 int make_new(const NewSettings& settings, Context& context) {
   ModelFile file;
   const BenchKind kind = bench_kind(settings.kind);
@@ -221,9 +197,7 @@ int make_new(const NewSettings& settings, Context& context) {
     file.bar_source = kind == BenchKind::bar ? "starts from the paper's PMMA (Table 4, row 1)"
                                              : "the paper's PMMA (Table 4, row 1), held";
   }
-  const std::string kept = keep_ledger_of(settings.output);
-  replace_file(settings.output, format_model(file));
-  print(file, settings.output, context, kept);
+  print(file, settings.output, context, write_model(settings.output, file));
   return kDone;
 }
 
@@ -312,13 +286,13 @@ int add(const EditSettings& settings, Context& context) {
   file.history.back().note = note_of(settings);
   use = put_in(file, std::move(use), settings);
   const std::string output = settings.output.value_or(settings.model);
-  replace_file(output, format_model(file));
+  const std::string kept = write_model(output, file);
   if (context.json) {
-    print(file, output, context);
+    print(file, output, context, kept);
     return kDone;
   }
   context.out
-      << output
+      << kept_text(output, kept) << output
       << (freed ? ": freed of what the bench files, to be fitted; " : ": added, to be fitted; ")
       << counted(file.model.effects.size(), "effect") << "\n"
       << effect_text(use)
@@ -340,7 +314,10 @@ int remove(const EditSettings& settings, Context& context) {
                      "to hold it where it is, write `free = false` for it in the model file; to "
                      "free it of what is filed, take `prior_sd` and `prior_mean` out there");
   }
-  if (settings.effect == "elementary-waves" || settings.effect == "three-element-specimen") {
+  constexpr std::array<const char*, 5> kNeeded{"elementary-waves", "three-element-bar",
+                                               "three-element-specimen", "three-element-core",
+                                               "three-element-cover"};
+  if (std::ranges::find(kNeeded, settings.effect) != kNeeded.end()) {
     throw InputError(settings.model + ": effect " + settings.effect,
                      "is what a model foretells with: without it there is nothing to compare",
                      "add effects beside it; `kolsky model new` begins another model");
@@ -350,13 +327,12 @@ int remove(const EditSettings& settings, Context& context) {
   std::erase_if(file.model.effects,
                 [&](const EffectUse& own) { return own.id() == settings.effect; });
   const std::string output = settings.output.value_or(settings.model);
-  replace_file(output, format_model(file));
-  print(file, output, context);
+  print(file, output, context, write_model(output, file));
   return kDone;
 }
 
 int show(const EditSettings& settings, Context& context) {
-  print(model_named(settings.model), settings.model, context);
+  print(model_named(settings.model), settings.model, context, "");
   return kDone;
 }
 
@@ -436,8 +412,7 @@ int revert(const EditSettings& settings, Context& context) {
   file.model = before.model;
   file.gauges = before.gauges;
   const std::string output = settings.output.value_or(settings.model);
-  replace_file(output, format_model(file));
-  print(file, output, context);
+  print(file, output, context, write_model(output, file));
   return kDone;
 }
 

@@ -39,11 +39,12 @@ std::vector<std::string> notes_of(const Settings& settings, const ModelFile& fil
   const bool seen =
       std::any_of(file.history.begin(), file.history.end(),
                   [&](const ModelStep& step) { return is_digest_of(step.data_sha256, captures); });
-  notes.emplace_back(seen
-                         ? "the captures that the model's ledger names; every model of the lineage "
-                           "is fitted to them again, under one measure of the noise"
-                         : "not the captures that the model's ledger names: every model of the "
-                           "lineage is fitted to these");
+  notes.emplace_back(
+      seen ? "the captures that the model's ledger names; every model of the lineage "
+             "is fitted to them again, under one measure of the noise"
+      : file.history.empty() ? "the model has taken no steps yet; it is fitted to these captures"
+                             : "not the captures that the model's ledger names: every model of the "
+                               "lineage is fitted to these");
   if (fall.fold == "parts") {
     notes.emplace_back(
         "one shot: held out are parts of its record, not shots; repeat the shot to certify");

@@ -9,6 +9,7 @@
 #include "clients/cli/reports/diagnosis_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "processing/base/error.hpp"
+#include "processing/criticism/fitting/composition.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 
 namespace kolsky::cli {
@@ -51,6 +52,19 @@ std::vector<Strained> strained_numbers(const Model& model) {
 /// Where a fit may take a number: the model file's bounds, else the effect's own.
 std::array<double, 2> bounds_of(const ModelValue& value, const EffectParameter& parameter) {
   return value.bounds.value_or(std::array{parameter.lower, parameter.upper});
+}
+
+/// Whether a fit found nothing of the effect: then its times and places may be anything.
+bool is_none(const EffectUse& use) {
+  const std::vector<EffectParameter>& parameters = use.effect->about().parameters;
+  bool none = !has_own_strengths(use);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ModelValue& value = use.values[p];
+    const bool near =
+        value.sd > 0.0 && std::abs(value.value - parameters[p].null_value) <= value.sd;
+    none = none && (parameters[p].auxiliary() || near);
+  }
+  return none;
 }
 
 }  // namespace
@@ -124,8 +138,11 @@ std::string effect_text(const EffectUse& use) {
       held += "  between " + number_text(value.bounds->front(), 0.0, unit) + " and " +
               number_text(value.bounds->back(), 0.0, unit);
     }
-    text += fmt::format("      {} = {}{}\n", about.parameters[p].name,
-                        number_text(value.value, value.sd, unit), held);
+    const bool open = value.free && about.parameters[p].auxiliary() && is_none(use);
+    text += fmt::format(
+        "      {} = {}{}\n", about.parameters[p].name,
+        open ? "open, as nothing of the effect shows" : number_text(value.value, value.sd, unit),
+        held);
   }
   return text;
 }

@@ -57,6 +57,9 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
     if (gauge.position_m.sd > 0.0) {
       list.push_back(filed("gauge-position:" + gauge.name, {gauge.position_m.sd}));
     }
+    if (gauge.length_m && gauge.length_m->sd > 0.0) {
+      list.push_back(filed("gauge-length-offset:" + gauge.name, {gauge.length_m->sd}));
+    }
     if (gauge.delay_s.sd > 0.0) {
       list.push_back(filed("channel-delay:" + gauge.name, {gauge.delay_s.sd}));
     }
@@ -129,6 +132,27 @@ Composition::Composition(const Model& model, const Campaign& campaign)
 
 bool has_own_strengths(const EffectUse& use) {
   return use.per_shot || (use.effect->about().each_gauge && !use.alike);
+}
+
+Model all_but_own_held(Model model, const Bench& bench) {
+  for (EffectUse& filed : known_unknowns_of(bench)) {
+    if (model.find(filed.id()) == nullptr) {
+      model.effects.push_back(std::move(filed));
+    }
+  }
+  for (EffectUse& use : model.effects) {
+    const auto& parameters = use.effect->about().parameters;
+    bool any = false;
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      const bool own = has_own_strengths(use) && !parameters[p].auxiliary();
+      use.values[p].free = use.values[p].free && own;
+      any = any || use.values[p].free;
+    }
+    if (!any) {
+      use.prior_correlation.clear();
+    }
+  }
+  return model;
 }
 
 void Composition::add(const EffectUse& use, const Campaign& campaign) {

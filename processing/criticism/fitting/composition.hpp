@@ -86,6 +86,10 @@ class Composition {
 /// Whether an effect has strengths of each shot's or each gauge's own: a model keeps their mean.
 [[nodiscard]] bool has_own_strengths(const EffectUse& use);
 
+/// The model with every number held, those filed of the bench too, but the strengths that its file
+/// does not hold.
+[[nodiscard]] Model all_but_own_held(Model model, const Bench& bench);
+
 /// The bench's filed deviations as effects with priors: gauge factors, positions, density, the
 /// bars' and the specimen's dimensions.
 [[nodiscard]] std::vector<EffectUse> known_unknowns_of(const Bench& bench);

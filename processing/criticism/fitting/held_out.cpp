@@ -13,17 +13,19 @@ namespace kolsky {
 namespace {
 
 using Places = std::vector<Eigen::Index>;  ///< of free numbers
+using Fold = std::vector<std::size_t>;     ///< shots that are left out together
 
-/// What first order says of one shot that is left out.
+/// What first order says of shots that are left out.
 struct Foretold {
-  std::vector<double> theta;  ///< all as the other shots have them, but what is this shot's alone
+  std::vector<double> theta;  ///< all as the other shots have them, but what is a shot's alone
   double square = 0.0;
 };
 
-Places numbers_of_shot(const Composition& composition, Eigen::Index shot) {
+Places numbers_of(const Composition& composition, const Fold& fold) {
   Places own;
   for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
-    if (composition.numbers()[i].shot == shot) {
+    const std::ptrdiff_t shot = composition.numbers()[i].shot;
+    if (shot >= 0 && std::ranges::find(fold, static_cast<std::size_t>(shot)) != fold.end()) {
       own.push_back(static_cast<Eigen::Index>(i));
     }
   }
@@ -54,22 +56,33 @@ std::vector<double> moved_inside(const Composition& composition, std::vector<dou
   return theta;
 }
 
-Foretold foretold(const Studied& studied, Eigen::Index shot, Eigen::Index size) {
+/// Where a fold's residuals stand among those of all shots, each of which has `size`.
+Places rows_of(const Fold& fold, Eigen::Index size) {
+  Places rows;
+  for (const std::size_t shot : fold) {
+    for (Eigen::Index k = 0; k < size; ++k) {
+      rows.push_back(static_cast<Eigen::Index>(shot) * size + k);
+    }
+  }
+  return rows;
+}
+
+Foretold foretold(const Studied& studied, const Fold& fold, Eigen::Index size) {
   const ModelFit& fit = studied.fit;
-  const auto rows = fit.jacobian.middleRows(shot * size, size);
-  Eigen::VectorXd residual = fit.residual.segment(shot * size, size);
-  const Places own = numbers_of_shot(studied.composition, shot);
+  const Places rows = rows_of(fold, size);
+  Eigen::VectorXd residual = fit.residual(rows);
+  const Places own = numbers_of(studied.composition, fold);
   const Places others = all_but(own, fit.theta.size());
   Foretold out{fit.theta, 0.0};
   if (!others.empty()) {
-    const Eigen::MatrixXd columns = rows(Eigen::all, others);
+    const Eigen::MatrixXd columns = fit.jacobian(rows, others);
     const Eigen::MatrixXd left = fit.information(others, others) - columns.transpose() * columns;
     const Eigen::VectorXd move = least_norm_solution(left, columns.transpose() * residual);
     out.theta = moved_inside(studied.composition, std::move(out.theta), others, move);
     const Eigen::VectorXd changed = columns * move;
     residual += changed;
     if (!own.empty()) {
-      const Eigen::MatrixXd strengths = rows(Eigen::all, own);
+      const Eigen::MatrixXd strengths = fit.jacobian(rows, own);
       const Eigen::VectorXd follow =
           -solve_symmetric(fit.information(own, own), strengths.transpose() * changed);
       out.theta = moved_inside(studied.composition, std::move(out.theta), own, follow);
@@ -116,7 +129,7 @@ class LeftOut {
         residuals_(residuals),
         shot_(shot),
         worker_(worker),
-        own_(numbers_of_shot(studied.composition, static_cast<Eigen::Index>(shot))),
+        own_(numbers_of(studied.composition, {shot})),
         precision_(studied.composition.prior_precision()(own_, own_)) {}
 
   [[nodiscard]] double square_at(const std::vector<double>& theta) const {
@@ -196,7 +209,7 @@ double held_out_square(const Studied& studied, ShotResiduals& residuals, std::si
                        std::size_t worker) {
   const auto size = static_cast<Eigen::Index>(residuals.per_shot());
   const auto at = static_cast<Eigen::Index>(shot);
-  const Foretold first_order = foretold(studied, at, size);
+  const Foretold first_order = foretold(studied, {shot}, size);
   const LeftOut left_out(studied, residuals, shot, worker);
   const double square = left_out.square_at(first_order.theta);
   const double seen = studied.fit.residual.segment(at * size, size).squaredNorm();
@@ -217,17 +230,27 @@ double held_out_square(const Studied& studied, ShotResiduals& residuals, std::si
 
 }  // namespace
 
-std::vector<double> held_out_squares(const Studied& studied, std::size_t residuals_per_shot) {
+std::vector<double> held_out_squares(const Studied& studied, std::size_t residuals_per_shot,
+                                     const std::vector<std::vector<std::size_t>>& folds) {
   const ModelFit& fit = studied.fit;
   const auto size = static_cast<Eigen::Index>(residuals_per_shot);
-  const Eigen::Index shots = fit.residual.size() / size;
   std::vector<double> squares;
-  for (Eigen::Index n = 0; n < shots; ++n) {
-    squares.push_back(shots < 2 || fit.theta.empty()
-                          ? fit.residual.segment(n * size, size).squaredNorm()
-                          : foretold(studied, n, size).square);
+  for (const Fold& fold : folds) {
+    squares.push_back(folds.size() < 2 || fit.theta.empty()
+                          ? fit.residual(rows_of(fold, size)).squaredNorm()
+                          : foretold(studied, fold, size).square);
   }
   return squares;
+}
+
+std::vector<double> held_out_squares(const Studied& studied, std::size_t residuals_per_shot) {
+  const std::size_t shots =
+      static_cast<std::size_t>(studied.fit.residual.size()) / residuals_per_shot;
+  std::vector<Fold> folds;
+  for (std::size_t shot = 0; shot < shots; ++shot) {
+    folds.push_back({shot});
+  }
+  return held_out_squares(studied, residuals_per_shot, folds);
 }
 
 std::vector<double> held_out_squares(const Studied& studied, ShotResiduals& residuals,

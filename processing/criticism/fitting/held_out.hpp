@@ -13,6 +13,12 @@ namespace kolsky {
 [[nodiscard]] std::vector<double> held_out_squares(const Studied& studied,
                                                    std::size_t residuals_per_shot);
 
+/// The same of folds: shots that are left out together.
+/// @param folds  by fold, places of its shots
+[[nodiscard]] std::vector<double> held_out_squares(
+    const Studied& studied, std::size_t residuals_per_shot,
+    const std::vector<std::vector<std::size_t>>& folds);
+
 /// The same at finite size: where the records at the foretold parameters are not what first order
 /// says they are, the other shots are fitted by themselves.
 [[nodiscard]] std::vector<double> held_out_squares(const Studied& studied, ShotResiduals& residuals,

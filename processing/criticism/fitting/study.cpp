@@ -11,33 +11,6 @@
 
 namespace kolsky {
 
-namespace {
-
-/// The model with every number held, those filed of the bench too, but the strengths that its file
-/// does not hold.
-Model all_but_own_held(Model model, const Bench& bench) {
-  for (EffectUse& filed : known_unknowns_of(bench)) {
-    if (model.find(filed.id()) == nullptr) {
-      model.effects.push_back(std::move(filed));
-    }
-  }
-  for (EffectUse& use : model.effects) {
-    const auto& parameters = use.effect->about().parameters;
-    bool any = false;
-    for (std::size_t p = 0; p < use.values.size(); ++p) {
-      const bool own = has_own_strengths(use) && !parameters[p].auxiliary();
-      use.values[p].free = use.values[p].free && own;
-      any = any || use.values[p].free;
-    }
-    if (!any) {
-      use.prior_correlation.clear();
-    }
-  }
-  return model;
-}
-
-}  // namespace
-
 Study::Study(const Campaign& campaign, double band_limit_Hz, Workers executor)
     : campaign_(campaign),
       executor_(std::move(executor)),

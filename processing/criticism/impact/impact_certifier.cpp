@@ -133,13 +133,27 @@ JudgedRefits ImpactCertifier::judged(const ImpactSearch& search, const Studied& 
 
 std::vector<std::string> beside(const ImpactSearch& search, const ImpactRefit& own) {
   std::vector<std::string> ties;
-  for (const ImpactRefit& rival : search.refits()) {
+  // An effect may be there in several variants.
+  const auto tie = [&](const ImpactRefit& rival) {
     const std::string other = search.candidate(rival).id();
-    const bool as_good = rival.evidence > own.evidence - kStandsBefore;
-    // An effect may be there in several variants.
-    if (other != search.candidate(own).id() && as_good &&
-        std::ranges::find(ties, other) == ties.end()) {
+    if (other != search.candidate(own).id() && std::ranges::find(ties, other) == ties.end()) {
       ties.push_back(other);
+    }
+  };
+  // Of strengths of each shot's own, several a shot lose by their number only to one that they can
+  // stand for: a hum is a drift in a short record.
+  const auto does_as_much = [&](const ImpactRefit& rival) {
+    return search.candidate(own).use.per_shot && search.candidate(rival).use.per_shot &&
+           rival.lowers > own.lowers - kStandsBefore * search.scale();
+  };
+  for (const ImpactRefit& rival : search.refits()) {
+    if (rival.evidence > own.evidence - kStandsBefore || does_as_much(rival)) {
+      tie(rival);
+    }
+  }
+  for (const ImpactRefit& rival : search.unconfirmed()) {
+    if (does_as_much(rival)) {
+      tie(rival);
     }
   }
   return ties;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/algebra/algebra.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/impact/fine_grid.hpp"
 
 namespace kolsky {
@@ -175,16 +177,28 @@ std::pair<std::vector<Eigen::VectorXd>, double> ImpactResiduals::scatter_of(
   return {std::move(offs), count - (told ? 2.0 : 1.0)};
 }
 
-void ImpactResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {
-  const Foretold foretold = foretell(composition, theta, executor_.first);
-  // Scatter along V dm/dV, clear of arrival and offset, is the speeds'; the rest is noise.
+/// What drifts by itself in each shot, as much as its own offsets leave of it: rows of one shot's
+/// judged samples, a column for each gauge.
+Eigen::MatrixXd ImpactResiduals::drifts() const {
+  const std::size_t samples = records_.window.samples;
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(of_gauges()),
+                                                  static_cast<Eigen::Index>(campaign_.gauges()));
+  for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
+    for (std::size_t k = 0; k < samples; ++k) {
+      columns(static_cast<Eigen::Index>(j * samples + k), static_cast<Eigen::Index>(j)) =
+          static_cast<double>(k) / static_cast<double>(samples);
+    }
+  }
+  return columns;
+}
+
+/// How shots of one speed scatter about their mean: along V dm/dV, clear of arrival and offset, by
+/// their speeds; the rest is noise.
+/// @param clear_of  what else each shot may have of its own; columns
+ImpactResiduals::ShotScatter ImpactResiduals::scatter(const Foretold& foretold,
+                                                      const Eigen::MatrixXd& clear_of) const {
   const auto size = static_cast<Eigen::Index>(of_gauges());
-  double scatter = 0.0;
-  double expected = 0.0;
-  double freedom = 0.0;
-  double rest = 0.0;
-  double rest_freedom = 0.0;
-  double rebounds = 0.0;
+  ShotScatter out;
   for (std::size_t g = 0; g < records_.groups.size(); ++g) {
     const SpeedGroup& group = records_.groups[g];
     const auto count = static_cast<double>(group.shots.size());
@@ -202,34 +216,64 @@ void ImpactResiduals::calibrate(const Composition& composition, const std::vecto
       // The trend is in what is left, and in it what the solver's ripple does along the speeds.
       covariance += whitening_->trend_square(g) * whitening_->slope(g).topLeftCorner(size, size);
     }
-    const Eigen::MatrixXd inverse = symmetric_power(covariance, -1.0);
+    Eigen::MatrixXd inverse = symmetric_power(covariance, -1.0);
+    if (clear_of.cols() > 0) {
+      const Eigen::MatrixXd weighted = inverse * clear_of;
+      inverse -= weighted * inverse_of(clear_of.transpose() * weighted) * weighted.transpose();
+    }
     const Eigen::VectorXd direction = inverse * reading;
     const double information = reading.dot(direction);
     for (std::size_t i = 0; i < offs.size(); ++i) {
       const Eigen::VectorXd& off = offs[i];
       const double along = direction.dot(off.head(size)) / information;
-      scatter += along * along;
+      out.of_speed += along * along;
       const Eigen::VectorXd left = off.head(size) - along * reading;
-      rest += left.dot(inverse * left);
-      rebounds += std::pow(off[size] / foretold.reading[group.shots[i]][size], 2);
+      out.rest += left.dot(inverse * left);
+      out.of_rebound += std::pow(off[size] / foretold.reading[group.shots[i]][size], 2);
     }
-    expected += left_free / information;
-    freedom += left_free;
-    rest_freedom += left_free * (static_cast<double>(size) - eliminated() - 1.0);
+    out.expected_of_speed += left_free / information;
+    out.freedom += left_free;
+    out.rest_freedom += left_free * (static_cast<double>(size) - eliminated() - 1.0 -
+                                     static_cast<double>(clear_of.cols()));
   }
-  if (freedom < 1.0) {
+  return out;
+}
+
+/// What drifts in each shot by itself is no noise: a model may lack it. Where it stands out of the
+/// rest of the scatter, that is the noise.
+ImpactResiduals::ShotScatter ImpactResiduals::scatter_of_noise(const Foretold& foretold) const {
+  constexpr double kSurely = -20.0;  ///< ln of a chance
+  constexpr double kMuch = 0.5;      ///< of the scatter
+  const ShotScatter whole = scatter(foretold, {});
+  ShotScatter clear = scatter(foretold, drifts());
+  const double drifting = whole.rest_freedom - clear.rest_freedom;
+  if (!(drifting > 0.0 && clear.rest_freedom > 0.0)) {
+    return whole;
+  }
+  const double noise = clear.rest / clear.rest_freedom;
+  const double f = (whole.rest - clear.rest) / drifting / noise;
+  const bool drifts = noise < kMuch * whole.rest / whole.rest_freedom &&
+                      log_f_tail(f, drifting, clear.rest_freedom) < kSurely;
+  return drifts ? clear : whole;
+}
+
+void ImpactResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {
+  const Foretold foretold = foretell(composition, theta, executor_.first);
+  const ShotScatter shots = scatter_of_noise(foretold);
+  if (shots.freedom < 1.0) {
     return;
   }
   const double scale = noise_scale_;
-  noise_scale_ = scale * std::max(0.7, rest / rest_freedom);
+  noise_scale_ = scale * std::max(0.7, shots.rest / shots.rest_freedom);
   // Forces grow somewhat faster than speeds; what is found here is of the force.
-  const double variance = std::max(0.0, (scatter - expected * noise_scale_ / scale) / freedom);
+  const double variance = std::max(
+      0.0, (shots.of_speed - shots.expected_of_speed * noise_scale_ / scale) / shots.freedom);
   constexpr double kForcePerSpeed = 1.15;
   speed_sd_ = std::sqrt(variance) / kForcePerSpeed;
   // Speeds that are filed wrongly scatter the rebounds as well; that is counted with the speeds.
-  const double said = freedom - static_cast<double>(records_.unsaid_rebounds());
+  const double said = shots.freedom - static_cast<double>(records_.unsaid_rebounds());
   rebound_sd_ =
-      said >= 1.0 ? std::sqrt(std::max(0.0, rebounds / said - speed_sd_ * speed_sd_)) : 0.0;
+      said >= 1.0 ? std::sqrt(std::max(0.0, shots.of_rebound / said - speed_sd_ * speed_sd_)) : 0.0;
   set_whitening(foretold, composition, theta);
 }
 

@@ -191,7 +191,7 @@ class Seeker {
     options_.progress("weighing " + id + " beside what else was found");
     const Studied others = without(current.model, id);
     ImpactSearch search(study_, others);
-    search.refit_rivals();
+    search.refit_rivals(id, current);
     const ImpactRefit* claimed = judge(search, search.base());
     if (claimed == nullptr) {
       drop_claim(diagnosis_, id, CandidateVerdict::rejected);
@@ -223,7 +223,7 @@ class Seeker {
       }
       const Studied others = without(rest_->studied.model, id);
       ImpactSearch search(study_, others);
-      search.refit_rivals();
+      search.refit_rivals(id, rest_->studied);
       const auto own = std::ranges::find_if(search.refits(), [&](const ImpactRefit& refit) {
         return search.candidate(refit).id() == id;
       });
@@ -258,10 +258,13 @@ class Seeker {
       return;
     }
     const std::string name = "reading " + rival->name + " of the law ";
+    const bool stands_before = rival->behind < -kStandsBefore;
     if (!claims) {
-      diagnosis_.notes.push_back(name + "leaves less unexplained than " + *reading +
-                                 ": choose it with `model new --reading`");
-    } else if (rival->behind < -kStandsBefore) {
+      if (stands_before) {
+        diagnosis_.notes.push_back(name + "leaves less unexplained than " + *reading +
+                                   ": choose it with `model new --reading`");
+      }
+    } else if (stands_before) {
       diagnosis_.notes.push_back(
           name + "explains more than " + diagnosis_.effects.front() +
           " does: nothing is claimed; choose it with `model new --reading` and diagnose again");

@@ -218,6 +218,19 @@ class ImpactResiduals : public ShotResiduals {
                                      const std::vector<std::vector<double>>& low,
                                      const std::vector<std::vector<double>>& high) const;
   [[nodiscard]] Eigen::VectorXd measured(std::size_t shot, const RecordScene& record) const;
+  /// Squares, over all shots that have fellows of their speed.
+  struct ShotScatter {
+    double of_speed = 0.0;           ///< relative to the force
+    double expected_of_speed = 0.0;  ///< of noise alone
+    double of_rebound = 0.0;         ///< relative
+    double freedom = 0.0;            ///< of these
+    double rest = 0.0;               ///< over the noise as it is known
+    double rest_freedom = 0.0;
+  };
+  [[nodiscard]] Eigen::MatrixXd drifts() const;
+  [[nodiscard]] ShotScatter scatter(const Foretold& foretold,
+                                    const Eigen::MatrixXd& clear_of) const;
+  [[nodiscard]] ShotScatter scatter_of_noise(const Foretold& foretold) const;
   [[nodiscard]] std::pair<std::vector<Eigen::VectorXd>, double> scatter_of(
       std::size_t g, const std::vector<Eigen::VectorXd>& residual) const;
   void fill_unsaid_rebounds(Foretold& foretold) const;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/impact/impact_notes.hpp"
 #include "processing/criticism/impact/quiet_before.hpp"
 #include "processing/criticism/impact/solver_share.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
@@ -94,6 +96,11 @@ bool is_filed_number(const Candidate& candidate) {
   return candidate.frees_prior && candidate.use.values.size() == 1;
 }
 
+ModelFit better_of(ModelFit fit, ModelFit other) {
+  const bool better = std::isfinite(other.objective()) && !(fit.objective() <= other.objective());
+  return better ? std::move(other) : std::move(fit);
+}
+
 /// From three filed deviations to either side. @return the best of these and `fit`
 ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& composition,
                    const std::vector<double>& start, ShotResiduals& residuals,
@@ -107,11 +114,8 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
         there[i] = number.inside(number.theta_of(filed.prior_mean + deviations * filed.prior_sd));
       }
     }
-    ModelFit other =
-        fit_by_secants(composition, residuals, executor, there, nullptr, Settle::roughly);
-    if (std::isfinite(other.objective()) && !(fit.objective() <= other.objective())) {
-      fit = std::move(other);
-    }
+    fit = better_of(std::move(fit), fit_by_secants(composition, residuals, executor, there, nullptr,
+                                                   Settle::roughly));
   }
   return fit;
 }
@@ -121,6 +125,7 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
 ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
     : study_(study),
       base_(study.by_coarse_mesh(base)),
+      astray_(strained(base_.composition, base_.fit.theta) || law_beyond_bounds(base_) > kPressed),
       candidates_(candidates_for(base_, study.campaign())),
       directions_(candidates_.size()),
       flat_(candidates_.size()),
@@ -133,6 +138,8 @@ ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
       flat_[i] = flat_effect(study, base_, own, kStandsBefore * kSolverDoubt, worker);
       direction = flat_[i] ? flat_[i]->secant : untestable(std::move(direction));
     }
+    // First order may promise more than there is.
+    direction.gain = std::min(direction.gain, base_.fit.objective());
     if (direction.freedom > 0.0) {
       evidence_[i] = equivalent_square(log_gain_tail(direction.gain, direction.freedom, own.signs));
     }
@@ -183,7 +190,8 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
   constexpr double kWorthIt = 4.0;
   for (const std::size_t i : ranked) {
     const double first = evidence_[ranked.front()];
-    const bool near = evidence_[i] > kWorthIt && evidence_[i] > first - margin_behind(first);
+    const bool near =
+        evidence_[i] > kWorthIt && (astray_ || evidence_[i] > first - margin_behind(first));
     const bool filed = directions_[i].freedom > 0.0 && is_filed_number(candidates_[i]);
     if (chosen.size() < kMostRefits && (near || filed)) {
       chosen.push_back(i);
@@ -194,26 +202,33 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
 }
 
 /// What is one of a few (bending as the section's turn or as the deflection's curvature) first
-/// order does not tell where much is missing: the others of them are refitted, too.
+/// order does not tell where much is missing: the nearest of the others are refitted, too.
 void ImpactSearch::add_variants_as_likely(std::vector<std::size_t>& chosen) const {
   constexpr double kAsLikely = 0.9;
   constexpr double kMuch = kStandsBefore * kSolverDoubt;
+  constexpr std::size_t kMostOthers = 2;
   for (const std::size_t best : std::vector<std::size_t>(chosen)) {
     const Candidate& own = candidates_[best];
     const bool one_of_few =
         std::ranges::any_of(own.use.effect->about().parameters, &EffectParameter::chosen);
+    std::vector<std::size_t> others;
     for (std::size_t i = 0; one_of_few && evidence_[best] > kMuch && i < candidates_.size(); ++i) {
       const Candidate& other = candidates_[i];
       if (i != best && other.id() == own.id() && other.use.per_shot == own.use.per_shot &&
           evidence_[i] > kAsLikely * evidence_[best]) {
-        chosen.push_back(i);
+        others.push_back(i);
       }
     }
+    std::ranges::stable_sort(others, std::ranges::greater{},
+                             [&](std::size_t i) { return evidence_[i]; });
+    others.resize(std::min(others.size(), kMostOthers));
+    chosen.insert(chosen.end(), others.begin(), others.end());
   }
 }
 
+/// @param known  a fit that holds it, to begin from as well; none: null
 std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers& executor,
-                                               double least) {
+                                               double least, const Studied* known) {
   const Candidate& candidate = candidates_[index];
   const Model model = with(base_.model, candidate, Auxiliaries::free);
   Composition composition(model, study_.campaign());
@@ -226,6 +241,17 @@ std::optional<ImpactRefit> ImpactSearch::refit(std::size_t index, const Workers&
     fit = fit_by_secants(composition, study_.residuals(), executor,
                          carry(base_.composition, base_.fit.theta, composition), nullptr,
                          Settle::roughly);
+  }
+  const auto try_from = [&](std::vector<double> start) {
+    fit = better_of(std::move(fit), fit_by_secants(composition, study_.residuals(), executor,
+                                                   std::move(start), nullptr, Settle::roughly));
+  };
+  if (astray_) {
+    // From where friction and law took up what is missing, what is missing gains little.
+    try_from(as_filed(composition, carry(base_.composition, base_.fit.theta, composition)));
+  }
+  if (known != nullptr) {
+    try_from(carry(known->composition, known->fit.theta, composition));
   }
   const double objective = fit.objective();
   if (is_filed_number(candidate) && !(base_.fit.objective() - objective < least)) {
@@ -243,9 +269,8 @@ std::optional<ImpactRefit> ImpactSearch::described(std::size_t index, const Mode
   }
   const Candidate& candidate = candidates_[index];
   ImpactRefit out{index, study_.finish(model, std::move(composition), std::move(fit))};
-  if (!own_strengths_confirmed(out.studied, candidate.id(), study_.campaign(), Claim::fresh)) {
-    return std::nullopt;
-  }
+  out.confirmed =
+      own_strengths_confirmed(out.studied, candidate.id(), study_.campaign(), Claim::fresh);
   const double freedom = base_.fit.degrees_of_freedom(base_.composition) -
                          out.studied.fit.degrees_of_freedom(out.studied.composition);
   out.freedom = candidate.frees_prior ? 1.0 : std::max(1.0, std::round(freedom));
@@ -315,7 +340,8 @@ void ImpactSearch::refine() {
     const Studied& rough = own.studied;
     ModelFit fit = fit_by_secants(rough.composition, study_.residuals(), executor, rough.fit.theta,
                                   &rough.fit.jacobian);
-    if (auto refined = described(own.candidate, rough.model, rough.composition, std::move(fit))) {
+    if (auto refined = described(own.candidate, rough.model, rough.composition, std::move(fit));
+        refined && refined->confirmed) {
       own = std::move(*refined);
     }
   });
@@ -364,22 +390,50 @@ void ImpactSearch::leave_out_what_quiet_lacks() {
   }
 }
 
+std::optional<ImpactSearch::Known> ImpactSearch::known(const std::string& id,
+                                                       const Studied& found) const {
+  const EffectUse* use = found.model.find(id);
+  std::optional<Known> best;
+  for (std::size_t i = 0; use != nullptr && i < candidates_.size(); ++i) {
+    const EffectUse& own = candidates_[i].use;
+    if (own.id() == id && own.per_shot == use->per_shot && own.alike == use->alike &&
+        (!best || evidence_[i] > evidence_[best->candidate])) {
+      best.emplace(i, found);
+    }
+  }
+  return best;
+}
+
 void ImpactSearch::refit_rivals() {
+  refit_rivals(std::nullopt);
+}
+
+void ImpactSearch::refit_rivals(const std::string& id, const Studied& found) {
+  refit_rivals(known(id, found));
+}
+
+void ImpactSearch::refit_rivals(const std::optional<Known>& known) {
   std::vector<std::size_t> chosen = worth_refitting();
+  if (known && std::ranges::find(chosen, known->candidate) == chosen.end()) {
+    chosen.push_back(known->candidate);
+  }
+  const auto refitted = [&](std::size_t i, const Workers& executor, double least) {
+    return refit(i, executor, least, known && known->candidate == i ? &known->studied : nullptr);
+  };
   const auto from_afar_too =
       std::stable_partition(chosen.begin(), chosen.end(),
                             [&](std::size_t i) { return !is_filed_number(candidates_[i]); });
   const auto near = static_cast<std::size_t>(from_afar_too - chosen.begin());
   std::vector<std::optional<ImpactRefit>> done(chosen.size());
   share_out(near, [&](std::size_t i, const Workers& executor) {
-    done[i] = refit(chosen[i], executor, 0.0);
+    done[i] = refitted(chosen[i], executor, 0.0);
   });
   double best = 0.0;
   for (const auto& own : done) {
     best = own ? std::max(best, base_.fit.objective() - own->studied.fit.objective()) : best;
   }
   for (std::size_t i = near; i < chosen.size(); ++i) {
-    done[i] = refit(chosen[i], study_.executor(), best - margin_behind(best));
+    done[i] = refitted(chosen[i], study_.executor(), best - margin_behind(best));
   }
   refits_.clear();
   for (auto& own : done) {
@@ -388,6 +442,9 @@ void ImpactSearch::refit_rivals() {
     }
   }
   leave_out_what_quiet_lacks();
+  const auto first = std::ranges::stable_partition(refits_, &ImpactRefit::confirmed).begin();
+  unconfirmed_.assign(std::make_move_iterator(first), std::make_move_iterator(refits_.end()));
+  refits_.erase(first, refits_.end());
   if (!refits_.empty()) {
     rate();
     refine();

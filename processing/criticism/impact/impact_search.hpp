@@ -17,6 +17,8 @@ struct ImpactRefit {
   std::size_t candidate = 0;
   Studied studied;
   double freedom = 1.0;
+  /// Whether strengths of each shot's own are more than slow noise that they followed.
+  bool confirmed = true;
   double lowers = 0.0;        ///< the objective
   double lowers_filed = 0.0;  ///< the part of it by which filed numbers come nearer
   double gain = 0.0;          ///< of the objective, over the noise that the best refit leaves
@@ -59,23 +61,35 @@ class ImpactSearch {
   /// Refits the candidates worth it. What would be added to the records (hum, drift) is left out
   /// where it is not in the quiet before the pulse.
   void refit_rivals();
+  /// The same, and what was found before among them, whatever first order says, from there as well.
+  /// @param found  a model that holds it: this one and more
+  void refit_rivals(const std::string& id, const Studied& found);
   /// Settles those nearest to a claim: numbers that do nearly the same to a ball are told apart by
   /// the middle mesh, and a coarse one may lead a rival's fit to where it gains less.
   /// @param base  the search's, as it was settled
   void settle_nearest(const Studied& base);
   /// The best first; none before they are refitted. An effect may be there in several variants.
   [[nodiscard]] const std::vector<ImpactRefit>& refits() const { return refits_; }
+  /// Refits of what may not be claimed, for nothing but the fit confirms its strengths, but may be
+  /// what another stands for.
+  [[nodiscard]] const std::vector<ImpactRefit>& unconfirmed() const { return unconfirmed_; }
   /// Ids of what is not in the quiet and was left out for it, though it stands before nothing.
   [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
   /// Squares of deviates are over this, by the refits.
   [[nodiscard]] double scale() const { return scale_; }
 
  private:
+  struct Known {
+    std::size_t candidate;
+    const Studied& studied;  ///< with it
+  };
+  void refit_rivals(const std::optional<Known>& known);
+  [[nodiscard]] std::optional<Known> known(const std::string& id, const Studied& found) const;
   [[nodiscard]] std::vector<std::size_t> worth_refitting() const;
   void add_variants_as_likely(std::vector<std::size_t>& chosen) const;
   /// @param least  gain from which on a filed number is tried from afar, too
   [[nodiscard]] std::optional<ImpactRefit> refit(std::size_t index, const Workers& executor,
-                                                 double least);
+                                                 double least, const Studied* known);
   [[nodiscard]] std::optional<ImpactRefit> described(std::size_t index, const Model& model,
                                                      Composition composition, ModelFit fit) const;
   void leave_out_what_quiet_lacks();
@@ -86,11 +100,13 @@ class ImpactSearch {
 
   ImpactStudy& study_;
   Studied base_;
+  bool astray_ = false;  ///< what is fitted may have taken up what is missing
   std::vector<Candidate> candidates_;
   std::vector<Direction> directions_;
   std::vector<std::optional<FlatEffect>> flat_;  ///< by candidate
   std::vector<double> evidence_;                 ///< at first order, as ImpactRefit's
   std::vector<ImpactRefit> refits_;
+  std::vector<ImpactRefit> unconfirmed_;
   std::set<std::string> not_in_quiet_;
   double trials_ = 1.0;
   double scale_ = kSolverDoubt;

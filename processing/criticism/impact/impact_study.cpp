@@ -4,46 +4,15 @@
 #include <cmath>
 
 #include "processing/algebra/algebra.hpp"
+#include "processing/base/error.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
+#include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 
 namespace kolsky {
 
 namespace {
-
-/// Rows of a group's shots, one below the other.
-Eigen::MatrixXd rows_of(const Eigen::MatrixXd& all, const SpeedGroup& group, Eigen::Index size) {
-  Eigen::MatrixXd rows(size * static_cast<Eigen::Index>(group.shots.size()), all.cols());
-  Eigen::Index at = 0;
-  for (const std::size_t n : group.shots) {
-    rows.middleRows(at, size) = all.middleRows(static_cast<Eigen::Index>(n) * size, size);
-    at += size;
-  }
-  return rows;
-}
-
-/// Something filed is some two of its deviations off.
-bool strained(const Composition& composition, const std::vector<double>& theta) {
-  constexpr double kFar = 1.9;
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    const FreeNumber& number = composition.numbers()[i];
-    if (number.prior_sd > 0.0 &&
-        std::abs(number.value_at(theta[i]) - number.prior_mean) > kFar * number.prior_sd) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// The same with all that is filed as it is filed.
-std::vector<double> as_filed(const Composition& composition, std::vector<double> theta) {
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    const FreeNumber& number = composition.numbers()[i];
-    theta[i] = number.prior_sd > 0.0 ? number.theta_of(number.prior_mean) : theta[i];
-  }
-  return theta;
-}
 
 /// Whether a fit that began elsewhere came to the minimum of this one, as far as coarse forces
 /// tell: 2 to 18 of squared deviations lay between them where it did, 86 and more where it did not.
@@ -56,6 +25,26 @@ bool same_minimum(const ModelFit& fit, const std::vector<double>& other) {
 }
 
 }  // namespace
+
+bool strained(const Composition& composition, const std::vector<double>& theta) {
+  constexpr double kFar = 1.9;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    if (number.prior_sd > 0.0 &&
+        std::abs(number.value_at(theta[i]) - number.prior_mean) > kFar * number.prior_sd) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<double> as_filed(const Composition& composition, std::vector<double> theta) {
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    theta[i] = number.prior_sd > 0.0 ? number.theta_of(number.prior_mean) : theta[i];
+  }
+  return theta;
+}
 
 Studied ImpactStudy::finish(const Model& model, Composition composition, ModelFit fit) const {
   const double used =
@@ -106,8 +95,9 @@ ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composit
     return fit;
   }
   const auto again_at = [&](const std::vector<double>& theta, Settle settle) {
-    residuals_.anchor(composition, theta, ImpactResiduals::AnchorBy::middle);
-    return fit_by_secants(composition, residuals_, executor_, theta, nullptr, settle);
+    const std::vector<double> near =
+        anchor_near(composition, theta, ImpactResiduals::AnchorBy::middle);
+    return fit_by_secants(composition, residuals_, executor_, near, nullptr, settle);
   };
   constexpr double kFiledDeviations = 3.0;
   const ModelValue& mu = friction->values[0];
@@ -133,7 +123,8 @@ ModelFit ImpactStudy::or_with_little_friction(const Model& model, const Composit
       kSame * mu.prior_sd) {
     second_minimum_ = SecondMinimum{left, number.value_at(left[own]), std::abs(ahead)};
   }
-  residuals_.anchor(composition, moves ? other.theta : composition.start());
+  static_cast<void>(anchor_near(composition, moves ? other.theta : composition.start(),
+                                ImpactResiduals::AnchorBy::fine));
   return moves ? other : fit;
 }
 
@@ -174,7 +165,7 @@ ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<dou
   ModelFit fit;
   bool arrived = false;
   for (int pass = 0; pass < kMostPasses && !arrived; ++pass) {
-    residuals_.anchor(composition, theta, roughly ? AnchorBy::middle : AnchorBy::fine);
+    theta = anchor_near(composition, theta, roughly ? AnchorBy::middle : AnchorBy::fine);
     const auto [chi2, freedom] = repeated(residuals_.evaluate_on(executor_, composition, theta));
     if (chi2 < kFarOff * freedom) {
       residuals_.move_by(roughly ? Moves::middle_along_coarse : Moves::middle, composition);
@@ -190,9 +181,32 @@ ModelFit ImpactStudy::to_the_end(const Composition& composition, std::vector<dou
   return fit;
 }
 
+/// A model that lacks much goes to balls that finer meshes do not take (so soft that the patch
+/// spreads over the bar's edge). Then forces are taken on the way from there to what is filed.
+/// @return where
+std::vector<double> ImpactStudy::anchor_near(const Composition& composition,
+                                             std::vector<double> theta,
+                                             ImpactResiduals::AnchorBy by) {
+  constexpr int kMostSteps = 4;
+  const std::vector<double> filed = as_filed(composition, theta);
+  for (int step = 0;; ++step) {
+    try {
+      residuals_.anchor(composition, theta, by);
+      return theta;
+    } catch (const InputError&) {
+      if (step == kMostSteps) {
+        throw;
+      }
+      for (std::size_t i = 0; i < theta.size(); ++i) {
+        theta[i] = step + 1 == kMostSteps ? filed[i] : 0.5 * (theta[i] + filed[i]);
+      }
+    }
+  }
+}
+
 /// With forces taken where a fit is.
 void ImpactStudy::stand_at(const Composition& composition, ModelFit& fit) {
-  residuals_.anchor(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
+  fit.theta = anchor_near(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
   fit.residual = residuals_.evaluate_on(executor_, composition, fit.theta);
   fit.chi2 = fit.residual.squaredNorm();
 }
@@ -249,15 +263,21 @@ Studied ImpactStudy::allowing(double share, const Studied& studied) {
 }
 
 Studied ImpactStudy::as_it_is(const Model& model) {
-  Composition composition(model, campaign_);
+  Composition composition(all_but_own_held(model, campaign_.bench), campaign_);
   ModelFit fit;
   fit.theta = composition.start();
+  fit.converged = true;
   residuals_.prepare(composition, fit.theta);
   residuals_.calibrate(composition, fit.theta);
+  if (!fit.theta.empty()) {
+    fit = fit_by_secants(composition, residuals_, executor_);
+  }
   fit.residual = residuals_.evaluate(composition, fit.theta, executor_.first);
   fit.chi2 = fit.residual.squaredNorm();
-  fit.converged = true;
-  const Misfit misfit = misfit_of(fit.residual, 0.0);
+  const double used = fit.covariance.size() > 0 ? static_cast<double>(fit.residual.size()) -
+                                                      fit.degrees_of_freedom(composition)
+                                                : 0.0;
+  const Misfit misfit = misfit_of(fit.residual, used);
   return {model, std::move(composition), std::move(fit), misfit};
 }
 
@@ -341,21 +361,11 @@ double ImpactStudy::repeated_freedom() const {
 
 std::vector<double> held_out_speeds(const Studied& studied, const ImpactRecords& records,
                                     std::size_t per_shot) {
-  const ModelFit& fit = studied.fit;
-  const auto size = static_cast<Eigen::Index>(per_shot);
-  std::vector<double> squares;
+  std::vector<std::vector<std::size_t>> folds;
   for (const SpeedGroup& group : records.groups) {
-    const Eigen::VectorXd own = rows_of(fit.residual, group, size);
-    if (fit.theta.empty() || records.groups.size() < 2) {
-      squares.push_back(own.squaredNorm());
-      continue;
-    }
-    const Eigen::MatrixXd columns = rows_of(fit.jacobian, group, size);
-    const Eigen::MatrixXd others = fit.information - columns.transpose() * columns;
-    const Eigen::VectorXd move = least_norm_solution(others, columns.transpose() * own);
-    squares.push_back((own + columns * move).squaredNorm());
+    folds.push_back(group.shots);
   }
-  return squares;
+  return held_out_squares(studied, per_shot, folds);
 }
 
 }  // namespace kolsky

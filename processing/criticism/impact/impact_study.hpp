@@ -69,6 +69,13 @@ enum class Allowance {
 /// How much of the records a model asks for: with end-reflection the whole.
 [[nodiscard]] JudgedStretch judged_stretch(const Model& model);
 
+/// Whether something filed is some two of its deviations off: the fit may be in another minimum
+/// than the truth is in.
+[[nodiscard]] bool strained(const Composition& composition, const std::vector<double>& theta);
+/// The same numbers, but all that is filed as it is filed.
+[[nodiscard]] std::vector<double> as_filed(const Composition& composition,
+                                           std::vector<double> theta);
+
 /// A campaign of impacts under study.
 class ImpactStudy {
  public:
@@ -150,6 +157,9 @@ class ImpactStudy {
   /// @param chord  derivatives from nearby, by the mesh that is gone by here; none: made here
   [[nodiscard]] ModelFit to_the_end(const Composition& composition, std::vector<double> theta,
                                     const Eigen::MatrixXd* chord, Settle settle);
+  [[nodiscard]] std::vector<double> anchor_near(const Composition& composition,
+                                                std::vector<double> theta,
+                                                ImpactResiduals::AnchorBy by);
   void stand_at(const Composition& composition, ModelFit& fit);
   [[nodiscard]] ModelFit or_with_little_friction(const Model& model, const Composition& composition,
                                                  ModelFit fit);

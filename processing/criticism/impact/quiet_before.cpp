@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "processing/algebra/algebra.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/impact/filter.hpp"
 
@@ -11,20 +12,21 @@ namespace kolsky {
 
 namespace {
 
-/// Sums over all stretches of quiet: of records r and additions a, by the noise.
-struct Sums {
-  double aa = 0.0;
-  double ar = 0.0;
-  double rr = 0.0;
+/// All stretches of quiet, one below the other and by their noise.
+struct Quiet {
+  Eigen::VectorXd record;
+  Eigen::VectorXd added;      ///< as fitted to the pulses
+  Eigen::MatrixXd strengths;  ///< what each strength of the effect adds, in its scale
   double freedom = 0.0;
 };
 
 /// What an effect adds to a shot's records, by gauge; empty where nothing.
-std::vector<std::vector<double>> added_by(const EffectUse& use, const Studied& studied,
+std::vector<std::vector<double>> added_by(const EffectUse& use, const Composition& composition,
+                                          const std::vector<double>& theta,
                                           const Campaign& campaign, std::size_t n) {
   Scene scene(campaign.bench, campaign.shots[n].facts, {});
   scene.record.additions.resize(campaign.gauges());
-  for (const AppliedEffect& own : studied.composition.applied(studied.fit.theta, n)) {
+  for (const AppliedEffect& own : composition.applied(theta, n)) {
     if (own.effect == use.effect &&
         (!use.effect->about().per_gauge || campaign.bench.gauges[own.gauge].name == use.gauge)) {
       own.effect->apply(scene, own.values, own.gauge);
@@ -67,21 +69,99 @@ Eigen::MatrixXd white(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& noi
   return out - mean * (mean.transpose() * out);
 }
 
-void add(const std::vector<double>& record, const std::vector<double>& addition,
-         const std::vector<std::size_t>& places, const std::vector<double>& covariance,
-         Sums& sums) {
-  const auto count = static_cast<Eigen::Index>(places.size());
-  Eigen::MatrixXd both(count, 2);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t place = places[static_cast<std::size_t>(i)];
-    both(i, 0) = record[place];
-    both(i, 1) = addition[place];
+/// Strengths of an effect among a composition's numbers.
+std::vector<Eigen::Index> strengths_of(const std::string& id, const Composition& composition) {
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+    const FreeNumber& number = composition.numbers()[i];
+    const EffectUse& use = composition.uses()[number.use];
+    if (use.id() == id && !use.effect->about().parameters[number.parameter].auxiliary()) {
+      own.push_back(static_cast<Eigen::Index>(i));
+    }
   }
-  both = white(both, noise_among(covariance, count));
-  sums.rr += both.col(0).squaredNorm();
-  sums.ar += both.col(0).dot(both.col(1));
-  sums.aa += both.col(1).squaredNorm();
-  sums.freedom += static_cast<double>(count) - 1.0;
+  return own;
+}
+
+/// By columns: what each strength adds to a shot's records, what all of them add.
+std::vector<std::vector<std::vector<double>>> additions_of(const EffectUse& use,
+                                                           const std::vector<Eigen::Index>& own,
+                                                           const Studied& studied,
+                                                           const Campaign& campaign,
+                                                           std::size_t n) {
+  const std::vector<double>& theta = studied.fit.theta;
+  std::vector<std::vector<std::vector<double>>> columns;
+  std::vector<double> none = theta;
+  for (const Eigen::Index i : own) {
+    const auto at = static_cast<std::size_t>(i);
+    none[at] = studied.composition.numbers()[at].theta_of(0.0);
+  }
+  for (const Eigen::Index i : own) {
+    std::vector<double> one = none;
+    one[static_cast<std::size_t>(i)] += 1.0;
+    columns.push_back(added_by(use, studied.composition, one, campaign, n));
+  }
+  columns.push_back(added_by(use, studied.composition, theta, campaign, n));
+  return columns;
+}
+
+void append(const Eigen::MatrixXd& white, Quiet& quiet) {
+  const Eigen::Index rows = quiet.record.size() + white.rows();
+  const Eigen::Index strengths = white.cols() - 2;
+  quiet.record.conservativeResize(rows);
+  quiet.added.conservativeResize(rows);
+  quiet.strengths.conservativeResize(rows, strengths);
+  quiet.record.tail(white.rows()) = white.col(0);
+  quiet.added.tail(white.rows()) = white.col(1);
+  quiet.strengths.bottomRows(white.rows()) = white.rightCols(strengths);
+  quiet.freedom += static_cast<double>(white.rows()) - 1.0;
+}
+
+Quiet quiet_of(const EffectUse& use, const std::vector<Eigen::Index>& own, const Studied& studied,
+               const ImpactResiduals& residuals) {
+  const ImpactRecords& records = residuals.records();
+  const Campaign& campaign = residuals.campaign();
+  Quiet quiet;
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const auto places = quiet_places(records, campaign.shots[n].quiet_samples);
+    const auto columns = additions_of(use, own, studied, campaign, n);
+    const auto count = static_cast<Eigen::Index>(places.size());
+    for (std::size_t j = 0; j < campaign.gauges() && places.size() > 2; ++j) {
+      if (columns.back()[j].empty()) {
+        continue;
+      }
+      Eigen::MatrixXd all(count, static_cast<Eigen::Index>(own.size()) + 2);
+      const auto fill = [&](Eigen::Index column, const std::vector<double>& samples) {
+        for (Eigen::Index i = 0; i < count; ++i) {
+          all(i, column) = samples.empty() ? 0.0 : samples[places[static_cast<std::size_t>(i)]];
+        }
+      };
+      const auto low_passed = [&](const std::vector<double>& samples) {
+        return samples.empty()
+                   ? samples
+                   : impact::low_passed(samples, records.sample_period_s, records.window.cutoff_Hz);
+      };
+      fill(0, records.low_passed[n][j]);
+      fill(1, low_passed(columns.back()[j]));
+      for (std::size_t a = 0; a < own.size(); ++a) {
+        fill(static_cast<Eigen::Index>(a) + 2, low_passed(columns[a][j]));
+      }
+      append(white(all, noise_among(records.noise[j], count)), quiet);
+    }
+  }
+  return quiet;
+}
+
+/// Takes what is added where quiet and pulses together have it, as far as the pulses leave it open:
+/// within 400 us a hum's slope is known and its size is not.
+/// @param covariance  of the strengths, by the pulses
+/// @return how many strengths the quiet had to say
+double take_from_quiet(const Eigen::MatrixXd& covariance, Quiet& quiet) {
+  const Eigen::MatrixXd told = quiet.strengths.transpose() * quiet.strengths;
+  const Eigen::MatrixXd both = inverse_of(covariance) + told;
+  const Eigen::VectorXd off =
+      solve_symmetric(both, quiet.strengths.transpose() * (quiet.record - quiet.added));
+  quiet.added += quiet.strengths * off;
+  return (inverse_of(both) * told).trace();
 }
 
 }  // namespace
@@ -92,29 +172,21 @@ bool stands_before_pulse(const Studied& studied, const std::string& id,
   if (use == nullptr || !is_addition(*use->effect)) {
     return true;
   }
-  const ImpactRecords& records = residuals.records();
-  const Campaign& campaign = residuals.campaign();
-  Sums sums;
-  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
-    const auto places = quiet_places(records, campaign.shots[n].quiet_samples);
-    const auto additions = added_by(*use, studied, campaign, n);
-    for (std::size_t j = 0; j < campaign.gauges() && places.size() > 2; ++j) {
-      if (!additions[j].empty()) {
-        add(records.low_passed[n][j],
-            impact::low_passed(additions[j], records.sample_period_s, records.window.cutoff_Hz),
-            places, records.noise[j], sums);
-      }
-    }
-  }
-  if (!(sums.aa > 0.0) || sums.freedom < 2.0) {
+  const std::vector<Eigen::Index> own = strengths_of(id, studied.composition);
+  Quiet quiet = quiet_of(*use, own, studied, residuals);
+  if (!(quiet.added.squaredNorm() > 0.0) || quiet.freedom < 2.0) {
     return false;
   }
+  const bool open = !own.empty() && studied.fit.covariance.size() > 0;
+  const double taken = open ? take_from_quiet(studied.fit.covariance(own, own), quiet) : 0.0;
   constexpr double kOff = 0.5;
   constexpr double kDeviations = 4.0;
-  const double share = sums.ar / sums.aa;
-  const double left = std::max(0.0, sums.rr - share * sums.ar) / (sums.freedom - 1.0);
-  const double sd = std::sqrt(std::max(1.0, left) / sums.aa);
-  return std::abs(share - 1.0) < kOff && share > kDeviations * sd;
+  const double square = quiet.added.squaredNorm();
+  const double share = quiet.added.dot(quiet.record) / square;
+  const double left = (quiet.record - share * quiet.added).squaredNorm() /
+                      std::max(1.0, quiet.freedom - 1.0 - taken);
+  const double shown = share * share * square / std::max(1.0, left);
+  return std::abs(share - 1.0) < kOff && shown > kDeviations * kDeviations + taken;
 }
 
 }  // namespace kolsky

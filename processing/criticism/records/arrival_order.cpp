@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "processing/reduction/gauge_order.hpp"
+#include "processing/reduction/gauge_sign.hpp"
 
 namespace kolsky {
 
@@ -26,7 +27,48 @@ std::optional<double> reversed_by(const Campaign& campaign, std::size_t first, s
   return least;
 }
 
+/// Whether a gauge's first pulse is the other one than the bars are loaded by in all shots that see
+/// it; nothing where none does.
+std::optional<bool> reads_otherwise(const Campaign& campaign, std::size_t gauge) {
+  std::optional<bool> otherwise;
+  for (const CampaignShot& shot : campaign.shots) {
+    if (const auto sense = first_sense(shot.strain[gauge], 1.0 / campaign.period_s)) {
+      otherwise = otherwise.value_or(true) && *sense != campaign.bench.loading;
+    }
+  }
+  return otherwise;
+}
+
 }  // namespace
+
+std::optional<std::string> of_other_sign(const Campaign& campaign) {
+  const Bench& bench = campaign.bench;
+  std::vector<std::string> odd;
+  std::size_t seen = 0;
+  bool on_input = false;
+  for (std::size_t g = 0; g < bench.gauges.size(); ++g) {
+    const std::optional<bool> otherwise = reads_otherwise(campaign, g);
+    seen += otherwise ? 1 : 0;
+    if (otherwise.value_or(false)) {
+      odd.push_back(bench.gauges[g].name);
+      on_input = on_input || bench.gauges[g].bar == "input";
+    }
+  }
+  if (odd.empty() || odd.size() == seen) {
+    return std::nullopt;
+  }
+  return other_sign_text(odd, bench.loading, on_input);
+}
+
+std::vector<std::string> misfiled_gauges(const Campaign& campaign) {
+  std::vector<std::string> lines;
+  for (auto& line : {of_other_sign(campaign), out_of_order(campaign)}) {
+    if (line) {
+      lines.push_back(*line);
+    }
+  }
+  return lines;
+}
 
 std::optional<std::string> out_of_order(const Campaign& campaign) {
   const Bench& bench = campaign.bench;

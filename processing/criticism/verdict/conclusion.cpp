@@ -8,6 +8,7 @@
 
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/held_out.hpp"
+#include "processing/criticism/records/arrival_order.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 #include "processing/criticism/verdict/claims.hpp"
@@ -166,6 +167,10 @@ std::optional<LeftOver> conclude(Study& study, const DiagnosisOptions& options, 
              rest.is_of_something_else() ? std::optional(left) : std::nullopt, noise);
   if (found.set_aside && !rest.own) {
     reasons.push_back(found.set_aside->text);
+  }
+  if (reasons.empty() && !nothing_claimed) {
+    // What an effect makes of gauges that are exchanged is no effect.
+    reasons = misfiled_gauges(study.campaign());
   }
   const bool doubted = !reasons.empty();
   if (options.safeguards.unknown && !doubted && diagnosis.effects.empty()) {

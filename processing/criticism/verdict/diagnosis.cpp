@@ -1,5 +1,6 @@
 #include "processing/criticism/verdict/diagnosis.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -89,9 +90,10 @@ Diagnosis begun_rightly(Study& study, const Model& model, const DiagnosisOptions
 
 Diagnosis diagnose(Study& study, const Model& model, const DiagnosisOptions& options) {
   Diagnosis diagnosis = begun_rightly(study, model, options);
-  if (auto exchanged = out_of_order(study.campaign())) {
-    diagnosis.notes.insert(diagnosis.notes.begin(), *std::move(exchanged));
-  }
+  std::vector<std::string>& notes = diagnosis.notes;
+  std::vector<std::string> misfiled = misfiled_gauges(study.campaign());
+  std::erase_if(misfiled, [&](const auto& line) { return std::ranges::count(notes, line) > 0; });
+  notes.insert(notes.begin(), misfiled.begin(), misfiled.end());
   return diagnosis;
 }
 

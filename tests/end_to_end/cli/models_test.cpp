@@ -160,6 +160,22 @@ TEST_F(SimulatedBar, KeepsAModelWithAHistoryWhoseNameANewOneTakes) {
   }
 }
 
+TEST_F(SimulatedBar, KeepsAModelWithAHistoryThatAFitOfAnotherWouldReplace) {
+  const std::string model = file("own.toml");
+  const std::vector<std::string> fit{"fit", file("shots"), "--model", file("m.toml"), "-o", model};
+  ASSERT_EQ(kolsky(fit).code, 0);
+  ASSERT_EQ(kolsky(fit).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(file("own.1.toml"))) << "the same step taken again";
+  ASSERT_EQ(kolsky({"model", "add", model, "temperature"}).code, 0);
+  const std::string old = content(model);
+  const scene::Answer answer = kolsky(fit);
+  ASSERT_EQ(answer.code, 0);
+  EXPECT_NE(answer.out.find("own.1.toml"), std::string::npos) << answer.out;
+  EXPECT_EQ(content(file("own.1.toml")), old);
+  ASSERT_EQ(kolsky({"model", "add", file("m.toml"), "crosstalk", "-o", model}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(file("own.2.toml"))) << "a fit is a step, too";
+}
+
 // The same captures in another order are the same captures; filed numbers are the bench's.
 TEST_F(SimulatedBar, KnowsItsCapturesInAnyOrderAndKeepsWhatIsFiled) {
   ASSERT_EQ(kolsky({"fit", file("shots"), "--model", file("m.toml"), "-o", file("m1.toml")}).code,
@@ -171,6 +187,8 @@ TEST_F(SimulatedBar, KnowsItsCapturesInAnyOrderAndKeepsWhatIsFiled) {
   const scene::Answer fall = kolsky(words);
   EXPECT_NE(fall.out.find("the captures that the model's ledger names"), std::string::npos);
   EXPECT_EQ(fall.out.find("not the captures"), std::string::npos) << fall.out;
+  EXPECT_TRUE(refused(kolsky({"model", "remove", file("m1.toml"), "three-element-bar"}),
+                      {"m1.toml", "three-element-bar", "nothing to compare"}));
   EXPECT_TRUE(refused(kolsky({"model", "remove", file("m1.toml"), "gauge-factor:g1"}),
                       {"gauge-factor:g1", "files within a deviation", "free = false"}));
 }

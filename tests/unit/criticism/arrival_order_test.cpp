@@ -66,5 +66,20 @@ TEST(ArrivalOrder, AllowsForAPlaceThatIsOff) {
   EXPECT_EQ(said_of(truth), std::nullopt);
 }
 
+TEST(GaugeSigns, NameAGaugeThatReadsWithTheOther) {
+  const testing::Campaign truth = drawn(7, false);
+  std::vector<Shot> shots = testing::shots_of(truth);
+  EXPECT_EQ(of_other_sign(read_campaign(shots)), std::nullopt);
+  for (Shot& shot : shots) {
+    for (std::int32_t& code : shot.channels[2].codes) {
+      code = -code;
+    }
+  }
+  const std::optional<std::string> said = of_other_sign(read_campaign(shots));
+  ASSERT_TRUE(said);
+  EXPECT_NE(said->find("a tension at g3 and a compression at the other gauges"), std::string::npos)
+      << *said;
+}
+
 }  // namespace
 }  // namespace kolsky

@@ -653,6 +653,19 @@ TEST(Diagnosis, TakesAGaugesFiledLengthAsFiled) {
   EXPECT_EQ(diagnosed(made.shots, BenchKind::bar).verdict, DiagnosisVerdict::adequate);
 }
 
+// Its deviation was taken and not heard: within it, a gauge was named longer, and shorter could not
+// be said.
+TEST(Diagnosis, KnowsThatAGaugesLengthMayBeOff) {
+  Made made = make(80, {"gauge-length:g2=0.04"});
+  for (const double filed_m : {0.03, 0.05}) {
+    for (Shot& shot : made.shots) {
+      shot.bench.gauges[1].length_m = Measured{filed_m, 0.007};
+    }
+    const Diagnosis diagnosis = diagnosed(made.shots, BenchKind::bar);
+    EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << filed_m;
+  }
+}
+
 TEST(Diagnosis, DoesNotClaimAFiledNumberWithinItsDeviation) {
   Made made = make(80, {});
   // The same records beside a bench file that is 0.4 mm off at one gauge, and says so.

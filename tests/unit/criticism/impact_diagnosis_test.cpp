@@ -387,6 +387,54 @@ TEST(LongImpactDiagnosis, TheSmallerOfTwoEffectsIsSaid) {
       << told(diagnosis);
 }
 
+/// Friction and law take up what the ball does beside a drift, as far as they reach: from there
+/// what it lacks gains little.
+TEST(LongImpactDiagnosis, ADriftBesideAStiffeningCoreHidesNeither) {
+  testing::ImpactWishes wishes = two_speeds(21, 3);
+  wishes.noise_strain = 5e-7;
+  wishes.across = 12;
+  wishes.drift_per_s = 3e-3;
+  wishes.core_b = 0.8;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(wishes));
+  EXPECT_EQ(diagnosis.effects.size(), 2U) << told(diagnosis);
+  EXPECT_TRUE(holds(diagnosis, "baseline-drift:g1")) << told(diagnosis);
+  EXPECT_TRUE(holds(diagnosis, "core-nonlinearity")) << told(diagnosis);
+  expect_within(diagnosis, "baseline-drift:g1", 0, 3e-3, 3.0);
+}
+
+/// Without it the fit goes where no ball is, and what the sabot does shows there no more.
+TEST(LongImpactDiagnosis, AHeavySabotIsNamed) {
+  testing::ImpactWishes wishes = two_speeds(11, 3);
+  wishes.sabot_mass_kg = 0.01;
+  wishes.across = 12;
+  const Diagnosis diagnosis = diagnosed(testing::impact_shots(wishes));
+  EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"sabot-contact"}) << told(diagnosis);
+  expect_within(diagnosis, "sabot-contact", 0, 0.01, 3.0);
+}
+
+/// No other shot foretells a hum's phase. It is no noise for that, in a record of a fortieth of its
+/// period cannot be told from a drift of each shot's own, and beside it the ball is as it is.
+TEST(LongImpactDiagnosis, AHumOfAPhaseOfItsOwnInEachShotIsFound) {
+  testing::ImpactWishes wishes = two_speeds(31, 3);
+  wishes.noise_strain = 5e-7;
+  wishes.across = 12;
+  wishes.hum_strain = 8e-6;
+  const std::vector<Shot> shots = testing::impact_shots(wishes);
+  ImpactsSeen seen;
+  const Diagnosis diagnosis = diagnosed(shots, paper_with({}), &seen);
+  ASSERT_EQ(diagnosis.effects.size(), 1U) << told(diagnosis);
+  EXPECT_TRUE(holds(diagnosis, "mains-hum")) << told(diagnosis);
+  EXPECT_GT(diagnosis.held_out.before, 5.0);
+  EXPECT_LT(diagnosis.held_out.after, 1.5) << "each shot's own strength is its own to say";
+
+  // A model file keeps their mean: a comparison finds each shot's own again.
+  ThrownBalls balls(shots);
+  const Studied compared = balls.study.as_it_is(*diagnosis.model);
+  EXPECT_LT(compared.misfit.chi2_reduced, 1.5);
+  ThrownBalls without(shots);
+  EXPECT_GT(without.study.as_it_is(paper_with({})).misfit.chi2_reduced, 5.0);
+}
+
 /// A core that is softened by what it was strained to most is of no effect in the library. Effects
 /// that are explain much of it, and leave what stands out of noise: it is none of them.
 TEST(LongImpactDiagnosis, WhatClosesAPartOfTheMisfitIsNotClaimed) {

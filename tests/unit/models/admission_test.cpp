@@ -159,6 +159,22 @@ TEST(Expression, ThatAnswersBeforeItIsAskedIsRefused) {
   EXPECT_EQ(refusal(with_expression("sensor", "exp(-s*tau)", tau)), "taken");
 }
 
+/// A pole a little to the right of the axis answers late, and more and more: only lines that are
+/// damped less than it grows show that.
+TEST(Expression, ThatGrowsSlowlyByItselfIsRefused) {
+  for (const char* tau : {"1.6e-4", "2e-5", "4e-6"}) {
+    const std::string number(tau);
+    const auto resonance = [&](const std::string& damping) {
+      return refusal(with_expression("sensor",
+                                     "1 + c*(s*tau)^2/((s*tau)^2 " + damping + "*s*tau + 1)",
+                                     kShare + parameter("tau", "s", "[" + number + ", 1.7e-4]",
+                                                        "1e-6", "starts = [" + number + "]")));
+    };
+    EXPECT_NE(resonance("- 0.06").find("causality"), std::string::npos) << tau;
+    EXPECT_EQ(resonance("+ 0.06"), "taken") << tau;
+  }
+}
+
 std::vector<Complex> readings(const Model& model, const std::string& id,
                               const std::vector<double>& values) {
   const Bench bench = admission_bench(model.kind);
