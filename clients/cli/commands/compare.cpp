@@ -75,6 +75,9 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
   });
   const ImpactComparison comparison = study.compare(studied);
   std::vector<std::string> notes = not_constrained(study, studied);
+  if (auto quiet = quiet_note(studied)) {
+    notes.push_back(*std::move(quiet));
+  }
   notes.insert(notes.begin(), how(settings, file));
   if (settings.report) {
     replace_file(*settings.report,

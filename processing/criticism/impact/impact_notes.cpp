@@ -191,6 +191,20 @@ std::optional<std::string> rebound_doubt(ImpactStudy& study, const Studied& curr
       sum / freedom);
 }
 
+std::optional<std::string> quiet_note(const Studied& current) {
+  constexpr double kFarLess = 0.3;  // where nothing is hidden 0.7 to 1.1
+  constexpr double kEnough = 30.0;
+  const Misfit& misfit = current.misfit;
+  if (!(misfit.chi2_reduced < kFarLess && misfit.degrees_of_freedom > kEnough)) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "residuals are {:.2g} times what the quiet before the pulse lets expect, in squares: "
+      "something "
+      "in the quiet is taken for noise (a hum, a drift), and as much may be missing unseen",
+      misfit.chi2_reduced);
+}
+
 double law_beyond_bounds(const Studied& studied) {
   const ModelFit& fit = studied.fit;
   const std::vector<FreeNumber>& numbers = studied.composition.numbers();
@@ -221,6 +235,9 @@ std::vector<std::string> impact_notes(ImpactStudy& study, const Studied& current
   Lines lines;
   note_repeats(study, residuals.records(), lines);
   note_calculation(residuals, scale, lines);
+  if (auto quiet = quiet_note(current)) {
+    lines.push_back(*std::move(quiet));
+  }
   note_rebounds(study, residuals, lines);
   note_law(current, lines);
   note_friction(study, current, candidates, scale, lines);

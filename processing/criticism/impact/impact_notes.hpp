@@ -16,6 +16,9 @@ namespace kolsky {
 /// From so many deviations on something is missing that what is fitted took up.
 inline constexpr double kPressed = 2.0;
 
+/// Where residuals are far smaller than what the quiet before the pulse lets expect.
+[[nodiscard]] std::optional<std::string> quiet_note(const Studied& current);
+
 /// What limits a diagnosis of impacts, in sentences: repeats, the judged band, what is allowed for
 /// the calculation, rebounds, the law's form, friction, scatter of the speeds.
 /// @param candidates  of the first search

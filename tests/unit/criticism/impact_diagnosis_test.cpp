@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "processing/criticism/impact/impact_notes.hpp"
 #include "tests/unit/criticism/thrown_balls.hpp"
 
 namespace kolsky {
@@ -87,6 +88,27 @@ bool noted(const Diagnosis& diagnosis, const std::string& words) {
 TEST(ImpactDiagnosis, ALinearBallIsAdequate) {
   const Diagnosis diagnosis = diagnosed(testing::impact_shots(two_speeds(11, 3)));
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::adequate) << told(diagnosis);
+}
+
+/// What is in the quiet and not in the pulses would hide what is missing beneath it.
+TEST(ImpactDiagnosis, AQuietThatIsLouderThanThePulsesIsTold) {
+  std::vector<Shot> shots = testing::impact_shots(two_speeds(11, 3));
+  {
+    ThrownBalls balls(shots);
+    EXPECT_EQ(quiet_note(balls.study.fit(paper_with({}))), std::nullopt);
+  }
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 5e-6);
+  for (Shot& shot : shots) {
+    ChannelRecord& record = shot.channels[0];
+    for (std::size_t i = 0; i < 380; ++i) {
+      record.codes[i] += static_cast<std::int32_t>(std::lround(normal(random) / record.scale));
+    }
+  }
+  ThrownBalls balls(shots);
+  const auto note = quiet_note(balls.study.fit(paper_with({})));
+  ASSERT_TRUE(note);
+  EXPECT_NE(note->find("taken for noise"), std::string::npos) << *note;
 }
 
 /// An amplifier whose gain changes from shot to shot scatters readings as speeds would that nobody
