@@ -40,8 +40,12 @@ std::vector<Shot> read_shots(const JudgedRecords& judged) {
   return shots;
 }
 
-std::string until_text(const JudgedRecords& judged) {
-  return judged.until_s ? fmt::format("up to {:g} s", *judged.until_s) : "";
+std::string limits_text(const JudgedRecords& judged) {
+  std::string text = judged.until_s ? fmt::format("up to {:g} s", *judged.until_s) : "";
+  if (judged.band_limit_Hz) {
+    text += fmt::format("{}up to {:g} Hz", text.empty() ? "" : ", ", *judged.band_limit_Hz);
+  }
+  return text;
 }
 
 std::vector<Shot> read_shots(const std::vector<std::string>& captures) {

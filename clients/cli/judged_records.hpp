@@ -26,8 +26,9 @@ void add_judged_options(JudgedRecords& judged, std::vector<Argument>& arguments)
 /// Captures named on the command line (files or folders), read. @throws InputError
 [[nodiscard]] std::vector<Shot> read_shots(const std::vector<std::string>& captures);
 
-/// "up to 0.0012 s" where --until was given, else empty: for what a model's history tells.
-[[nodiscard]] std::string until_text(const JudgedRecords& judged);
+/// "up to 0.0012 s, up to 20000 Hz" where --until and --band-limit were given, else empty: for what
+/// a model's history tells.
+[[nodiscard]] std::string limits_text(const JudgedRecords& judged);
 
 /// The files of captures that the command line names.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::vector<std::string>& captures);

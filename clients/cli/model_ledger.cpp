@@ -32,7 +32,8 @@ bool certified(const StepTest& test) {
 /// Whether two steps did the same from the same beginning on the same data: one of them taken again
 /// loses nothing.
 bool same_step(const ModelStep& a, const ModelStep& b) {
-  return a.parent == b.parent && a.action == b.action && a.data_sha256 == b.data_sha256;
+  return a.parent == b.parent && a.action == b.action && a.data_sha256 == b.data_sha256 &&
+         a.note == b.note;
 }
 
 bool begins_with(const std::vector<ModelStep>& history, const std::vector<ModelStep>& earlier) {
@@ -63,7 +64,14 @@ std::string write_model(const std::filesystem::path& path, const ModelFile& file
       kept = give_free_name(path);
     }
   }
-  replace_file(path, text);
+  try {
+    replace_file(path, text);
+  } catch (const InputError&) {
+    if (!kept.empty()) {
+      static_cast<void>(rename_without_overwriting(kept, path));
+    }
+    throw;
+  }
   return kept;
 }
 

@@ -89,9 +89,10 @@ class Examination {
     if (auto problem = effect_.about().told_only ? std::nullopt : derivative(without)) {
       return problem;
     }
+    const std::vector<Sizes> undamped = sizes();
     // What grows by less than 0.02 of its own frequency is hidden by the probes' damping.
     for (const double period_s : {1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4}) {
-      if (auto problem = causal(period_s)) {
+      if (auto problem = causal(period_s, undamped)) {
         return problem;
       }
     }
@@ -391,18 +392,36 @@ class Examination {
     double lead_s = 0.0;  ///< by which it may answer early
   };
 
-  [[nodiscard]] std::optional<AdmissionProblem> causal(double period_s) const {
+  /// Largest values along the axis of real frequencies, for each of the values tried.
+  struct Sizes {
+    double J = 0.0;
+    double specimen_J = 0.0;
+    double reflection = 0.0;
+    double factor = 0.0;
+  };
+  [[nodiscard]] std::vector<Sizes> sizes() const {
+    std::vector<Sizes> list;
+    for (const Values& values : tried_) {
+      const Said undamped = said(&values, axis_);
+      list.push_back({largest(undamped.J), largest(undamped.specimen_J),
+                      largest(undamped.reflection), largest(undamped.factor)});
+    }
+    return list;
+  }
+
+  [[nodiscard]] std::optional<AdmissionProblem> causal(double period_s,
+                                                       const std::vector<Sizes>& sizes) const {
     PulseProbe probe(period_s);
     const Said without = said(nullptr, probe.path());
-    for (const Values& values : tried_) {
+    for (std::size_t n = 0; n < tried_.size(); ++n) {
+      const Values& values = tried_[n];
       const Said with = said(&values, probe.path());
-      const Said undamped = said(&values, axis_);
       const std::array<Response, 5> responses{
-          {{with.J, without.J, largest(undamped.J)},
-           {with.specimen_J, without.specimen_J, largest(undamped.specimen_J)},
+          {{with.J, without.J, sizes[n].J},
+           {with.specimen_J, without.specimen_J, sizes[n].specimen_J},
            {with.gamma, without.gamma, 1.0, true},
-           {with.reflection, without.reflection, largest(undamped.reflection)},
-           {with.factor, without.factor, largest(undamped.factor), false, kSensorLead_s}}};
+           {with.reflection, without.reflection, sizes[n].reflection},
+           {with.factor, without.factor, sizes[n].factor, false, kSensorLead_s}}};
       for (const Response& response : responses) {
         if (auto problem = early(probe, response, values)) {
           return problem;

@@ -58,7 +58,7 @@ std::optional<PositiveSense> first_sense(const std::vector<double>& strain, doub
   if (!pulse) {
     return std::nullopt;
   }
-  return strain[pulse->rise + 1] < 0.0 ? PositiveSense::tension : PositiveSense::compression;
+  return pulse->sense < 0.0 ? PositiveSense::tension : PositiveSense::compression;
 }
 
 std::string other_sign_text(const std::vector<std::string>& odd, PositiveSense loading,

@@ -194,8 +194,8 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
 std::string noted(const Settings& settings, const std::vector<std::string>& without) {
   std::string note = settings.note.value_or("");
   const auto add = [&note](const std::string& more) { note += (note.empty() ? "" : "; ") + more; };
-  if (settings.judged.until_s) {
-    add("records " + until_text(settings.judged));
+  if (const std::string limits = limits_text(settings.judged); !limits.empty()) {
+    add("records " + limits);
   }
   for (const std::string& name : without) {
     add("without " + name);

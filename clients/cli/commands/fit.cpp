@@ -45,9 +45,9 @@ int run(const Settings& settings, Context& context) {
   const Campaign campaign = read_campaign(read_shots(settings.judged));
   require_model_of(campaign.bench, file.model, settings.model);
   const Studied studied = fit(settings, file.model, campaign, workers);
-  const std::string until = until_text(settings.judged);
+  const std::string limits = limits_text(settings.judged);
   begin_step(file, fmt::format("fit {} captures{}", campaign.shots.size(),
-                               until.empty() ? "" : " " + until));
+                               limits.empty() ? "" : " " + limits));
   file.history.back().data_sha256 = digest_of_files(files_of(settings.judged.captures));
   file.history.back().fit = fit_of(studied.misfit, campaign.shots.size());
   file.history.back().note = settings.note.value_or("");

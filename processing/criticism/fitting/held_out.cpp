@@ -83,8 +83,9 @@ Foretold foretold(const Studied& studied, const Fold& fold, Eigen::Index size) {
     residual += changed;
     if (!own.empty()) {
       const Eigen::MatrixXd strengths = fit.jacobian(rows, own);
-      const Eigen::VectorXd follow =
-          -solve_symmetric(fit.information(own, own), strengths.transpose() * changed);
+      const Eigen::MatrixXd told = strengths.transpose() * strengths;
+      const Eigen::VectorXd follow = -solve_symmetric(
+          told + studied.composition.prior_precision()(own, own), strengths.transpose() * changed);
       out.theta = moved_inside(studied.composition, std::move(out.theta), own, follow);
       residual += strengths * follow;
     }

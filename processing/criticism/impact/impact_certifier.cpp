@@ -144,7 +144,7 @@ std::vector<std::string> beside(const ImpactSearch& search, const ImpactRefit& o
   // stand for: a hum is a drift in a short record.
   const auto does_as_much = [&](const ImpactRefit& rival) {
     return search.candidate(own).use.per_shot && search.candidate(rival).use.per_shot &&
-           rival.lowers > own.lowers - kStandsBefore * search.scale();
+           rival.lowers > own.lowers - kStandsBefore * search.scale() * search.noise();
   };
   for (const ImpactRefit& rival : search.refits()) {
     if (rival.evidence > own.evidence - kStandsBefore || does_as_much(rival)) {

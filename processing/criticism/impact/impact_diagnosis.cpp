@@ -8,6 +8,7 @@
 #include "processing/criticism/impact/impact_disbelief.hpp"
 #include "processing/criticism/impact/impact_findings.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
+#include "processing/criticism/records/arrival_order.hpp"
 
 namespace kolsky {
 
@@ -35,6 +36,8 @@ Diagnosis diagnose_impacts(ImpactStudy& study, const Model& model, const Diagnos
   ImpactFindings found = find_what_impacts_lack(study, model, options);
   fit_to_its_end(study, found, options);
   Diagnosis diagnosis = conclude(study, found, options);
+  const std::vector<std::string> misfiled = misfiled_gauges(study.campaign());
+  diagnosis.notes.insert(diagnosis.notes.begin(), misfiled.begin(), misfiled.end());
   ImpactComparison after = study.compare(found.current);
   std::ranges::move(restitution_notes(after), std::back_inserter(diagnosis.notes));
   if (seen != nullptr) {

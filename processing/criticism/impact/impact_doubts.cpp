@@ -252,9 +252,9 @@ ImpactResiduals::ShotScatter ImpactResiduals::scatter_of_noise(const Foretold& f
   }
   const double noise = clear.rest / clear.rest_freedom;
   const double f = (whole.rest - clear.rest) / drifting / noise;
-  const bool drifts = noise < kMuch * whole.rest / whole.rest_freedom &&
-                      log_f_tail(f, drifting, clear.rest_freedom) < kSurely;
-  return drifts ? clear : whole;
+  const bool drifting_apart = noise < kMuch * whole.rest / whole.rest_freedom &&
+                              log_f_tail(f, drifting, clear.rest_freedom) < kSurely;
+  return drifting_apart ? clear : whole;
 }
 
 void ImpactResiduals::calibrate(const Composition& composition, const std::vector<double>& theta) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 
+#include "processing/base/error.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
 #include "processing/criticism/impact/quiet_before.hpp"
@@ -187,13 +188,15 @@ std::vector<std::size_t> ImpactSearch::worth_refitting() const {
   std::sort(ranked.begin(), ranked.end(),
             [&](std::size_t a, std::size_t b) { return evidence_[a] > evidence_[b]; });
   std::vector<std::size_t> chosen;
+  std::size_t nearest = 0;
   constexpr double kWorthIt = 4.0;
   for (const std::size_t i : ranked) {
     const double first = evidence_[ranked.front()];
     const bool near =
         evidence_[i] > kWorthIt && (astray_ || evidence_[i] > first - margin_behind(first));
     const bool filed = directions_[i].freedom > 0.0 && is_filed_number(candidates_[i]);
-    if (chosen.size() < kMostRefits && (near || filed)) {
+    nearest += near ? 1 : 0;
+    if (filed || (near && nearest <= kMostRefits)) {
       chosen.push_back(i);
     }
   }
@@ -286,12 +289,12 @@ void ImpactSearch::rate() {
       });
   // By one measure of it: what takes up how shots scatter leaves less noise, and of a large misfit
   // each of its own made that more than what it explains.
-  const double noise = std::max(1.0, best->studied.misfit.noise_scale);
+  noise_ = std::max(1.0, best->studied.misfit.noise_scale);
   const auto [chi2, known] = study_.repeated(best->studied.fit.residual);
   scale_ = std::max(kSolverDoubt, chi2 / known);
   for (ImpactRefit& refit : refits_) {
-    refit.gain = refit.lowers / noise;
-    refit.of_filed = refit.lowers_filed / noise;
+    refit.gain = refit.lowers / noise_;
+    refit.of_filed = refit.lowers_filed / noise_;
     const Signs signs = refit.freedom < 1.5 ? candidate(refit).signs : Signs::both;
     const double beside_rivals = (refit.gain - refit.of_filed) / scale_ + refit.of_filed;
     refit.evidence =
@@ -360,7 +363,13 @@ void ImpactSearch::settle_nearest(const Studied& base) {
     if (candidate(own).frees_prior) {
       continue;
     }
-    const Studied studied = study_.settled(own.studied, Settle::roughly);
+    std::optional<Studied> settled;
+    try {
+      settled = study_.settled(own.studied, Settle::roughly);
+    } catch (const InputError&) {
+      continue;  // nowhere near is a ball that finer meshes take: it stays as rough as it is
+    }
+    const Studied& studied = *settled;
     own.lowers = base.fit.objective() - studied.fit.objective();
     own.lowers_filed = base.fit.penalty - studied.fit.penalty;
     own.studied = studied;
@@ -390,6 +399,21 @@ void ImpactSearch::leave_out_what_quiet_lacks() {
   }
 }
 
+namespace {
+
+/// Whether two are the same of the few forms that an effect has.
+bool same_choice(const EffectUse& a, const EffectUse& b) {
+  const std::vector<EffectParameter>& parameters = a.effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].chosen && a.values[p].value != b.values[p].value) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 std::optional<ImpactSearch::Known> ImpactSearch::known(const std::string& id,
                                                        const Studied& found) const {
   const EffectUse* use = found.model.find(id);
@@ -397,7 +421,7 @@ std::optional<ImpactSearch::Known> ImpactSearch::known(const std::string& id,
   for (std::size_t i = 0; use != nullptr && i < candidates_.size(); ++i) {
     const EffectUse& own = candidates_[i].use;
     if (own.id() == id && own.per_shot == use->per_shot && own.alike == use->alike &&
-        (!best || evidence_[i] > evidence_[best->candidate])) {
+        same_choice(own, *use) && (!best || evidence_[i] > evidence_[best->candidate])) {
       best.emplace(i, found);
     }
   }

@@ -77,6 +77,8 @@ class ImpactSearch {
   [[nodiscard]] const std::set<std::string>& not_in_quiet() const { return not_in_quiet_; }
   /// Squares of deviates are over this, by the refits.
   [[nodiscard]] double scale() const { return scale_; }
+  /// What the best refit leaves of it, at least 1: gains are over this.
+  [[nodiscard]] double noise() const { return noise_; }
 
  private:
   struct Known {
@@ -110,6 +112,7 @@ class ImpactSearch {
   std::set<std::string> not_in_quiet_;
   double trials_ = 1.0;
   double scale_ = kSolverDoubt;
+  double noise_ = 1.0;
 };
 
 }  // namespace kolsky

@@ -198,15 +198,24 @@ std::vector<double> ImpactStudy::anchor_near(const Composition& composition,
         throw;
       }
       for (std::size_t i = 0; i < theta.size(); ++i) {
-        theta[i] = step + 1 == kMostSteps ? filed[i] : 0.5 * (theta[i] + filed[i]);
+        theta[i] = 0.5 * (theta[i] + filed[i]);
+      }
+      if (step + 1 == kMostSteps) {
+        theta = composition.start();
       }
     }
   }
 }
 
-/// With forces taken where a fit is.
+/// With forces taken where a fit is, or by a fit to where they can be.
 void ImpactStudy::stand_at(const Composition& composition, ModelFit& fit) {
-  fit.theta = anchor_near(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
+  const std::vector<double> near =
+      anchor_near(composition, fit.theta, ImpactResiduals::AnchorBy::middle);
+  if (near != fit.theta) {
+    fit = fit_by_secants(composition, residuals_, executor_, near, nullptr, Settle::roughly);
+    fit.converged = false;
+    return;
+  }
   fit.residual = residuals_.evaluate_on(executor_, composition, fit.theta);
   fit.chi2 = fit.residual.squaredNorm();
 }
@@ -271,6 +280,8 @@ Studied ImpactStudy::as_it_is(const Model& model) {
   residuals_.calibrate(composition, fit.theta);
   if (!fit.theta.empty()) {
     fit = fit_by_secants(composition, residuals_, executor_);
+    residuals_.calibrate(composition, fit.theta);
+    fit = fit_by_secants(composition, residuals_, executor_, fit.theta);
   }
   fit.residual = residuals_.evaluate(composition, fit.theta, executor_.first);
   fit.chi2 = fit.residual.squaredNorm();

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "processing/algebra/algebra.hpp"
+#include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/impact/filter.hpp"
 
@@ -20,16 +22,21 @@ struct Quiet {
   double freedom = 0.0;
 };
 
-/// What an effect adds to a shot's records, by gauge; empty where nothing.
-std::vector<std::vector<double>> added_by(const EffectUse& use, const Composition& composition,
-                                          const std::vector<double>& theta,
-                                          const Campaign& campaign, std::size_t n) {
+using Additions = std::vector<std::vector<double>>;  ///< by gauge; empty where nothing
+
+enum class Added { by_it, by_others };
+
+/// What an effect, or all others, add to a shot's records.
+Additions additions(Added added, const EffectUse& use, const Composition& composition,
+                    const std::vector<double>& theta, const Campaign& campaign, std::size_t n) {
   Scene scene(campaign.bench, campaign.shots[n].facts, {});
   scene.record.additions.resize(campaign.gauges());
-  for (const AppliedEffect& own : composition.applied(theta, n)) {
-    if (own.effect == use.effect &&
-        (!use.effect->about().per_gauge || campaign.bench.gauges[own.gauge].name == use.gauge)) {
-      own.effect->apply(scene, own.values, own.gauge);
+  for (const AppliedEffect& one : composition.applied(theta, n)) {
+    const bool its =
+        one.effect == use.effect &&
+        (!use.effect->about().per_gauge || campaign.bench.gauges[one.gauge].name == use.gauge);
+    if (is_addition(*one.effect) && its == (added == Added::by_it)) {
+      one.effect->apply(scene, one.values, one.gauge);
     }
   }
   return std::move(scene.record.additions);
@@ -82,14 +89,12 @@ std::vector<Eigen::Index> strengths_of(const std::string& id, const Composition&
   return own;
 }
 
-/// By columns: what each strength adds to a shot's records, what all of them add.
-std::vector<std::vector<std::vector<double>>> additions_of(const EffectUse& use,
-                                                           const std::vector<Eigen::Index>& own,
-                                                           const Studied& studied,
-                                                           const Campaign& campaign,
-                                                           std::size_t n) {
+/// What each strength adds to a shot's records, in its scale.
+std::vector<Additions> of_strengths(const EffectUse& use, const std::vector<Eigen::Index>& own,
+                                    const Studied& studied, const Campaign& campaign,
+                                    std::size_t n) {
   const std::vector<double>& theta = studied.fit.theta;
-  std::vector<std::vector<std::vector<double>>> columns;
+  std::vector<Additions> columns;
   std::vector<double> none = theta;
   for (const Eigen::Index i : own) {
     const auto at = static_cast<std::size_t>(i);
@@ -98,9 +103,8 @@ std::vector<std::vector<std::vector<double>>> additions_of(const EffectUse& use,
   for (const Eigen::Index i : own) {
     std::vector<double> one = none;
     one[static_cast<std::size_t>(i)] += 1.0;
-    columns.push_back(added_by(use, studied.composition, one, campaign, n));
+    columns.push_back(additions(Added::by_it, use, studied.composition, one, campaign, n));
   }
-  columns.push_back(added_by(use, studied.composition, theta, campaign, n));
   return columns;
 }
 
@@ -123,44 +127,68 @@ Quiet quiet_of(const EffectUse& use, const std::vector<Eigen::Index>& own, const
   Quiet quiet;
   for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
     const auto places = quiet_places(records, campaign.shots[n].quiet_samples);
-    const auto columns = additions_of(use, own, studied, campaign, n);
     const auto count = static_cast<Eigen::Index>(places.size());
+    const auto all_of = [&](Added added) {
+      return additions(added, use, studied.composition, studied.fit.theta, campaign, n);
+    };
+    const Additions its = all_of(Added::by_it);
+    const Additions of_others = all_of(Added::by_others);
+    const std::vector<Additions> strengths = of_strengths(use, own, studied, campaign, n);
+    const auto at_places = [&](const std::vector<double>& low_passed) {
+      Eigen::VectorXd column(count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        column[i] = low_passed[places[static_cast<std::size_t>(i)]];
+      }
+      return column;
+    };
+    const auto added = [&](const std::vector<double>& samples) -> Eigen::VectorXd {
+      return samples.empty() ? Eigen::VectorXd(Eigen::VectorXd::Zero(count))
+                             : at_places(impact::low_passed(samples, records.sample_period_s,
+                                                            records.window.cutoff_Hz));
+    };
     for (std::size_t j = 0; j < campaign.gauges() && places.size() > 2; ++j) {
-      if (columns.back()[j].empty()) {
+      if (its[j].empty()) {
         continue;
       }
-      Eigen::MatrixXd all(count, static_cast<Eigen::Index>(own.size()) + 2);
-      const auto fill = [&](Eigen::Index column, const std::vector<double>& samples) {
-        for (Eigen::Index i = 0; i < count; ++i) {
-          all(i, column) = samples.empty() ? 0.0 : samples[places[static_cast<std::size_t>(i)]];
-        }
-      };
-      const auto low_passed = [&](const std::vector<double>& samples) {
-        return samples.empty()
-                   ? samples
-                   : impact::low_passed(samples, records.sample_period_s, records.window.cutoff_Hz);
-      };
-      fill(0, records.low_passed[n][j]);
-      fill(1, low_passed(columns.back()[j]));
+      Eigen::MatrixXd columns(count, static_cast<Eigen::Index>(own.size()) + 2);
+      columns.col(0) = at_places(records.low_passed[n][j]) - added(of_others[j]);
+      columns.col(1) = added(its[j]);
       for (std::size_t a = 0; a < own.size(); ++a) {
-        fill(static_cast<Eigen::Index>(a) + 2, low_passed(columns[a][j]));
+        columns.col(static_cast<Eigen::Index>(a) + 2) = added(strengths[a][j]);
       }
-      append(white(all, noise_among(records.noise[j], count)), quiet);
+      append(white(columns, noise_among(records.noise[j], count)), quiet);
     }
   }
   return quiet;
 }
 
-/// Takes what is added where quiet and pulses together have it, as far as the pulses leave it open:
-/// within 400 us a hum's slope is known and its size is not.
+/// Whether what is added stands in the quiet as it is, its strengths as they are fitted.
+/// @param told  how many of these the quiet had to tell
+bool stands_in(const Quiet& quiet, double told) {
+  constexpr double kOff = 0.5;
+  constexpr double kByChance = -9.7;  ///< ln of the chance of four deviations
+  const double square = quiet.added.squaredNorm();
+  const double share = quiet.added.dot(quiet.record) / square;
+  const double left = (quiet.record - share * quiet.added).squaredNorm() /
+                      std::max(1.0, quiet.freedom - 1.0 - told);
+  return std::abs(share - 1.0) < kOff && share > 0.0 &&
+         log_chi2_tail(share * share * square / std::max(1.0, left), 1.0 + told) < kByChance;
+}
+
+/// Takes what is added where quiet and pulses together have it: within 400 us of a pulse a hum's
+/// slope is known and its size is not.
 /// @param covariance  of the strengths, by the pulses
-/// @return how many strengths the quiet had to say
-double take_from_quiet(const Eigen::MatrixXd& covariance, Quiet& quiet) {
+/// @return how many strengths the quiet had to tell; nothing where the two contradict each other
+std::optional<double> take_from_quiet(const Eigen::MatrixXd& covariance, Quiet& quiet) {
+  constexpr double kByChance = -9.2;
   const Eigen::MatrixXd told = quiet.strengths.transpose() * quiet.strengths;
+  const Eigen::VectorXd pull = quiet.strengths.transpose() * (quiet.record - quiet.added);
+  const Eigen::VectorXd apart = least_norm_solution(told + told * covariance * told, pull);
+  if (log_chi2_tail(pull.dot(apart), static_cast<double>(pull.size())) < kByChance) {
+    return std::nullopt;
+  }
   const Eigen::MatrixXd both = inverse_of(covariance) + told;
-  const Eigen::VectorXd off =
-      solve_symmetric(both, quiet.strengths.transpose() * (quiet.record - quiet.added));
-  quiet.added += quiet.strengths * off;
+  quiet.added += quiet.strengths * solve_symmetric(both, pull);
   return (inverse_of(both) * told).trace();
 }
 
@@ -177,16 +205,19 @@ bool stands_before_pulse(const Studied& studied, const std::string& id,
   if (!(quiet.added.squaredNorm() > 0.0) || quiet.freedom < 2.0) {
     return false;
   }
-  const bool open = !own.empty() && studied.fit.covariance.size() > 0;
-  const double taken = open ? take_from_quiet(studied.fit.covariance(own, own), quiet) : 0.0;
-  constexpr double kOff = 0.5;
-  constexpr double kDeviations = 4.0;
-  const double square = quiet.added.squaredNorm();
-  const double share = quiet.added.dot(quiet.record) / square;
-  const double left = (quiet.record - share * quiet.added).squaredNorm() /
-                      std::max(1.0, quiet.freedom - 1.0 - taken);
-  const double shown = share * share * square / std::max(1.0, left);
-  return std::abs(share - 1.0) < kOff && shown > kDeviations * kDeviations + taken;
+  if (stands_in(quiet, 0.0)) {
+    return true;
+  }
+  const ModelFit& fit = studied.fit;
+  if (own.empty() || fit.covariance.size() == 0) {
+    return false;
+  }
+  Eigen::MatrixXd covariance = fit.covariance(own, own);
+  if (fit.doubt.size() > 0) {
+    covariance += fit.doubt(own, own);
+  }
+  const auto told = take_from_quiet(covariance, quiet);
+  return told && stands_in(quiet, *told);
 }
 
 }  // namespace kolsky

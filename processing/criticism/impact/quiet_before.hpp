@@ -15,9 +15,9 @@ namespace kolsky {
 /// mean free and S its noise,
 ///     q = a^T S^-1 r / a^T S^-1 a
 /// has to be 1 +- 0.5 and four of its deviations off nothing; those by S or by what r - q a
-/// scatters, whichever is more. As far as the pulses leave strengths open, a has them by the quiet,
-/// too, and stands out by one square more for each that the quiet had to tell. Too little quiet
-/// confirms nothing.
+/// scatters, whichever is more. Where that fails and the pulses leave strengths so open that the
+/// quiet does not contradict them, a has them by both, and stands out by as much more as the quiet
+/// had to tell. What else is added is taken off. Too little quiet confirms nothing.
 /// True for effects that add nothing to records.
 [[nodiscard]] bool stands_before_pulse(const Studied& studied, const std::string& id,
                                        const ImpactResiduals& residuals);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "processing/base/error.hpp"
+
 namespace kolsky {
 
 namespace {
@@ -22,9 +24,14 @@ std::vector<std::string> of_materials(const Model& model) {
   return list;
 }
 
-Studied fitted_with(ImpactStudy& study, Model model, const std::string& id) {
+/// @return nothing where the solver refuses all that is near
+std::optional<Studied> fitted_with(ImpactStudy& study, Model model, const std::string& id) {
   model.effects.push_back(use_named(id));
-  return study.settled(study.refit(model, study.executor()), Settle::roughly);
+  try {
+    return study.settled(study.refit(model, study.executor()), Settle::roughly);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -38,8 +45,8 @@ std::optional<std::string> better_of_materials(
       continue;
     }
     progress(fmt::format("fitting {} in the place of {}", id, claimed));
-    const Studied other = fitted_with(study, first, id);
-    if (other.fit.objective() < current.fit.objective() - kStandsBefore * kSolverDoubt) {
+    const auto other = fitted_with(study, first, id);
+    if (other && other->fit.objective() < current.fit.objective() - kStandsBefore * kSolverDoubt) {
       better = id;
       break;
     }

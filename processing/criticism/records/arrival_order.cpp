@@ -28,7 +28,7 @@ std::optional<double> reversed_by(const Campaign& campaign, std::size_t first, s
 }
 
 /// Whether a gauge's first pulse is the other one than the bars are loaded by in all shots that see
-/// it; nothing where none does.
+/// it; nothing where none does. It is as loaded where it is so in some shot.
 std::optional<bool> reads_otherwise(const Campaign& campaign, std::size_t gauge) {
   std::optional<bool> otherwise;
   for (const CampaignShot& shot : campaign.shots) {
@@ -44,17 +44,18 @@ std::optional<bool> reads_otherwise(const Campaign& campaign, std::size_t gauge)
 std::optional<std::string> of_other_sign(const Campaign& campaign) {
   const Bench& bench = campaign.bench;
   std::vector<std::string> odd;
-  std::size_t seen = 0;
   bool on_input = false;
+  std::size_t as_loaded = 0;
   for (std::size_t g = 0; g < bench.gauges.size(); ++g) {
     const std::optional<bool> otherwise = reads_otherwise(campaign, g);
-    seen += otherwise ? 1 : 0;
+    as_loaded += otherwise && !*otherwise ? 1 : 0;
     if (otherwise.value_or(false)) {
       odd.push_back(bench.gauges[g].name);
       on_input = on_input || bench.gauges[g].bar == "input";
     }
   }
-  if (odd.empty() || odd.size() == seen) {
+  // Where most pull it may be the loading that is filed wrongly, and then the others are the odd.
+  if (odd.empty() || as_loaded < odd.size()) {
     return std::nullopt;
   }
   return other_sign_text(odd, bench.loading, on_input);

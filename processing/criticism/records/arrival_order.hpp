@@ -16,7 +16,7 @@ namespace kolsky {
 
 /// What the first pulses say against the signs of the gauges, in one line: a gauge that reads with
 /// the other sign looks like no effect of a library either.
-/// @return nothing where every gauge reads as the bars are loaded in some shot, or none does
+/// @return nothing where every gauge reads as the bars are loaded in some shot, or most never do
 [[nodiscard]] std::optional<std::string> of_other_sign(const Campaign& campaign);
 
 /// Both.

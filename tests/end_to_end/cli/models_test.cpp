@@ -172,7 +172,7 @@ TEST_F(SimulatedBar, KeepsAModelWithAHistoryThatAFitOfAnotherWouldReplace) {
   ASSERT_EQ(answer.code, 0);
   EXPECT_NE(answer.out.find("own.1.toml"), std::string::npos) << answer.out;
   EXPECT_EQ(content(file("own.1.toml")), old);
-  ASSERT_EQ(kolsky({"model", "add", file("m.toml"), "crosstalk", "-o", model}).code, 0);
+  ASSERT_EQ(kolsky({"model", "add", file("m.toml"), "geometric-dispersion", "-o", model}).code, 0);
   EXPECT_TRUE(std::filesystem::exists(file("own.2.toml"))) << "a fit is a step, too";
 }
 
