@@ -121,6 +121,17 @@ ModelFit from_afar(const Candidate& candidate, ModelFit fit, const Composition& 
   return fit;
 }
 
+/// Whether two are the same of the few forms that an effect has.
+bool same_choice(const EffectUse& a, const EffectUse& b) {
+  const std::vector<EffectParameter>& parameters = a.effect->about().parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].chosen && a.values[p].value != b.values[p].value) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 ImpactSearch::ImpactSearch(ImpactStudy& study, const Studied& base)
@@ -398,21 +409,6 @@ void ImpactSearch::leave_out_what_quiet_lacks() {
     not_in_quiet_.erase(candidate(own).id());  // in another variant it is there
   }
 }
-
-namespace {
-
-/// Whether two are the same of the few forms that an effect has.
-bool same_choice(const EffectUse& a, const EffectUse& b) {
-  const std::vector<EffectParameter>& parameters = a.effect->about().parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].chosen && a.values[p].value != b.values[p].value) {
-      return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
 
 std::optional<ImpactSearch::Known> ImpactSearch::known(const std::string& id,
                                                        const Studied& found) const {
