@@ -76,8 +76,10 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
   const ImpactComparison comparison = study.compare(studied);
   std::vector<std::string> notes = not_constrained(study, studied);
   std::ranges::move(misfiled_gauges(campaign), std::back_inserter(notes));
-  if (auto quiet = quiet_note(studied)) {
-    notes.push_back(*std::move(quiet));
+  for (auto& note : {scatter_doubt(study, studied), quiet_note(studied)}) {
+    if (note) {
+      notes.push_back(*note);
+    }
   }
   notes.insert(notes.begin(), how(settings, file));
   if (settings.report) {

@@ -8,6 +8,7 @@
 #include "clients/cli/reports/comparison_text.hpp"
 #include "clients/terminal/plot.hpp"
 #include "processing/base/error.hpp"
+#include "processing/criticism/impact/impact_notes.hpp"
 
 namespace kolsky::cli {
 
@@ -227,10 +228,14 @@ Page impact_page(const std::string& title, const std::vector<std::string>& notes
                  const ImpactComparison& comparison, ImpactStudy& study, const Studied& studied) {
   Page page;
   page.title = title;
-  page.good = study.allowance(studied) != Allowance::exceeded;
+  const Allowance allowance = study.allowance(studied);
+  const bool alike = !scatter_doubt(study, studied);
+  page.good = alike && allowance != Allowance::exceeded;
   page.headline = page.good ? "What the model foretells differs from the impacts" +
-                                  std::string(within(study.allowance(studied)))
-                            : "The model fails; below is at which speeds and when.";
+                                  std::string(within(allowance))
+                  : alike ? "The model fails; below is at which speeds and when."
+                          : "The model fails, and shots of one speed are not alike; below is "
+                            "at which speeds, in which shots and when.";
   page.notes = notes;
   page.sections.push_back(
       speeds_section("Speed by speed", comparison, study.residuals().times_s()));

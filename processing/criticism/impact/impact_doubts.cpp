@@ -264,7 +264,8 @@ void ImpactResiduals::calibrate(const Composition& composition, const std::vecto
     return;
   }
   const double scale = noise_scale_;
-  noise_scale_ = scale * std::max(0.7, shots.rest / shots.rest_freedom);
+  constexpr double kLeast = 0.7;  ///< of what the quiet says, however often it is corrected
+  noise_scale_ = std::max(kLeast, scale * shots.rest / shots.rest_freedom);
   // Forces grow somewhat faster than speeds; what is found here is of the force.
   const double variance = std::max(
       0.0, (shots.of_speed - shots.expected_of_speed * noise_scale_ / scale) / shots.freedom);

@@ -453,8 +453,11 @@ TEST(LongImpactDiagnosis, AHumOfAPhaseOfItsOwnInEachShotIsFound) {
   ThrownBalls balls(shots);
   const Studied compared = balls.study.as_it_is(*diagnosis.model);
   EXPECT_LT(compared.misfit.chi2_reduced, 1.5);
+  EXPECT_EQ(scatter_doubt(balls.study, compared), std::nullopt);
   ThrownBalls without(shots);
-  EXPECT_GT(without.study.as_it_is(paper_with({})).misfit.chi2_reduced, 5.0);
+  const Studied plain = without.study.as_it_is(paper_with({}));
+  EXPECT_GT(plain.misfit.chi2_reduced, 5.0);
+  EXPECT_NE(scatter_doubt(without.study, plain), std::nullopt) << "no shot repeats another's hum";
 }
 
 /// A core that is softened by what it was strained to most is of no effect in the library. Effects
