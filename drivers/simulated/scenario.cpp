@@ -77,7 +77,7 @@ Scenario paper_bench(const char* name, const char* text, const Specimen& nominal
   scenario.name = name;
   scenario.text = text;
   scenario.bench.kind = BenchKind::shpb;
-  scenario.bench.sampling_frequency_Hz = 1e6;
+  scenario.bench.sampling_frequency_Hz = {1e6, 0.0};
   scenario.bench.input = pmma_bar(0.700, 0.015);
   scenario.bench.output = scenario.bench.input;
   scenario.bench.gauges = {gauge("g1", "input", 0.400), gauge("g2", "output", 0.050)};
@@ -118,7 +118,7 @@ Scenario long_bar() {
   scenario.name = "bar";
   scenario.text = "a PMMA bar of 20 mm x 2 m to characterise, four gauges from 100 mm every 200 mm";
   scenario.bench.kind = BenchKind::bar;
-  scenario.bench.sampling_frequency_Hz = 1e6;
+  scenario.bench.sampling_frequency_Hz = {1e6, 0.0};
   scenario.bench.input = pmma_bar(2.0, 0.020);
   scenario.bench.gauges = {gauge("g1", "input", 0.1), gauge("g2", "input", 0.3),
                            gauge("g3", "input", 0.5), gauge("g4", "input", 0.7)};
@@ -132,7 +132,7 @@ Scenario steel() {
   scenario.name = "steel";
   scenario.text = "elastic steel bars of 20 mm, an elastic specimen of 8 x 4 mm, 500 microstrain";
   scenario.bench.kind = BenchKind::shpb;
-  scenario.bench.sampling_frequency_Hz = 1e6;
+  scenario.bench.sampling_frequency_Hz = {1e6, 0.0};
   scenario.bench.input = bar(2.1, 0.020, kSteel.density_kg_m3, 0.29);
   scenario.bench.input.youngs_modulus_Pa = Measured{kSteel.E1_Pa};
   scenario.bench.output = scenario.bench.input;
@@ -158,7 +158,7 @@ Scenario impact(const char* name, const char* text, double speed_m_per_s) {
   scenario.name = name;
   scenario.text = text;
   scenario.bench.kind = BenchKind::impact;
-  scenario.bench.sampling_frequency_Hz = 1e6;
+  scenario.bench.sampling_frequency_Hz = {1e6, 0.0};
   scenario.bench.input = bar(3.0, 0.027, kTitanium.density_kg_m3, 0.33);
   scenario.bench.input.youngs_modulus_Pa = Measured{kTitanium.E1_Pa};
   scenario.bench.gauges = {gauge("g1", "input", 0.250)};

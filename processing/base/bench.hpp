@@ -128,7 +128,7 @@ struct Striker {
 /// The apparatus as the bench file states it.
 struct Bench {
   BenchKind kind = BenchKind::shpb;
-  double sampling_frequency_Hz = 0.0;
+  Measured sampling_frequency_Hz{};
   PositiveSense positive = PositiveSense::compression;
   PositiveSense loading = PositiveSense::compression;  ///< what the incident pulse is
   Bar input{};

@@ -404,7 +404,7 @@ void require_part(const Bench& bench, const std::string& part, bool there, Bench
 }  // namespace
 
 void check(const Bench& bench) {
-  require_in_range("sampling_frequency_Hz", {bench.sampling_frequency_Hz, 0.0}, kSamplingFrequency);
+  check_number("sampling_frequency_Hz", bench.sampling_frequency_Hz, kSamplingFrequency);
   require_part(bench, "bars.output", bench.output.has_value(), BenchKind::shpb);
   require_part(bench, "specimen", bench.specimen.has_value(), BenchKind::shpb);
   require_part(bench, "ball", bench.ball.has_value(), BenchKind::impact);

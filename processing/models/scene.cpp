@@ -85,7 +85,7 @@ void RecordScene::straighten(std::size_t gauge, std::vector<double>& record) con
 }
 
 Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex> path)
-    : s(path), facts(&shot) {
+    : s(path.begin(), path.end()), facts(&shot) {
   bars.push_back(scene_of(bench.input));
   if (bench.output) {
     bars.push_back(scene_of(*bench.output));
@@ -113,6 +113,8 @@ Scene::Scene(const Bench& bench, const ShotFacts& shot, std::span<const Complex>
   }
   if (bench.kind == BenchKind::impact) {
     ball.emplace();
+    ball->core_diameter_m = bench.ball->core_diameter_m;
+    ball->outer_diameter_m = bench.ball->outer_diameter_m;
   }
   record.additions.resize(gauges.size());
 }

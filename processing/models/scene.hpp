@@ -112,8 +112,11 @@ struct BallLayer {
   double nonlinearity = 0.0;  ///< b: instantaneous deviatoric stress x (1 + b strain)
 };
 
-/// The ball that strikes an elastic bar, as far as effects shape it; its geometry is the bench's.
+/// The ball that strikes an elastic bar.
 struct BallScene {
+  double core_diameter_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double heavier = 0.0;  ///< relative: densities of both layers x (1 + heavier)
   BallLayer core{};
   BallLayer cover{};
   double friction = 0.0;
@@ -156,7 +159,7 @@ struct RecordScene {
 /// One shot's bench and physics on a path of the Laplace variable, as effects shape it stage by
 /// stage.
 struct Scene {
-  std::span<const Complex> s{};
+  std::vector<Complex> s{};  ///< by the clock that the bench has, not the one filed
   const ShotFacts* facts = nullptr;
   std::vector<BarScene> bars{};
   std::vector<GaugeScene> gauges{};

@@ -54,7 +54,7 @@ BarShots::BarShots(const Setup& setup) : setup_(setup) {
 Bench BarShots::bench(const Recording& recording) const {
   Bench bench;
   bench.kind = BenchKind::bar;
-  bench.sampling_frequency_Hz = 1.0 / (kStep_s * static_cast<double>(kStepsPerSample));
+  bench.sampling_frequency_Hz = {1.0 / (kStep_s * static_cast<double>(kStepsPerSample)), 0.0};
   bench.input.length_m = {setup_.length_m};
   bench.input.diameter_m = {setup_.diameter_m};
   bench.input.density_kg_m3 = {setup_.material.density_kg_m3};

@@ -119,7 +119,7 @@ void draw_shots(Random& random, BarWorld& world, int count, bool thermostat,
 Bench file_bench(const BarWorld& world) {
   Bench bench;
   bench.kind = BenchKind::bar;
-  bench.sampling_frequency_Hz = world.timing.rate_Hz;
+  bench.sampling_frequency_Hz = {world.timing.rate_Hz, 0.0};
   bench.input.length_m = {world.length_m, 0.0};
   bench.input.diameter_m = {2.0 * world.radius_m, 0.0};
   bench.input.density_kg_m3 = {world.material.density_kg_m3, 0.0};

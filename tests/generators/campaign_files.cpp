@@ -76,7 +76,7 @@ std::string table_of(const Shot& shot, bool time_from_trigger) {
 
 std::string bench_text(const Bench& bench) {
   std::string text = fmt::format("kind = \"{}\"\nsampling_frequency_Hz = {:.12g}\n",
-                                 kind_of(bench.kind), bench.sampling_frequency_Hz);
+                                 kind_of(bench.kind), bench.sampling_frequency_Hz.value);
   text += fmt::format("positive = \"{}\"\n",
                       bench.positive == PositiveSense::compression ? "compression" : "tension");
   put(text, "temperature_K", bench.temperature_K);

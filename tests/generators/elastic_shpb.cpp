@@ -99,7 +99,7 @@ ElasticShpb::Records ElasticShpb::solve() const {
 Bench ElasticShpb::bench() const {
   Bench bench;
   bench.kind = BenchKind::shpb;
-  bench.sampling_frequency_Hz = sampling_frequency_Hz;
+  bench.sampling_frequency_Hz = {sampling_frequency_Hz, 0.0};
   bench.input = {.length_m = {length_in_m},
                  .diameter_m = {diameter_m},
                  .density_kg_m3 = {density_kg_m3},

@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 Bench paper_bench() {
   Bench bench;
   bench.kind = BenchKind::impact;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input.length_m = {3.0, 0.0};
   bench.input.diameter_m = {0.027, 0.0};
   bench.input.density_kg_m3 = {4420.0, 0.0};
@@ -98,13 +98,15 @@ void file(const std::string& key, double speed, double relative_sd, std::mt19937
 }  // namespace
 
 std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
-  const Bench bench = paper_bench();
+  Bench bench = paper_bench();
+  bench.ball->core_diameter_m.sd = wishes.diameter_sd_m;
+  bench.ball->outer_diameter_m.sd = wishes.diameter_sd_m;
   const Bar& bar = bench.input;
   const double c0 = std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3);
   const double stiffness_N = *bar.youngs_modulus_Pa * bar.area_m2();
   BallImpact impact;
-  impact.core_diameter_m = bench.ball->core_diameter_m;
-  impact.outer_diameter_m = bench.ball->outer_diameter_m;
+  impact.core_diameter_m = bench.ball->core_diameter_m + wishes.core_off_m;
+  impact.outer_diameter_m = bench.ball->outer_diameter_m + wishes.ball_off_m;
   const std::array<double, 6>& moduli = wishes.moduli;
   impact.core = {1140.0, 0.376, 121e6 * moduli[0], 143e6 * moduli[1], 2860.0 * moduli[2]};
   impact.core.b = wishes.core_b;

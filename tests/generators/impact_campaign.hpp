@@ -31,7 +31,10 @@ struct ImpactWishes {
   /// E1, E2, eta2 of the core, then the cover, over the paper's.
   std::array<double, 6> moduli{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double friction = 0.3;
-  double offset_m = 0.0;  ///< of the ball's axis from the bar's
+  double core_off_m = 0.0;     ///< true diameter less the filed one
+  double ball_off_m = 0.0;     ///< the same of the whole ball
+  double diameter_sd_m = 0.0;  ///< filed beside both
+  double offset_m = 0.0;       ///< of the ball's axis from the bar's
   double bending_m =
       0.0;  ///< of the push's line from where gauges read no bending, times imbalance
   double sabot_mass_kg = 0.0;

@@ -89,7 +89,7 @@ void join(Rod& before, Rod& after, double step_s) {
 Bench LinearShpb::bench() const {
   Bench bench;
   bench.kind = BenchKind::shpb;
-  bench.sampling_frequency_Hz = sampling_frequency_Hz;
+  bench.sampling_frequency_Hz = {sampling_frequency_Hz, 0.0};
   bench.input = bar_of(input, input_length_m, bar_diameter_m);
   bench.output = bar_of(output, output_length_m, output_diameter_m);
   bench.gauges = {gauge_of("g1", "input", gauge_in_m), gauge_of("g2", "output", gauge_out_m)};

@@ -33,6 +33,9 @@ int main(int argc, char** argv) {
   app.add_option("--bridge-nonlinearity", wishes.bridge_b, "b");
   app.add_option("--gauge-factor", wishes.gauge_factor, "kappa");
   app.add_option("--friction", wishes.friction, "mu");
+  app.add_option("--core-off", wishes.core_off_m, "m, true diameter less the filed one");
+  app.add_option("--ball-off", wishes.ball_off_m, "m, true diameter less the filed one");
+  app.add_option("--diameter-sd", wishes.diameter_sd_m, "m, filed beside both diameters");
   app.add_option("--sabot", wishes.sabot_mass_kg, "kg, that follows the ball and pushes it");
   app.add_option("--drift", wishes.drift_per_s, "1/s, of the gauge");
   app.add_option("--hum", wishes.hum_strain, "strain, of 50 Hz, a phase of its own in each shot");

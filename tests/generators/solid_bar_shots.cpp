@@ -168,7 +168,7 @@ std::vector<Shot> SolidBarShots::draw(const Tolerances& tolerances, std::mt19937
   std::normal_distribution<double> normal(0.0, 1.0);
   Bench bench;
   bench.kind = BenchKind::bar;
-  bench.sampling_frequency_Hz = world_.timing.rate_Hz;
+  bench.sampling_frequency_Hz = {world_.timing.rate_Hz, 0.0};
   bench.input.length_m = {world_.length_m};
   bench.input.diameter_m = {2.0 * world_.radius_m};
   bench.input.density_kg_m3 = {world_.material.density_kg_m3};

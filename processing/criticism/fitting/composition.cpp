@@ -64,6 +64,9 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
       list.push_back(filed("channel-delay:" + gauge.name, {gauge.delay_s.sd}));
     }
   }
+  if (bench.kind != BenchKind::impact && bench.sampling_frequency_Hz.sd > 0.0) {
+    list.push_back(filed("sampling-clock", {relative_sd(bench.sampling_frequency_Hz)}));
+  }
   if (bench.input.length_m.sd > 0.0) {
     list.push_back(filed("bar-length", {bench.input.length_m.sd}));
   }
@@ -101,6 +104,14 @@ std::vector<EffectUse> known_unknowns_of(const Bench& bench) {
     if (sd > 0.0) {
       list.push_back(filed("output-bar-modulus", {sd}));
     }
+  }
+  if (bench.ball &&
+      (bench.ball->core_diameter_m.sd > 0.0 || bench.ball->outer_diameter_m.sd > 0.0)) {
+    list.push_back(filed("ball-dimensions",
+                         {bench.ball->core_diameter_m.sd, bench.ball->outer_diameter_m.sd}));
+  }
+  if (bench.ball && bench.ball->mass_kg && bench.ball->mass_kg->sd > 0.0) {
+    list.push_back(filed("ball-mass", {relative_sd(*bench.ball->mass_kg)}));
   }
   if (bench.specimen &&
       (bench.specimen->length_m.sd > 0.0 || bench.specimen->diameter_m.sd > 0.0)) {

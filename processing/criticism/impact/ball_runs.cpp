@@ -83,7 +83,10 @@ std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed
                           static_cast<double>(ball.reading),
                           ball.friction,
                           ball.offset_m,
-                          ball.sabot_mass_kg};
+                          ball.sabot_mass_kg,
+                          ball.core_diameter_m,
+                          ball.outer_diameter_m,
+                          ball.heavier};
   append(ball.core, key);
   append(ball.cover, key);
   {
@@ -95,6 +98,11 @@ std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed
   impact::ImpactModel model = impact::impact_on(bench_, material_of(ball.core, ball.reading, form),
                                                 material_of(ball.cover, ball.reading, form),
                                                 impact::TargetKind::dashpot, speed_m_per_s);
+  model.layers[0].outer_diameter_m = ball.core_diameter_m;
+  model.layers[1].outer_diameter_m = ball.outer_diameter_m;
+  for (impact::Layer& layer : model.layers) {
+    layer.solid.density_kg_m3 *= 1.0 + ball.heavier;
+  }
   model.friction = ball.friction;
   model.offset_m = ball.offset_m;
   model.sabot_mass_kg = ball.sabot_mass_kg;

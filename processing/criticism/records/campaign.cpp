@@ -10,6 +10,7 @@
 #include "processing/criticism/records/ball_gate.hpp"
 #include "processing/criticism/records/faint_pulse.hpp"
 #include "processing/criticism/records/lost_samples.hpp"
+#include "processing/criticism/records/soft_foot.hpp"
 #include "processing/identification/bar_records.hpp"
 #include "processing/reduction/ball/ball_flight.hpp"
 #include "processing/reduction/code_steps.hpp"
@@ -103,6 +104,13 @@ void set_speeds(const Shot& shot, double touch_s, ShotFacts& facts) {
   }
 }
 
+void set_peak(std::size_t reference, CampaignShot& shot) {
+  shot.facts.peak_strain = 0.0;
+  for (const double value : shot.strain[reference]) {
+    shot.facts.peak_strain = std::max(shot.facts.peak_strain, std::abs(value));
+  }
+}
+
 CampaignShot read_shot(const Shot& shot, std::size_t reference) {
   const Bench& bench = shot.bench;
   CampaignShot out;
@@ -117,13 +125,26 @@ CampaignShot read_shot(const Shot& shot, std::size_t reference) {
     bridge.convert(readings, quiet_before(readings, out.quiet_samples).baseline, strain);
     out.strain.push_back(std::move(strain));
   }
-  for (const double value : out.strain[reference]) {
-    out.facts.peak_strain = std::max(out.facts.peak_strain, std::abs(value));
-  }
+  set_peak(reference, out);
   for (std::size_t n = 0; n < shot.samples(); ++n) {
     out.facts.time_s.push_back(static_cast<double>(n) * shot.rate.period_s() - out.foot_s);
   }
   return out;
+}
+
+/// What a pulse adds to the end of its quiet part shifts all levels.
+void leave_out(std::size_t of_quiet, Campaign& campaign) {
+  for (CampaignShot& shot : campaign.shots) {
+    if (of_quiet == 0) {
+      continue;
+    }
+    shot.quiet_samples -= of_quiet;
+    for (std::vector<double>& strain : shot.strain) {
+      const double level = quiet_before(strain, shot.quiet_samples).baseline;
+      std::ranges::for_each(strain, [level](double& value) { value -= level; });
+    }
+    set_peak(campaign.reference, shot);
+  }
 }
 
 /// From the struck face to the reference gauge, as an elastic bar's front goes.
@@ -215,6 +236,7 @@ Campaign read_campaign(const std::vector<Shot>& shots) {
     }
     campaign.shots.back().facts.shot = campaign.shots.size() - 1;
   }
+  leave_out(soft_foot_samples(campaign.shots, campaign.reference, campaign.period_s), campaign);
   set_temperatures(shots, campaign);
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
     double step = 0.0;

@@ -42,6 +42,11 @@ std::vector<Ranked> best_variants(const SearchGround& ground) {
   return ranked;
 }
 
+/// Whether it is chosen among a few which it is.
+bool has_forms(const EffectUse& use) {
+  return std::ranges::any_of(use.effect->about().parameters, &EffectParameter::chosen);
+}
+
 class Shortlist {
  public:
   explicit Shortlist(const SearchGround& ground)
@@ -110,6 +115,28 @@ class Shortlist {
     });
   }
 
+  /// First order hardly tells an effect's times apart, and far from the records not its forms: a
+  /// bending of 1 mm was refitted as one of the deflection alone, which it is not, and a relaxation
+  /// from a time whose valley leads elsewhere. (Far from the records times do not matter so: what
+  /// is found first is found beside others again.)
+  void add_other_variants_of_leaders() {
+    constexpr std::size_t kLeaders = 3;
+    constexpr double kNearlyAsGood = 0.7;
+    for (std::size_t r = 0; r < std::min(kLeaders, ranked_.size()); ++r) {
+      const auto& [evidence, best] = ranked_[r];
+      const EffectUse& leader = ground_.candidates[best].use;
+      if (has_forms(leader) != ground_.far_off() || leader.per_shot || is_harmonic(leader)) {
+        continue;
+      }
+      const double least = ground_.far_off() ? 0.0 : kNearlyAsGood * evidence;
+      add_where([&](std::size_t i) {
+        const EffectUse& use = ground_.candidates[i].use;
+        return use.id() == leader.id() && !use.per_shot && use.alike == leader.alike &&
+               !is_harmonic(use) && ground_.evidence_of(i) >= least;
+      });
+    }
+  }
+
   /// Of what every specimen does by formula first order says little where moduli do its work.
   void add_formulas() {
     constexpr double kSomething = 25.0;  // of evidence: noise seldom has as much
@@ -166,6 +193,7 @@ std::vector<std::size_t> worth_refitting(const SearchGround& ground, SlowChances
   list.add_at_the_same_gauge();
   list.add_other_mains();
   list.add_what_is_there_or_not();
+  list.add_other_variants_of_leaders();
   list.add_formulas();
   list.add_bounded_materials();
   return list.chosen();

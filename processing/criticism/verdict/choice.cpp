@@ -255,7 +255,21 @@ Choice Chooser::chosen(Found& found, Places places) {
 }
 
 bool Chooser::claimable(const Search& search, const Refit& refit) const {
-  return search.with_search(refit.log_p) <= options_.log_alpha;
+  return search.with_search(refit.log_p) <= options_.log_alpha && states_a_strength(search, refit);
+}
+
+/// A hum may gain much of whatever one gauge alone reads slowly, a step or a droop, by an amplitude
+/// that is none beside its deviation. (True ones in unequal shares, of which a free source takes up
+/// a part, may be known to no better than their size.)
+bool Chooser::states_a_strength(const Search& search, const Refit& refit) const {
+  const EffectUse& use = fitted_use(search, refit);
+  if (!use.effect->about().quadrature || use.alike) {
+    return true;
+  }
+  constexpr double kLeast = 0.75;
+  CandidateResult stated;
+  set_strength(refit.studied, use.id(), study_.residuals().per_shot(), stated);
+  return stated.strength >= kLeast * stated.sd;
 }
 
 /// Too little to be named by itself, enough not to be told from what is named with hardly more.

@@ -79,6 +79,7 @@ class Chooser {
   [[nodiscard]] static bool is_barred(const Found& found, std::size_t i);
   [[nodiscard]] std::optional<double> lead_over_next(const Found& found, std::size_t best) const;
   [[nodiscard]] bool claimable(const Search& search, const Refit& refit) const;
+  [[nodiscard]] bool states_a_strength(const Search& search, const Refit& refit) const;
   [[nodiscard]] bool plausible(const Search& search, const Refit& refit) const;
   /// ln of the chance, the search counted, above which nothing comes into question.
   [[nodiscard]] double least_plausible() const;

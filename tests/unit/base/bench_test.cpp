@@ -26,7 +26,7 @@ Bar pmma_bar() {
 Bench paper_bench() {
   Bench bench;
   bench.kind = BenchKind::shpb;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input = pmma_bar();
   bench.output = pmma_bar();
   bench.gauges = {{"g1", "input", {0.4, 0.0}, {}, "strain", {}, {}, {}},
@@ -89,7 +89,7 @@ TEST_P(BenchRefusals, NameTheKey) {
 INSTANTIATE_TEST_SUITE_P(
     NotNumbers, BenchRefusals,
     ::testing::Values(
-        Change{"sampling_frequency_Hz", [](Bench& b) { b.sampling_frequency_Hz = kNan; }},
+        Change{"sampling_frequency_Hz", [](Bench& b) { b.sampling_frequency_Hz.value = kNan; }},
         Change{"bars.input.length_m", [](Bench& b) { b.input.length_m.value = kNan; }},
         Change{"bars.input.diameter_m", [](Bench& b) { b.input.diameter_m.value = kNan; }},
         Change{"bars.output.poisson_ratio", [](Bench& b) { b.output->poisson_ratio.value = kNan; }},

@@ -76,6 +76,16 @@ TEST(SeriesDashpot, IsSoughtBesideARelaxationFromWhereTheModelBegan) {
   }
 }
 
+// From the time alone that first order likes best it ended in another valley, and a factor of one
+// gauge was claimed beside it.
+TEST(SecondRelaxation, IsRefittedFromAllTimesThatFirstOrderLikes) {
+  testing::Campaign truth =
+      testing::draw_campaign({.seed = 4, .shots = 6, .gauges = 4, .noise_strain = 1.5e-6});
+  testing::hide(truth, testing::parse_effect("second-relaxation=2.5e-11,tau=1e-4"));
+  EXPECT_EQ(said_of(truth, paper_model(BenchKind::bar, false)),
+            std::vector<std::string>{"second-relaxation"});
+}
+
 TEST(SpecimenRelaxation, QuickerThanWhatFirstOrderBeginsWithIsInTheSet) {
   testing::Campaign truth =
       testing::draw_campaign({.seed = 5, .shots = 4, .gauges = 3, .split = true});

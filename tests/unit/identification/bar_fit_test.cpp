@@ -23,7 +23,7 @@ constexpr double kDiameter_m = 0.020;
 Bench bar_bench() {
   Bench bench;
   bench.kind = BenchKind::bar;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input.length_m = {2.0};
   bench.input.diameter_m = {kDiameter_m};
   bench.input.density_kg_m3 = {1180.0};

@@ -95,7 +95,7 @@ Bench bench_of(const std::vector<double>& position_m) {
   const RodMaterial& m = testing::kTable4[0].material;
   Bench bench;
   bench.kind = BenchKind::bar;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input.length_m = {kBar_m};
   bench.input.diameter_m = {0.020};
   bench.input.density_kg_m3 = {m.density_kg_m3};

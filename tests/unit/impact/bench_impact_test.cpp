@@ -76,7 +76,7 @@ TEST(BenchImpact, NumbersDoNotDependOnTheSamplingRate) {
   std::vector<ImpactHistory> histories;
   for (const double rate_Hz : {20e3, 1e6, 1e9}) {
     Bench bench = paper_bench();
-    bench.sampling_frequency_Hz = rate_Hz;
+    bench.sampling_frequency_Hz = {rate_Hz, 0.0};
     ImpactModel model =
         impact_on(bench, {paper_core()}, {paper_cover()}, TargetKind::dashpot, 40.3);
     model.elements = 300;

@@ -16,7 +16,7 @@ inline Material paper_cover() {
 inline Bench paper_bench() {
   Bench bench;
   bench.kind = BenchKind::impact;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input.length_m = {3.0};
   bench.input.diameter_m = {0.027};
   bench.input.density_kg_m3 = {4420.0};

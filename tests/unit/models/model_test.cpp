@@ -22,7 +22,7 @@ namespace {
 Bench bench_of(BenchKind kind) {
   Bench bench;
   bench.kind = kind;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input.length_m = {2.0, 0.0};
   bench.input.diameter_m = {0.02, 0.0};
   bench.input.density_kg_m3 = {1180.0, 0.0};

@@ -15,7 +15,7 @@ namespace kolsky::testing {
 inline Bench ball_bench(const std::vector<double>& positions_m = {0.25}) {
   Bench bench;
   bench.kind = BenchKind::impact;
-  bench.sampling_frequency_Hz = 1e6;
+  bench.sampling_frequency_Hz = {1e6, 0.0};
   bench.input.length_m = {3.0};
   bench.input.diameter_m = {0.027};
   bench.input.density_kg_m3 = {4420.0};
