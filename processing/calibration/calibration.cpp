@@ -81,6 +81,22 @@ bool unexplained(const PartResult& part) {
   });
 }
 
+/// Whether nothing that is filed was held against anything.
+bool tells_nothing(const PartResult& part) {
+  return !part.areas.momentum &&
+         std::ranges::all_of(part.numbers, [](const CalibratedNumber& number) {
+           return number.standing == Standing::unseen || number.standing == Standing::unfiled ||
+                  number.standing == Standing::doubtful;
+         });
+}
+
+/// What else than numbers of the bench leaves records that none of them explain.
+std::string other_than_numbers(BarsLay lay) {
+  return lay == BarsLay::together ? "a specimen between the bars, or a bar model that is not theirs"
+                                  : "a far end that is not free (`kolsky identify bar` measures "
+                                    "what it returns), or a bar model that is not its own";
+}
+
 /// Whether channels taken as they read leave so much less than as filed that this is what was
 /// wrong. Numbers that were set free do not count for what is filed: a place that may go anywhere
 /// does what an exchange does.
@@ -207,10 +223,18 @@ Calibration calibrate(const std::vector<Shot>& shots, const CalibrationOptions& 
       result.reasons.push_back(
           name_of(part.lay) +
           (something_else
-               ? ": no numbers of the bench explain these records, so none is called wrong; a "
-                 "specimen between the bars, or a bar model that is not theirs, would leave that"
+               ? ": no numbers of the bench explain these records, so none is called wrong; " +
+                     other_than_numbers(part.lay) + ", would leave that"
                : ": no number of the bench explains all that is left; "
                  "`kolsky diagnose` looks for what else it may be"));
+    }
+    if (tells_nothing(fitted)) {
+      undecided = true;
+      result.reasons.push_back(
+          name_of(part.lay) +
+          ": these records tell no number of the bench to what is filed, so none is held against "
+          "anything; record longer, file what is known of the bars' moduli, or check that nothing "
+          "is between the bars");
     }
     if (fitted.areas.momentum) {
       const Measured& gain = fitted.areas.momentum->gain;

@@ -437,49 +437,73 @@ class PartFit {
     return path.back().imag() / modes.back().gamma.imag();
   }
 
-  void describe_speed() {
-    std::vector<Eigen::Index> places;
-    std::vector<double> values;
-    std::vector<double> per_theta;
-    const auto& composition = fitted_->studied.composition;
-    for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      const ModelNumber& number = numbers_[i];
-      if (number.of < CalibratedNumber::Of::elastic_modulus || number.bar == "output") {
-        continue;
+  /// What a modulus of the input bar, or with no number its density's factor, is in a fit.
+  struct OfSpeed {
+    Eigen::Index place = 0;
+    double value = 0.0;
+    double per_theta = 0.0;
+    bool modulus = false;
+  };
+
+  /// As `speed` takes them.
+  [[nodiscard]] std::vector<OfSpeed> numbers_of_speed() const {
+    const Composition& composition = fitted_->studied.composition;
+    const std::vector<double>& theta = fitted_->studied.fit.theta;
+    std::vector<OfSpeed> list;
+    for (const ModelNumber& number : numbers_) {
+      if (number.of >= CalibratedNumber::Of::elastic_modulus && number.bar != "output") {
+        const std::size_t place = place_of(composition, number);
+        const double scale = composition.numbers()[place].scale;
+        list.push_back({static_cast<Eigen::Index>(place),
+                        number_from(number, theta[place] * scale, 0.0).value,
+                        number.relative ? number.filed.value * scale : scale, true});
       }
-      const std::size_t place = place_of(composition, number);
-      const double scale = composition.numbers()[place].scale;
-      places.push_back(static_cast<Eigen::Index>(place));
-      values.push_back(number_from(number, fitted_->studied.fit.theta[place] * scale, 0.0).value);
-      per_theta.push_back(number.relative ? number.filed.value * scale : scale);
     }
-    values.push_back(1.0);
     for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
       const FreeNumber& free = composition.numbers()[i];
       if (composition.uses()[free.use].id() == "bar-density") {
-        places.push_back(static_cast<Eigen::Index>(i));
-        values.back() += fitted_->studied.fit.theta[i] * free.scale;
-        per_theta.push_back(free.scale);
+        list.push_back(
+            {static_cast<Eigen::Index>(i), 1.0 + theta[i] * free.scale, free.scale, false});
       }
     }
-    const auto count = static_cast<Eigen::Index>(places.size());
+    return list;
+  }
+
+  /// As the shots alone have it: that moduli are filed, or taken for exact, measures no speed.
+  void describe_speed() {
+    const Composition& composition = fitted_->studied.composition;
+    const ModelFit& fit = fitted_->studied.fit;
+    const std::vector<OfSpeed> numbers = numbers_of_speed();
+    std::vector<double> values;
+    for (const OfSpeed& number : numbers) {
+      values.push_back(number.value);
+    }
+    if (numbers.empty() || numbers.back().modulus) {
+      values.push_back(1.0);  // the density's factor
+    }
     const double at = speed(values);
-    Eigen::VectorXd slope(count);
-    Eigen::MatrixXd covariance(count, count);
-    for (Eigen::Index a = 0; a < count; ++a) {
-      const auto i = static_cast<std::size_t>(a);
+    Eigen::VectorXd weight = weights(composition);
+    Eigen::VectorXd pull = Eigen::VectorXd::Zero(weight.size());
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(weight.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const Eigen::Index place = numbers[i].place;
+      const auto k = static_cast<std::size_t>(place);
       std::vector<double> moved = values;
       const double step = 1e-4 * values[i];
       moved[i] += step;
-      slope[a] = (speed(moved) - at) / step * per_theta[i];
-      for (Eigen::Index b = 0; b < count; ++b) {
-        covariance(a, b) =
-            fitted_->studied.fit.covariance(places[i], places[static_cast<std::size_t>(b)]);
+      slope[place] = (speed(moved) - at) / step * numbers[i].per_theta;
+      if (numbers[i].modulus) {
+        const FreeNumber& free = composition.numbers()[k];
+        pull[place] = weight[place] * (fit.theta[k] - free.prior_mean / free.scale);
+        weight[place] = 0.0;
       }
     }
+    Eigen::MatrixXd without = fit.jacobian.transpose() * fit.jacobian;
+    without.diagonal() += weight;
+    const Eigen::VectorXd of_slope = solve_symmetric(without, slope);
+    const double variance = std::max(0.0, slope.dot(of_slope)) * fitted_->widening();
     result_.wave_speed_at_Hz = kSpeedAt_Hz;
-    result_.wave_speed_m_per_s = {
-        at, std::sqrt(std::max(0.0, slope.dot(covariance * slope) * fitted_->widening()))};
+    result_.wave_speed_m_per_s = {at + of_slope.dot(pull), std::sqrt(variance)};
   }
 
   void describe_null_directions() {

@@ -80,7 +80,8 @@ void take_in(const std::vector<const BarFit*>& others, BarFit& fit) {
 std::vector<FittedNumber> over_shots(const BarFit& fit) {
   std::vector<FittedNumber> numbers = fit.parameters;
   const auto count = static_cast<double>(fit.shots.size());
-  for (std::size_t m = 0; m < numbers.size(); ++m) {
+  // What stands for no loss no shot has by itself.
+  for (std::size_t m = 0; m < (fit.lossless ? 1 : numbers.size()); ++m) {
     double sum = 0.0;
     double squares = 0.0;
     for (const ShotEstimate& shot : fit.shots) {
@@ -209,7 +210,7 @@ const BarFit* or_lossless(const BarFit* best, Explanations& explanations) {
   if (loss_stands_out(*best)) {
     return best;
   }
-  const BarFit* lossless = explanations.at({best->theory, best->solid, best->far_end, true});
+  const BarFit* lossless = explanations.lossless_beside(*best);
   return lossless != nullptr && lossless->log_evidence > best->log_evidence ? lossless : best;
 }
 

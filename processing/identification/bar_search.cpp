@@ -391,6 +391,13 @@ bool may_be_elastic(const BarTheory& theory) {
   return theory.solid == SolidKind::three_element && !theory.lossless;
 }
 
+std::vector<double> elastic_start(std::vector<double> at, double E_Pa) {
+  at[0] = std::log(E_Pa);
+  at[1] = at[0] + std::log(kUnseen);
+  at[2] = at[1] + std::log(kTypicalTime_s);
+  return at;
+}
+
 std::unique_ptr<BarSearch> search_from_elastic(const BarData& data, const BarTheory& theory) {
   BarTheory elastic_theory = theory;
   elastic_theory.lossless = true;

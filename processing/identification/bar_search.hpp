@@ -88,6 +88,10 @@ class BarSearch {
                                                       const std::vector<double>& start,
                                                       double hopeless = HUGE_VAL);
 
+/// A place of three elements, in BarModel's parameters, with a solid of this modulus that loses
+/// nothing.
+[[nodiscard]] std::vector<double> elastic_start(std::vector<double> at, double E_Pa);
+
 /// Where a bar shows no loss, its retardation can be anything and a search of three elements may
 /// not end; it does from the elastic bar.
 [[nodiscard]] bool may_be_elastic(const BarTheory& theory);

@@ -42,6 +42,13 @@ void warn_of_misfit(const BarFit& fit, const std::string& name,
   }
 }
 
+std::string as_good_as_elastic(const BarFit& three) {
+  constexpr double kKnown = 0.02;
+  const FittedNumber& E1 = three.parameters.front();
+  return E1.sd < kKnown * E1.value ? "the bar is as good as elastic with E1"
+                                   : "nor is E1 by itself: J at low frequencies is 1/E1 + 1/E2";
+}
+
 void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warnings) {
   const BarFit& three = result.three_element;
   warn_of_misfit(three, "three elements", warnings);
@@ -53,7 +60,8 @@ void warn_of_fit(const BarIdentification& result, std::vector<std::string>& warn
                            ? "E2 and eta2 are not determined: they stand for a loss, and there is "
                              "none"
                            : "next to no loss stands out of the noise: E2 and eta2 are not "
-                             "determined; the bar is as good as elastic with E1");
+                             "determined; " +
+                                 as_good_as_elastic(three));
     return;
   }
   for (std::size_t i = 0; i < three.parameters.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "processing/base/error.hpp"
 
@@ -121,6 +122,17 @@ void Explanations::start_roughly(Entry& entry) {
   }
   if (!entry.search) {
     search_roughly(entry, {});
+    search_from_filed(entry);
+  }
+}
+
+/// Pulses hardly out of their noise rise anywhere: a search from their speed ends a period off.
+void Explanations::search_from_filed(Entry& entry) {
+  constexpr double kLeavesMuch = 1.5;
+  const auto& filed_Pa = data_.bench().input.youngs_modulus_Pa;
+  if (filed_Pa && entry.search && entry.theory.solid == SolidKind::three_element &&
+      entry.rough_chi2 > kLeavesMuch * expected_chi2()) {
+    search_roughly(entry, elastic_start(entry.search->at(), *filed_Pa));
   }
 }
 
@@ -188,9 +200,13 @@ double Explanations::hopeless() const {
 }
 
 double Explanations::left_over_noise() const {
-  const double expected = static_cast<double>(data_.judged_path().size()) * 2.0 *
-                          static_cast<double>(data_.gauges() - 1);
-  return leader_->rough_chi2 / expected;
+  return leader_->rough_chi2 / expected_chi2();
+}
+
+/// Of noise alone, all shots as one.
+double Explanations::expected_chi2() const {
+  return static_cast<double>(data_.judged_path().size()) * 2.0 *
+         static_cast<double>(data_.gauges() - 1);
 }
 
 double Explanations::behind(const BarTheory& theory) const {
@@ -342,6 +358,22 @@ const BarFit* Explanations::branch_more(const BarFit& three_element, const BarFi
     }
   }
   return entry.fit ? &*entry.fit : nullptr;
+}
+
+const BarFit* Explanations::lossless_beside(const BarFit& lossy) {
+  constexpr double kWithin = 0.25;  // of the band: where pulses have most of their power
+  const BarTheory theory{lossy.theory, lossy.solid, lossy.far_end, true};
+  const BarFit* fit = at(theory);
+  if (fit == nullptr || chi2_of(*fit) > chi2_of(lossy) + kFarBehind) {
+    const auto solid = make_solid(lossy.solid, values_of(lossy.parameters));
+    const Complex s(0.0, 2.0 * std::numbers::pi * kWithin * lossy.band_limit_Hz);
+    const std::vector<double> start = elastic_start(lossy.at, 1.0 / std::abs(solid->at(s)));
+    try_from(*find(theory), [&](const BarData& data, const BarTheory& other) {
+      return rough_search(data, other, start);
+    });
+    fit = find(theory)->fit ? &*find(theory)->fit : nullptr;
+  }
+  return fit;
 }
 
 const BarFit* Explanations::again(const BarTheory& theory, const BarFit& partial) {

@@ -60,6 +60,11 @@ class Explanations {
   /// three elements. Null where there is no such family, or it cannot be fitted.
   [[nodiscard]] const BarFit* branch_more(const BarFit& three_element, const BarFit& fewer);
 
+  /// The same without any loss; where that is far behind also from how stiff the lossy one is: what
+  /// a loss too quick for the band leaves is an elastic bar, and weak pulses' speed may be far off.
+  /// Null where it cannot be fitted.
+  [[nodiscard]] const BarFit* lossless_beside(const BarFit& lossy);
+
   /// An end that returns all or nothing once more, from where one that may return anything is best:
   /// it holds the others within it.
   [[nodiscard]] const BarFit* again(const BarTheory& theory, const BarFit& partial);
@@ -87,6 +92,8 @@ class Explanations {
   std::vector<Entry*> add_new(const std::vector<BarTheory>& theories);
   Entry& rough(const BarTheory& theory);
   void start_roughly(Entry& entry);
+  void search_from_filed(Entry& entry);
+  [[nodiscard]] double expected_chi2() const;
   void lead_with(Entry& entry);
   void compare(Entry& entry);
   void compare_from(Entry& entry, const BarFit& three_element,

@@ -174,6 +174,18 @@ void require_specimen_at_end(const Bench& bench, const RecordedWavesOptions& opt
   }
 }
 
+void require_gauges_before_specimen(const SeparationRecords& records, const Bench& bench,
+                                    const RecordedWavesOptions& options) {
+  if (bench.kind == BenchKind::shpb && options.bar == "input" && !options.equilibrium &&
+      records.names.size() < 2) {
+    throw InputError("gauges",
+                     "of the input bar are too few to separate left- and right-going waves before "
+                     "a specimen",
+                     "take it for in equilibrium (--equilibrium), ask for the output bar "
+                     "(--bar output), or give two gauges");
+  }
+}
+
 void require_whole(const Shot& shot) {
   if (const std::string reason = unusable_because(shot); !reason.empty()) {
     throw InputError("record", "cannot be used: " + reason, kRepeatOrLeaveOut);
@@ -202,6 +214,7 @@ RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& optio
   require_whole(shot);
   const FirstSeen first = first_seen(shot, options.bar);
   SeparationRecords records(shot, options.bar, [&](const Gauge&) { return first.quiet; });
+  require_gauges_before_specimen(records, shot.bench, options);
   const BarModel model = bar_model_of(shot, bar, options);
   const FreeEnds ends = ends_of(shot.bench, bar, options);
   const double period_s = shot.rate.period_s();

@@ -11,6 +11,7 @@
 #include "processing/reduction/ball/ball_reducer.hpp"
 #include "processing/reduction/gauge_order.hpp"
 #include "processing/reduction/gauge_sign.hpp"
+#include "processing/reduction/gauge_silent.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/recent.hpp"
 #include "processing/reduction/requested.hpp"
@@ -60,6 +61,7 @@ void ask_how_gauges_are_connected(const Shot& shot, Reduction& reduction) {
   const bool adds_up = energy != nullptr && energy->verdict == Verdict::pass;
   if (!adds_up || quality.verdict() == Verdict::fail) {
     tell(gauge_order(shot), quality);
+    tell(gauge_silent(shot), quality);
   }
 }
 

@@ -48,8 +48,8 @@ std::string quote_text(const Quotable& part) {
 /// Why the curve must not be quoted at all; empty where it may.
 std::string curve_in_doubt(const Reduction& r) {
   // Causes before what follows from them.
-  for (const char* name :
-       {"quiet_start", "gauge_sign", "gauge_order", "bar_strain", "specimen_strain"}) {
+  for (const char* name : {"quiet_start", "gauge_sign", "gauge_order", "gauge_silent", "bar_strain",
+                           "specimen_strain"}) {
     const Check* check = r.quality.find(name);
     if (check != nullptr && check->verdict == Verdict::fail) {
       return check->text;

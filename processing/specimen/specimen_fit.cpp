@@ -22,6 +22,7 @@ constexpr double kSameModel = 4.0;
 struct Fitted {
   ShpbTheory theory;
   SpecimenMinimum minimum;
+  Loss loss = Loss::open;
 };
 
 std::vector<SpecimenWaves> kinds_of_waves(const SpecimenFitOptions& options,
@@ -73,7 +74,8 @@ class TheoryChoice {
   /// What was fitted, to other records of the same shots: a longer part of them.
   [[nodiscard]] SpecimenMinimum again(SpecimenLikelihood& other, const Fitted& fitted) {
     if (three_element_ == nullptr) {
-      return SpecimenSearch(other, solid_, fitted.theory).minimise(fitted.minimum.parameters);
+      return SpecimenSearch(other, solid_, fitted.theory, fitted.loss)
+          .minimise(fitted.minimum.parameters);
     }
     const Fitted beside{fitted.theory, three_element_->minimum_under(fitted.theory)};
     return search_family(other, solid_, fitted.theory, three_element_->again(other, beside));
@@ -109,18 +111,19 @@ class TheoryChoice {
 
   [[nodiscard]] SpecimenMinimum search(const ShpbTheory& theory) {
     return three_element_ == nullptr
-               ? search_from_starts(theory)
+               ? search_from(starts_, theory, options_.lossless ? Loss::none : Loss::open)
                : search_family(likelihood_, solid_, theory, three_element_->minimum_under(theory));
   }
 
   /// From where the best theory so far ended. Before there is one, from the grid's places until
   /// two of them lead to the same; where none do, the least chi2.
-  [[nodiscard]] SpecimenMinimum search_from_starts(const ShpbTheory& theory) {
+  [[nodiscard]] SpecimenMinimum search_from(const std::vector<std::vector<double>>& starts,
+                                            const ShpbTheory& theory, Loss loss) {
     constexpr double kSame = 0.1;
-    SpecimenSearch search(likelihood_, solid_, theory);
+    SpecimenSearch search(likelihood_, solid_, theory, loss);
     std::optional<SpecimenMinimum> least;
     std::optional<InputError> refusal;
-    for (const std::vector<double>& start : starts_) {
+    for (const std::vector<double>& start : starts) {
       try {
         SpecimenMinimum found = search.minimise(start);
         const bool same = least && std::abs(found.chi2 - least->chi2) < kSame;
@@ -161,13 +164,39 @@ class TheoryChoice {
     }
   }
 
+  /// A specimen that loses nothing, where that leaves little but noise: a loss that is not there is
+  /// sought without end, and a theory that is wrong would be taken for want of the right one.
+  bool attempt_without_loss(const ShpbTheory& theory) {
+    constexpr double kFits = 1.5;
+    if (solid_ != SolidKind::three_element || options_.lossless) {
+      return false;
+    }
+    try {
+      const auto starts = SpecimenSearch(likelihood_, solid_, theory, Loss::none).starts();
+      SpecimenMinimum found = search_from(starts, theory, Loss::none);
+      const auto judged =
+          static_cast<double>(likelihood_.shots() * likelihood_.residuals_per_shot());
+      if (found.chi2 < kFits * judged) {
+        fits_.push_back({theory, std::move(found), Loss::none});
+        return true;
+      }
+    } catch (const InputError&) {
+      // Then it is not that either: what is said is why a loss was not found.
+      return false;
+    }
+    return false;
+  }
+
   void attempt(const ShpbTheory& theory) {
     try {
-      fits_.push_back({theory, search(theory)});
+      fits_.push_back({theory, search(theory), options_.lossless ? Loss::none : Loss::open});
       if (three_element_ == nullptr && (fits_.size() == 1 || best().theory == theory)) {
         starts_.insert(starts_.begin(), fits_.back().minimum.parameters);
       }
     } catch (const InputError& error) {
+      if (attempt_without_loss(theory)) {
+        return;
+      }
       // One set of assumptions may fail to converge while another describes the data.
       refused_.push_back(
           {theory, std::numeric_limits<double>::quiet_NaN(), solid_, error.problem()});
@@ -279,6 +308,9 @@ void fill_numbers(const SpecimenLikelihood& likelihood, const SpecimenMinimum& m
   const std::vector<double> values = moduli(minimum);
   fit.covariance = covariance_of(fit.solid, minimum, std::max(1.0, fit.chi2_reduced));
   fit.parameters = numbers_of(fit.solid, minimum, fit.covariance);
+  for (std::size_t i = 1; fit.lossless && i < fit.parameters.size(); ++i) {
+    fit.parameters[i].sd = fit.parameters[i].value;
+  }
   const auto& unknowns = likelihood.unknowns();
   fit.by_bench.assign(family.size(), std::vector<double>(unknowns.size()));
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
@@ -402,7 +434,13 @@ void fill_spectrum(SpecimenLikelihood& likelihood, const SpecimenMinimum& minimu
 }
 
 void warn(SpecimenFit& fit) {
-  fit.warnings = warnings_of(fit.parameters);
+  if (fit.lossless) {
+    fit.warnings.emplace_back(
+        "no loss stands out of the noise: E2_Pa and eta2_Pa_s are not determined; the specimen is "
+        "as good as elastic with E1_Pa");
+  } else {
+    fit.warnings = warnings_of(fit.parameters);
+  }
   if (fit.three_element && fit.three_element->chi2_gain < kWorthwhile) {
     fit.warnings.push_back(no_more_than_three_elements(fit));
   }
@@ -535,6 +573,7 @@ SpecimenFit fit_specimen(const std::vector<Shot>& shots, const BarPrior& bars,
   const Decision decision = decide(windows, options, fit);
   const SpecimenMinimum minimum = quickest_first(decision.solid, decision.fitted.minimum);
   fit.solid = decision.solid;
+  fit.lossless = decision.fitted.loss == Loss::none;
   fit.theory = decision.fitted.theory;
   fit.tried = decision.tried;
   fit.to_the_end = decision.to_the_end;

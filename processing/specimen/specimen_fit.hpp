@@ -18,6 +18,8 @@ struct SpecimenFitOptions {
   /// Judged after the pulse's foot at the first station. None: until a far end answers, and on to
   /// the record's end where the same model holds there too.
   std::optional<double> after_foot_s;
+  /// Three elements without any loss; else only where a loss is sought without end.
+  bool lossless = false;
   /// Three elements' parameters to begin from; none: a coarse grid's best places.
   std::vector<double> start{};
 };
@@ -50,6 +52,7 @@ struct CompliancePoint {
 /// The maximum-likelihood fit of a specimen's compliance to whole gauge records of all shots.
 struct SpecimenFit {
   SolidKind solid = SolidKind::three_element;
+  bool lossless = false;  ///< as good as elastic with E1: what else there is stands for no branch
   std::vector<FittedNumber> parameters;         ///< of the solid, in its order
   std::vector<std::vector<double>> covariance;  ///< of the solid's parameters
   std::vector<FittedNumber> bench;  ///< moves of the known unknowns: relative, or in metres

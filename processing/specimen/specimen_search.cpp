@@ -22,6 +22,10 @@ constexpr double kLongestStep = 1.5;     // of a logarithm
 constexpr double kDone = 1e-3;           // of chi2: far below what one deviation changes
 constexpr double kUnknownLog = 5.0;      // deviation of a logarithm that nothing is known of
 constexpr std::size_t kMostStarts = 5;
+/// E2 over E1 of what counts as elastic, its time, and how tightly both are held.
+constexpr double kUnseen = 1e6;
+constexpr double kUnseenTime_s = 1e-5;
+constexpr double kHeld = 1e-3;
 
 /// A solid of the family near the three-element one with these numbers.
 std::vector<double> near_three_element(SolidKind kind, double E1, double E2, double tau_s) {
@@ -46,10 +50,12 @@ std::vector<double> near_three_element(SolidKind kind, double E1, double E2, dou
 
 }  // namespace
 
-SpecimenSearch::SpecimenSearch(SpecimenLikelihood& likelihood, SolidKind solid, ShpbTheory theory)
+SpecimenSearch::SpecimenSearch(SpecimenLikelihood& likelihood, SolidKind solid, ShpbTheory theory,
+                               Loss loss)
     : likelihood_(likelihood),
       solid_(solid),
       theory_(theory),
+      loss_(loss),
       solids_(static_cast<Eigen::Index>(parameters_of(solid).size())) {}
 
 SpecimenSearch::Point SpecimenSearch::point(const Eigen::VectorXd& x) const {
@@ -66,15 +72,20 @@ Eigen::MatrixXd SpecimenSearch::root(const Eigen::VectorXd& x) {
   return likelihood_.covariance_root(theory_, *make_solid(solid_, p.parameters), p.moves);
 }
 
-/// Whitened, with the moves themselves (their priors) at the end.
+/// Whitened, with the moves themselves (their priors) at the end, and what holds a loss at none.
 Eigen::VectorXd SpecimenSearch::residuals(const Eigen::VectorXd& x, const Eigen::MatrixXd& root) {
   const Point p = point(x);
   likelihood_.residuals(theory_, *make_solid(solid_, p.parameters), p.moves, raw_);
   root.triangularView<Eigen::Lower>().solveInPlace(raw_);
   const Eigen::Index moves = x.size() - solids_;
-  Eigen::VectorXd out(raw_.size() + moves);
+  const Eigen::Index held = loss_ == Loss::none ? 2 : 0;
+  Eigen::VectorXd out(raw_.size() + moves + held);
   out.head(raw_.size()) = raw_.reshaped();
-  out.tail(moves) = x.tail(moves);
+  out.segment(raw_.size(), moves) = x.tail(moves);
+  if (loss_ == Loss::none) {
+    out.tail(2) << (x[1] - x[0] - std::log(kUnseen)) / kHeld,
+        (x[2] - x[1] - std::log(kUnseenTime_s)) / kHeld;
+  }
   return out;
 }
 
@@ -106,8 +117,10 @@ std::vector<std::vector<double>> SpecimenSearch::starts() {
   std::vector<std::pair<double, std::vector<double>>> found;
   for (double E1 = 3e6; E1 < 1e12; E1 *= std::sqrt(10.0)) {
     std::pair<double, std::vector<double>> best{std::numeric_limits<double>::infinity(), {}};
-    for (const double share : {0.3, 1.0, 5.0}) {
-      for (const double tau_s : {5e-6, 20e-6, 80e-6}) {
+    const bool lossless = loss_ == Loss::none;
+    for (const double share : lossless ? std::vector{kUnseen} : std::vector{0.3, 1.0, 5.0}) {
+      for (const double tau_s :
+           lossless ? std::vector{kUnseenTime_s} : std::vector{5e-6, 20e-6, 80e-6}) {
         const auto solid = near_three_element(solid_, E1, share * E1, tau_s);
         Eigen::VectorXd x = Eigen::VectorXd::Zero(solids_ + moves);
         for (Eigen::Index i = 0; i < solids_; ++i) {

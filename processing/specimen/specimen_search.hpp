@@ -21,12 +21,18 @@ struct LogBounds {
   std::vector<double> upper;
 };
 
+/// Whether a solid may lose anything; one that does not is three elements with a branch that hardly
+/// gives way.
+enum class Loss { open, none };
+
 /// Minimises the whitened residuals with the priors of the known unknowns, by Levenberg's and
 /// Marquardt's method. The weights are taken anew after every step and held while it is chosen:
 /// that is the profile over the free sources to within the square of noise over signal.
 class SpecimenSearch {
  public:
-  SpecimenSearch(SpecimenLikelihood& likelihood, SolidKind solid, ShpbTheory theory);
+  /// @pre three elements where there is no loss
+  SpecimenSearch(SpecimenLikelihood& likelihood, SolidKind solid, ShpbTheory theory,
+                 Loss loss = Loss::open);
 
   /// The best places of a coarse grid over moduli and retardation times, each of another modulus,
   /// the best first. More than one, for the weights are not known yet: by plain misfit alone the
@@ -79,6 +85,7 @@ class SpecimenSearch {
   SpecimenLikelihood& likelihood_;
   SolidKind solid_;
   ShpbTheory theory_;
+  Loss loss_;
   Eigen::Index solids_;
   Eigen::MatrixXd raw_;
 };

@@ -37,14 +37,17 @@ std::size_t quiet_samples(const Shot& shot, const std::vector<std::size_t>& firs
   return quiet;
 }
 
+/// What draws move.
+enum class Moves { noise, noise_and_bench };
+
 class Repeater {
  public:
   Repeater(const std::vector<Shot>& shots, const std::vector<std::size_t>& first_gauges,
-           const BarPrior& bars, Identify identify)
-      : shots_(shots),
-        filed_{shots.front().bench, bars.material},
-        sources_(uncertainty_sources(shots.front().bench, bars)),
-        identify_(std::move(identify)) {
+           const BarPrior& bars, Identify identify, Moves moves = Moves::noise_and_bench)
+      : shots_(shots), filed_{shots.front().bench, bars.material}, identify_(std::move(identify)) {
+    if (moves == Moves::noise_and_bench) {
+      sources_ = uncertainty_sources(shots.front().bench, bars);
+    }
     for (const Shot& shot : shots) {
       quiet_.push_back(quiet_samples(shot, first_gauges));
     }
@@ -156,9 +159,37 @@ void hold_against(const std::vector<FittedNumber>& stated, DrawnNumbers& drawn) 
   }
 }
 
+/// As an estimate was made.
+SpectralOptions as_estimated(const SpectralEstimate& estimate, WaveTheory bars) {
+  SpectralOptions options;
+  options.bars = bars;
+  options.band_limit_Hz = estimate.band_limit_Hz;
+  options.separation = estimate.separation == Separation::equilibrium ? Separation::equilibrium
+                                                                      : Separation::as_needed;
+  return options;
+}
+
+/// How far draws lie from what they scatter about, as logarithms: one that runs away counts as one
+/// that is off by a factor of twenty.
+double scatter_of_logs(const std::vector<Draw>& draws, std::size_t number, double value) {
+  constexpr double kMost = 3.0;
+  double squares = 0.0;
+  for (const Draw& draw : draws) {
+    squares += std::pow(std::min(kMost, std::abs(std::log(draw.spectral[number] / value))), 2);
+  }
+  return std::sqrt(squares / static_cast<double>(draws.size()));
+}
+
+/// Of what loses nothing E1 alone: the rest stands for none.
+std::vector<FittedNumber> told_numbers(std::vector<FittedNumber> numbers, bool lossless) {
+  numbers.resize(lossless ? 1 : numbers.size());
+  return numbers;
+}
+
 SpecimenFitOptions as_fitted(const SpecimenFit& fit) {
   SpecimenFitOptions options;
   options.solid = fit.solid;
+  options.lossless = fit.lossless;
   options.bars = fit.theory.bars;
   options.specimen = fit.theory.specimen;
   options.band_limit_Hz = fit.band_limit_Hz;
@@ -177,14 +208,8 @@ FitDraws draw_specimen_fits(const std::vector<Shot>& shots, const BarPrior& bars
                             const SpecimenFit& fit, const SpectralEstimate* spectral,
                             const FitDrawOptions& options, const Workers& workers) {
   const SpecimenFitOptions fitted = as_fitted(fit);
-  SpectralOptions by_spectrum;
-  by_spectrum.bars = fit.theory.bars;
-  if (spectral != nullptr) {
-    by_spectrum.band_limit_Hz = spectral->band_limit_Hz;
-    by_spectrum.separation = spectral->separation == Separation::equilibrium
-                                 ? Separation::equilibrium
-                                 : Separation::as_needed;
-  }
+  const SpectralOptions by_spectrum =
+      spectral != nullptr ? as_estimated(*spectral, fit.theory.bars) : SpectralOptions{};
   const Repeater repeater(
       shots, shpb_stations(shots.front().bench).front().channels, bars,
       [&](const std::vector<Shot>& recorded, const Material& moved) {
@@ -199,12 +224,37 @@ FitDraws draw_specimen_fits(const std::vector<Shot>& shots, const BarPrior& bars
         return draw;
       });
   const std::vector<Draw> draws = drawn(repeater, options, workers);
-  FitDraws result{summary(draws, &Draw::fit, fit.parameters), std::nullopt};
-  hold_against(fit.parameters, result.fit);
+  const std::vector<FittedNumber> numbers = told_numbers(fit.parameters, fit.lossless);
+  FitDraws result{summary(draws, &Draw::fit, numbers), std::nullopt};
+  hold_against(numbers, result.fit);
   if (spectral != nullptr) {
     result.spectral = summary(draws, &Draw::spectral, spectral->parameters);
   }
   return result;
+}
+
+void take_in_noise(const std::vector<Shot>& shots, const Material& bars, WaveTheory theory,
+                   SpectralEstimate& estimate, const Workers& workers) {
+  constexpr std::size_t kDraws = 60;
+  const SpectralOptions options = as_estimated(estimate, theory);
+  const Repeater repeater(
+      shots, shpb_stations(shots.front().bench).front().channels, BarPrior(bars),
+      [&](const std::vector<Shot>& recorded, const Material& moved) {
+        return Draw{
+            {}, found_by([&] { return estimate_spectrum(recorded, moved, options).parameters; })};
+      },
+      Moves::noise);
+  FitDrawOptions drawing;
+  drawing.draws = kDraws;
+  std::vector<Draw> draws = drawn(repeater, drawing, workers);
+  std::erase_if(draws, [](const Draw& draw) { return draw.spectral.empty(); });
+  if (draws.size() < kFewestDraws) {
+    return;
+  }
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    FittedNumber& number = estimate.parameters[i];
+    number.sd = std::max(number.sd, number.value * scatter_of_logs(draws, i, number.value));
+  }
 }
 
 FitDraws draw_bar_fits(const std::vector<Shot>& shots, const BarFit& fit,
@@ -219,10 +269,7 @@ FitDraws draw_bar_fits(const std::vector<Shot>& shots, const BarFit& fit,
                     }),
                     {}};
       });
-  std::vector<FittedNumber> numbers = fit.parameters;
-  if (fit.lossless) {
-    numbers.resize(1);
-  }
+  const std::vector<FittedNumber> numbers = told_numbers(fit.parameters, fit.lossless);
   FitDraws result{summary(drawn(repeater, options, workers), &Draw::fit, numbers), std::nullopt};
   hold_against(numbers, result.fit);
   return result;

@@ -59,4 +59,12 @@ struct FitDraws {
 [[nodiscard]] FitDraws draw_bar_fits(const std::vector<Shot>& shots, const BarFit& fit,
                                      const FitDrawOptions& options, const Workers& workers);
 
+/// Deviations of what strain over stress (25) finds, at least those that the gauges' noise makes by
+/// itself: 60 draws of it, the bench as filed. How far points lie off the fit says little of it,
+/// for neighbouring ones are off together, nor do two or three shots by how they scatter: stated
+/// so, deviations of one or two shots were a fifth of the errors, of three a third.
+/// @param theory  of waves in the bars, by which it was estimated
+void take_in_noise(const std::vector<Shot>& shots, const Material& bars, WaveTheory theory,
+                   SpectralEstimate& estimate, const Workers& workers);
+
 }  // namespace kolsky

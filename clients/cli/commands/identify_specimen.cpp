@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 #include <utility>
@@ -18,6 +19,8 @@
 #include "drivers/files/settings/material_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
+#include "processing/reduction/gauge_order.hpp"
+#include "processing/reduction/gauge_sign.hpp"
 #include "processing/specimen/fit_warnings.hpp"
 #include "processing/specimen/shpb_records.hpp"
 
@@ -121,12 +124,55 @@ BarPrior bars_of(const IdentifiedSpecimen& outcome, const Settings& settings) {
   }
 }
 
+/// What every shot says against the bench's gauges; empty where they read as filed.
+std::string misread_by(const std::vector<Shot>& shots) {
+  const auto said = [&](const auto& check_of) {
+    std::string text;
+    for (const Shot& shot : shots) {
+      const std::optional<Check> check = check_of(shot);
+      if (!check || check->verdict != Verdict::fail) {
+        return std::string();
+      }
+      text = check->text;
+    }
+    return text;
+  };
+  const std::string sign = said(gauge_sign);
+  return sign.empty() ? said(gauge_order) : sign;
+}
+
+/// Gauges at which no shot shows a pulse.
+std::string silent_in(const std::vector<Shot>& shots) {
+  std::string names;
+  const std::vector<Gauge>& gauges = shots.front().bench.gauges;
+  for (std::size_t i = 0; i < gauges.size(); ++i) {
+    if (std::ranges::all_of(shots,
+                            [i](const Shot& shot) { return strain_of_gauge(shot, i).empty(); })) {
+      names += (names.empty() ? "" : ", ") + gauges[i].name;
+    }
+  }
+  return names.empty() ? names : "no pulse stands out of the noise at " + names;
+}
+
+/// What a fit makes of gauges that read nothing, or not as filed, is no specimen.
+void require_gauges_as_filed(const std::vector<Shot>& shots,
+                             const std::vector<std::string>& captures) {
+  std::string problem = misread_by(shots);
+  if (problem.empty()) {
+    problem = silent_in(shots);
+  }
+  if (!problem.empty()) {
+    throw in_captures({"gauges", problem, "correct the bench file, or check cables and channels"},
+                      captures);
+  }
+}
+
 /// A fit that found nothing, with what the histories say of why.
 InputError with_cause(const InputError& error, const std::vector<Shot>& shots, const Material& bars,
                       const SpecimenFitOptions& options) {
+  std::string cause;
   SpectralOptions spectral;
   spectral.bars = options.bars.value_or(spectral.bars);
-  std::string cause;
   try {
     cause = gives_energy_back(estimate_spectrum(shots, bars, spectral).spectrum);
   } catch (const InputError&) {
@@ -150,6 +196,7 @@ IdentifiedSpecimen identify(const Settings& settings) {
   options.most_band_Hz = known_band_Hz(outcome.shots.front().bench, prior.material);
   prior.softening_per_K = settings.softening_per_K.value_or(prior.softening_per_K);
   require_band_known(prior.material, settings.band_limit_Hz, "the capture's bar model");
+  require_gauges_as_filed(outcome.shots, settings.captures);
   try {
     outcome.fit = fit_specimen(outcome.shots, prior, options);
   } catch (const InputError& error) {
@@ -165,6 +212,7 @@ IdentifiedSpecimen identify(const Settings& settings) {
   spectral.bars = outcome.fit.theory.bars;
   try {
     outcome.spectral = estimate_spectrum(outcome.shots, prior.material, spectral);
+    take_in_noise(outcome.shots, prior.material, spectral.bars, *outcome.spectral, all_cores());
     for (std::string& warning : contradiction(outcome.fit, outcome.spectral->parameters)) {
       outcome.spectral->warnings.push_back(std::move(warning));
     }

@@ -73,6 +73,11 @@ Asked asked_by(const Settings& settings, const std::optional<BarModelFile>& bars
   }
   if (settings.softening_per_K) {
     require_softening(kName, *settings.softening_per_K);
+    if (!settings.uncertainty && !settings.draws) {
+      throw InputError(std::string(kName) + ": --softening",
+                       "counts with --uncertainty only, which is not asked for",
+                       "give --uncertainty beside it, or leave it out");
+    }
   }
   return asked;
 }

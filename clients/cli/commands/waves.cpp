@@ -115,15 +115,21 @@ Told tell(const Settings& settings) {
   return told;
 }
 
+/// As far as the records tell it.
+std::vector<double> known_part(const Told& told, const std::vector<double>& history) {
+  return {history.begin(), history.begin() + static_cast<std::ptrdiff_t>(told.waves.known)};
+}
+
 JsonValue describe(const Told& told) {
   JsonList places;
   for (const WavesAtPlace& place : told.waves.places) {
-    places.push_back(JsonObject{{"position_m", place.position_m},
-                                {"right_going", place.waves.right_going},
-                                {"left_going", place.waves.left_going},
-                                {"stress_Pa", place.waves.stress_Pa},
-                                {"stress_sd_Pa", place.stress_noise_Pa},
-                                {"velocity_m_per_s", place.waves.velocity_m_per_s}});
+    places.push_back(
+        JsonObject{{"position_m", place.position_m},
+                   {"right_going", known_part(told, place.waves.right_going)},
+                   {"left_going", known_part(told, place.waves.left_going)},
+                   {"stress_Pa", known_part(told, place.waves.stress_Pa)},
+                   {"stress_sd_Pa", known_part(told, place.stress_noise_Pa)},
+                   {"velocity_m_per_s", known_part(told, place.waves.velocity_m_per_s)}});
   }
   JsonList blind;
   for (const BlindFrequency& frequency : told.waves.blind) {
@@ -136,8 +142,8 @@ JsonValue describe(const Told& told) {
         {"gauge", gauge.gauge}, {"left_rms", gauge.left_rms}, {"noise_rms", gauge.noise_rms}});
   }
   std::vector<double> time_s;
-  time_s.reserve(told.shot.samples());
-  for (std::size_t n = 0; n < told.shot.samples(); ++n) {
+  time_s.reserve(told.waves.known);
+  for (std::size_t n = 0; n < told.waves.known; ++n) {
     time_s.push_back(told.time_s(n));
   }
   return JsonObject{{"shot", told.shot.id},

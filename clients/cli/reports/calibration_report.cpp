@@ -176,8 +176,8 @@ std::string areas_text(const PulseAreas& areas) {
 
 std::string part_text(const PartResult& part, const Bench& bench) {
   std::string text = fmt::format(
-      "{}: {} shots{}, {} waves{}, reduced chi2 {:.4f} (as filed {:.4f})\n", name_of(part.lay),
-      part.shots, part.two_passes ? ", two passes at one gauge" : "",
+      "{}: {} shots{}, {} waves{}, reduced chi2 {:.4f} ({:.4f} within what is filed)\n",
+      name_of(part.lay), part.shots, part.two_passes ? ", two passes at one gauge" : "",
       part.exact_waves ? "exact" : "elementary", part.far_end_seen ? ", free far end" : "",
       part.chi2_reduced, part.chi2_reduced_as_filed);
   text += tells_speed(part)

@@ -87,7 +87,7 @@ std::string validity(const ReducedShot& reduced, const Terminal& terminal) {
 }
 
 // Where it is not as usual.
-std::string how_reduced(const Reduction& reduction) {
+std::string how_reduced(const Reduction& reduction, const Bench& bench) {
   std::string text;
   if (reduction.theory != WaveTheory::elementary) {
     text += report_row("dispersion", name_of(reduction.theory));
@@ -96,6 +96,9 @@ std::string how_reduced(const Reduction& reduction) {
     text += report_row("stress", fmt::format("{}{}{}", name_of(reduction.stress_from),
                                              reduction.corrections.any() ? ", corrected for " : "",
                                              fmt::join(names_of(reduction.corrections), ", ")));
+  }
+  if (reduction.corrections.radial_inertia && bench.specimen && !bench.specimen->poisson_ratio) {
+    text += report_row("Poisson's ratio", "0.5, that of constant volume: none is filed");
   }
   if (reduction.corrections.friction) {
     text += report_row("friction", fmt::format("{}, up to the strain's top: then faces slide back",
@@ -149,7 +152,7 @@ std::string report(const ReducedShot& reduced, const Terminal& terminal) {
   const bool has_loop = !reduced.reduction.stress_Pa.empty();
   if (has_loop) {
     text += numbers(reduced.reduction);
-    text += how_reduced(reduced.reduction);
+    text += how_reduced(reduced.reduction, reduced.shot.bench);
     text += validity(reduced, terminal);
   }
   if (reduced.uncertainty) {

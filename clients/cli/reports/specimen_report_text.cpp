@@ -88,7 +88,8 @@ std::string report(const IdentifiedSpecimen& outcome) {
                         with_unit(outcome.spectral->band_limit_Hz, "Hz"));
     text += table_of(outcome.spectral->parameters);
     text +=
-        "    these deviations hold scatter only, neither the bench's nor the bars': --draws has "
+        "    these deviations hold noise and scatter, neither the bench's nor the bars': --draws "
+        "has "
         "them\n";
     if (outcome.spectral->separation == Separation::equilibrium) {
       text += "    waves overlap: told apart by the output bar's force, as if in equilibrium\n";

@@ -204,8 +204,18 @@ TEST_F(SpecimenFiles, HaveNoScatterWhereThereIsOneShot) {
     }
   }
   EXPECT_TRUE(spectrum["J1_per_Pa"][0].is_number());
-  EXPECT_NE(kolsky(identify({"--bar-model", folder_ / "pmma.toml"})).out.find("scatter only"),
+  EXPECT_NE(kolsky(identify({"--bar-model", folder_ / "pmma.toml"})).out.find("noise and scatter"),
             std::string::npos);
+}
+
+TEST_F(SpecimenFiles, WhoseGaugesAreNotAsFiledAreNoSpecimen) {
+  folder_.write("turned.toml", replaced(kBench, "position_m_sd = 0.0001",
+                                        "position_m_sd = 0.0001\ninverted = true"));
+  const std::string turned = folder_ / "turned.h5";
+  (void)kolsky({"reduce", captures_.front(), "--bench", folder_ / "turned.toml", "--save", turned});
+  EXPECT_TRUE(
+      refused(kolsky({"identify", "specimen", turned, "--bar-model", folder_ / "pmma.toml"}),
+              {"g2 seems to read with the other sign", "inverted"}));
 }
 
 TEST_F(SpecimenFiles, GiveANewResultWithACorrectedBenchBesideTheOldOne) {

@@ -129,6 +129,38 @@ TEST(BarsTogether, ASpecimenBetweenThemIsNotLaidToTheBench) {
   EXPECT_NE(calibration.reasons.front().find("specimen"), std::string::npos);
 }
 
+// Moduli that are filed as exact, and are not, measure no speed.
+TEST(BarsTogether, TheSpeedIsMeasuredWhateverIsFiledOfTheModuli) {
+  testing::LinearShpb model = one_long_bar();
+  for (RodMaterial* rod : {&model.input, &model.output, &model.specimen}) {
+    rod->E1_Pa *= 1.0002;
+  }
+  CalibrationOptions options;
+  options.bars = BarPrior(paper_pmma());
+  const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 5), options);
+  const PartResult& part = calibration.parts.front();
+  const double speed = speed_m_per_s(model.input, part.wave_speed_at_Hz);
+  EXPECT_NEAR(part.wave_speed_m_per_s.value, speed, 4.0 * part.wave_speed_m_per_s.sd);
+  EXPECT_LT(part.wave_speed_m_per_s.sd, 1.0);
+  EXPECT_GT(part.wave_speed_m_per_s.sd, 0.01) << "known better than one gauge a bar can";
+}
+
+// Of a soft specimen between the bars, in records too short to show it, moduli take up everything:
+// nothing that is filed was held against anything.
+TEST(BarsTogether, WhatTellsNothingIsNoPass) {
+  const std::pair<double, double> records[] = {{100e-6, 550e-6}, {200e-6, 650e-6}};
+  for (const auto& [pre_s, record_s] : records) {
+    testing::LinearShpb model;
+    model.pre_s = pre_s;
+    model.record_s = record_s;
+    const Calibration calibration = calibrate(shots_of(model.bench(), model.solve(), 2), {});
+    EXPECT_EQ(calibration.certificate, Certificate::undecided) << record_s;
+    ASSERT_FALSE(calibration.reasons.empty()) << record_s;
+    EXPECT_NE(calibration.reasons.front().find("tell no number"), std::string::npos)
+        << calibration.reasons.front();
+  }
+}
+
 // Soft enough, and gains of ten and a tenth, the most there are, leave less of it: still no gauge
 // is that far off.
 TEST(BarsTogether, NumbersAtTheirLimitsExplainNothing) {

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "processing/reduction/gauge_silent.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "processing/reduction/validity.hpp"
 #include "tests/unit/reduction/solved_bench.hpp"
@@ -72,6 +74,21 @@ TEST(GaugeOrder, IsAskedForWhereNothingCanBeReduced) {
   const Quality quality = reduced(shot).quality;
   ASSERT_FALSE(quality.reducible);
   EXPECT_NE(quality.mend.find("exchanged"), std::string::npos) << quality.mend;
+}
+
+// The mean of a pair holds half of what its sound gauge reads, and no number says why.
+TEST(GaugeSilent, OfAPairIsNamed) {
+  Shot shot = four_gauges(testing::kTitanium, testing::kCover);
+  EXPECT_FALSE(gauge_silent(shot));
+  shot.bench.gauges[1].position_m = shot.bench.gauges[0].position_m;
+  shot.channels[1].codes = shot.channels[0].codes;
+  ASSERT_EQ(Reducer(ReductionOptions{}).reduce(shot).quality.find("gauge_silent"), nullptr);
+  std::ranges::fill(shot.channels[1].codes, 0);
+  const Reduction reduction = Reducer(ReductionOptions{}).reduce(shot);
+  const Check& silent = check_of(reduction, "gauge_silent");
+  EXPECT_EQ(silent.verdict, Verdict::fail);
+  EXPECT_EQ(silent.text.find("g2 reads 0 %"), 0U) << silent.text;
+  EXPECT_NE(quotable_part(reduction).text.find("open lead"), std::string::npos);
 }
 
 }  // namespace

@@ -175,6 +175,32 @@ TEST(FitDraws, GiveStrainOverStressTheBenchsShare) {
   }
 }
 
+// Of one shot how far points lie off the fit stated a quarter of the errors. The mean square of
+// twelve deviations exceeds 2.74 by chance once in a thousand times.
+TEST(NoiseOfStrainOverStress, IsInTheDeviationsOfFewShots) {
+  const LinearShpb model;
+  const auto all = shots_of(model, 24, [](Bench&) {});
+  const double truth[] = {model.specimen.E1_Pa, model.specimen.E2_Pa, model.specimen.eta2_Pa_s};
+  for (const std::size_t count : {1U, 2U}) {
+    double squares[3] = {};
+    for (std::size_t i = 0; i < 12; ++i) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(count * i);
+      const std::vector<Shot> shots(begin, begin + static_cast<std::ptrdiff_t>(count));
+      SpectralEstimate estimate = estimate_spectrum(shots, paper_pmma(), {});
+      take_in_noise(shots, paper_pmma(), WaveTheory::elementary, estimate, Workers{});
+      for (std::size_t p = 0; p < 3; ++p) {
+        squares[p] +=
+            std::pow((estimate.parameters[p].value - truth[p]) / estimate.parameters[p].sd, 2) /
+            12.0;
+      }
+    }
+    for (const double square : squares) {
+      EXPECT_LT(square, 2.74) << count;
+      EXPECT_GT(square, 0.2) << count;
+    }
+  }
+}
+
 TEST(FitDraws, OfABarScatterAsItsFitStates) {
   constexpr std::size_t kDraws = 100;
   testing::BarShots::Setup setup;

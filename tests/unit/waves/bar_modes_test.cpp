@@ -119,6 +119,14 @@ TEST(BlindFrom, IsNearTheKnownFrequencyOfSurfaceGauges) {
   EXPECT_NEAR(blind_from_Hz(thin, path), 0.4, 1e-9);
 }
 
+// A band that a user gives is not beyond what it is itself.
+TEST(BlindFrom, IsTheHighestFrequencyToItsLastBitWhereNothingIsBlind) {
+  const ThreeElementSolid pmma(paper_pmma());
+  for (const double highest_Hz : {52208.24682190047, 7930.420743478792, 56123.07}) {
+    EXPECT_EQ(blind_from_Hz(WaveTheory::elementary, pmma_bar(), pmma, highest_Hz), highest_Hz);
+  }
+}
+
 TEST(WaveTheoryName, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(wave_theory("love"), WaveTheory::love);
   EXPECT_THROW((void)wave_theory("Rayleigh"), InputError);
