@@ -85,8 +85,7 @@ bool unexplained(const PartResult& part) {
 bool tells_nothing(const PartResult& part) {
   return !part.areas.momentum &&
          std::ranges::all_of(part.numbers, [](const CalibratedNumber& number) {
-           return number.standing == Standing::unseen || number.standing == Standing::unfiled ||
-                  number.standing == Standing::doubtful;
+           return number.standing == Standing::unseen || number.standing == Standing::unfiled;
          });
 }
 

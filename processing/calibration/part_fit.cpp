@@ -368,10 +368,10 @@ class PartFit {
     } else if (released) {
       out.standing = Standing::differs;
       out.combined = out.measured;
-    } else if (std::abs(out.deviations) > kNamed) {
-      out.standing = Standing::doubtful;
     } else if (own.sd > kNamed * std::max(number.filed_sd(), number.step)) {
       out.standing = Standing::unseen;
+    } else if (std::abs(out.deviations) > kNamed) {
+      out.standing = Standing::doubtful;
     }
     return out;
   }
@@ -501,9 +501,12 @@ class PartFit {
     Eigen::MatrixXd without = fit.jacobian.transpose() * fit.jacobian;
     without.diagonal() += weight;
     const Eigen::VectorXd of_slope = solve_symmetric(without, slope);
-    const double variance = std::max(0.0, slope.dot(of_slope)) * fitted_->widening();
+    const double variance = slope.dot(of_slope) * fitted_->widening();
     result_.wave_speed_at_Hz = kSpeedAt_Hz;
-    result_.wave_speed_m_per_s = {at + of_slope.dot(pull), std::sqrt(variance)};
+    // Of what shots do not tell at all rounding may make a variance below nothing.
+    result_.wave_speed_m_per_s = {
+        at + of_slope.dot(pull),
+        variance > 0.0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity()};
   }
 
   void describe_null_directions() {

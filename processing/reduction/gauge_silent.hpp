@@ -7,10 +7,10 @@
 
 namespace kolsky {
 
-/// A check that fails, "gauge_silent", where a gauge reads less than three tenths of the most that
-/// another of the same bar reads: no bar takes so much of a wave between them, and the mean of a
-/// pair would have half of it. Nothing where none does. Reads every record anew: for reductions
-/// that something is wrong with.
+/// A check that fails, "gauge_silent", where the first pulse is at one gauge of a pair, or of more
+/// at one place, less than three tenths of what it is at another that has it far out of its noise:
+/// bending does not do that, and their mean would have half of the wave. Nothing where none does.
+/// Reads every record anew: for reductions that something is wrong with.
 [[nodiscard]] std::optional<Check> gauge_silent(const Shot& shot);
 
 }  // namespace kolsky

@@ -172,7 +172,12 @@ class TheoryChoice {
       return false;
     }
     try {
-      const auto starts = SpecimenSearch(likelihood_, solid_, theory, Loss::none).starts();
+      auto starts = SpecimenSearch(likelihood_, solid_, theory, Loss::none).starts();
+      for (const Fitted& fit : fits_) {
+        if (fit.loss == Loss::none) {
+          starts.insert(starts.begin(), fit.minimum.parameters);
+        }
+      }
       SpecimenMinimum found = search_from(starts, theory, Loss::none);
       const auto judged =
           static_cast<double>(likelihood_.shots() * likelihood_.residuals_per_shot());
@@ -309,7 +314,11 @@ void fill_numbers(const SpecimenLikelihood& likelihood, const SpecimenMinimum& m
   fit.covariance = covariance_of(fit.solid, minimum, std::max(1.0, fit.chi2_reduced));
   fit.parameters = numbers_of(fit.solid, minimum, fit.covariance);
   for (std::size_t i = 1; fit.lossless && i < fit.parameters.size(); ++i) {
-    fit.parameters[i].sd = fit.parameters[i].value;
+    FittedNumber& open = fit.parameters[i];
+    open.sd = open.value;
+    for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
+      fit.covariance[i][j] = fit.covariance[j][i] = i == j ? open.sd * open.sd : 0.0;
+    }
   }
   const auto& unknowns = likelihood.unknowns();
   fit.by_bench.assign(family.size(), std::vector<double>(unknowns.size()));
@@ -437,7 +446,7 @@ void warn(SpecimenFit& fit) {
   if (fit.lossless) {
     fit.warnings.emplace_back(
         "no loss stands out of the noise: E2_Pa and eta2_Pa_s are not determined; the specimen is "
-        "as good as elastic with E1_Pa");
+        "as good as elastic with E1_Pa, and no family of solids is compared with another");
   } else {
     fit.warnings = warnings_of(fit.parameters);
   }
@@ -540,6 +549,10 @@ Decision decide_family(const Windows& windows, const SpecimenFitOptions& options
   } catch (const InputError&) {
     TheoryChoice alone(windows.first(), options, options.solid);
     return decide(windows, alone);
+  }
+  // Families differ in how they lose.
+  if (three.fitted.loss == Loss::none) {
+    return three;
   }
   Decision decision = three;
   decision.solid = options.solid;

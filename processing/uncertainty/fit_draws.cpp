@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/formatted.hpp"
+#include "processing/specimen/fit_warnings.hpp"
 #include "processing/uncertainty/noisy_shot.hpp"
 #include "processing/uncertainty/sources.hpp"
 
@@ -249,12 +251,18 @@ void take_in_noise(const std::vector<Shot>& shots, const Material& bars, WaveThe
   std::vector<Draw> draws = drawn(repeater, drawing, workers);
   std::erase_if(draws, [](const Draw& draw) { return draw.spectral.empty(); });
   if (draws.size() < kFewestDraws) {
+    estimate.warnings.emplace_back(
+        "deviations do not hold the gauges' noise: with more of it nothing was found");
     return;
+  }
+  for (const std::string& said : warnings_of(estimate.parameters)) {
+    std::erase(estimate.warnings, said);
   }
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     FittedNumber& number = estimate.parameters[i];
     number.sd = std::max(number.sd, number.value * scatter_of_logs(draws, i, number.value));
   }
+  std::ranges::move(warnings_of(estimate.parameters), std::back_inserter(estimate.warnings));
 }
 
 FitDraws draw_bar_fits(const std::vector<Shot>& shots, const BarFit& fit,

@@ -101,6 +101,9 @@ std::vector<Shot> impact_shots(const ImpactWishes& wishes) {
   Bench bench = paper_bench();
   bench.ball->core_diameter_m.sd = wishes.diameter_sd_m;
   bench.ball->outer_diameter_m.sd = wishes.diameter_sd_m;
+  if (wishes.diameter_sd_m > 0.0) {
+    bench.ball->mass_kg.reset();  // densities are what is known
+  }
   const Bar& bar = bench.input;
   const double c0 = std::sqrt(*bar.youngs_modulus_Pa / bar.density_kg_m3);
   const double stiffness_N = *bar.youngs_modulus_Pa * bar.area_m2();

@@ -19,6 +19,7 @@
 #include "drivers/files/settings/material_file.hpp"
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
+#include "processing/criticism/records/campaign.hpp"
 #include "processing/reduction/gauge_order.hpp"
 #include "processing/reduction/gauge_sign.hpp"
 #include "processing/specimen/fit_warnings.hpp"
@@ -146,8 +147,7 @@ std::string silent_in(const std::vector<Shot>& shots) {
   std::string names;
   const std::vector<Gauge>& gauges = shots.front().bench.gauges;
   for (std::size_t i = 0; i < gauges.size(); ++i) {
-    if (std::ranges::all_of(shots,
-                            [i](const Shot& shot) { return strain_of_gauge(shot, i).empty(); })) {
+    if (std::ranges::none_of(shots, [i](const Shot& shot) { return holds_pulse(shot, i); })) {
       names += (names.empty() ? "" : ", ") + gauges[i].name;
     }
   }

@@ -113,6 +113,7 @@ JsonValue describe(const IdentifiedSpecimen& outcome) {
                        !outcome.shots.front().bar_model;
   return JsonObject{
       {"solid", name_of(fit.solid)},
+      {"lossless", fit.lossless},
       {"parameters", numbers(fit.parameters)},
       {"covariance", std::move(covariance)},
       {"spectrum", describe(fit.spectrum, outcome.shots.front().bench.specimen->density_kg_m3)},

@@ -134,10 +134,10 @@ CampaignShot read_shot(const Shot& shot, std::size_t reference) {
 
 /// What a pulse adds to the end of its quiet part shifts all levels.
 void leave_out(std::size_t of_quiet, Campaign& campaign) {
+  if (of_quiet == 0) {
+    return;
+  }
   for (CampaignShot& shot : campaign.shots) {
-    if (of_quiet == 0) {
-      continue;
-    }
     shot.quiet_samples -= of_quiet;
     for (std::vector<double>& strain : shot.strain) {
       const double level = quiet_before(strain, shot.quiet_samples).baseline;

@@ -3,20 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/reduction/first_pulse.hpp"
+
 namespace kolsky {
 
 namespace {
 
-/// Mean over shots, each by its pulse's height, of the samples before the quiet's end, the last
-/// first: in shares of the height.
+/// Mean over shots, each by its first pulse's height, of the samples before the quiet's end, the
+/// last first: in shares of the height.
 std::vector<double> backwards(const std::vector<CampaignShot>& shots, std::size_t gauge,
-                              std::size_t count) {
+                              std::size_t count, double rate_Hz) {
   std::vector<double> mean(count, 0.0);
-  double squares = 0.0;
+  double squares = 1e-30;
   for (const CampaignShot& shot : shots) {
     const std::vector<double>& strain = shot.strain[gauge];
-    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    const double height = *std::max_element(strain.begin(), strain.end(), larger);
+    // What comes back may be larger, and of the other sign.
+    const auto pulse = first_pulse(strain, rate_Hz);
+    const double height = pulse ? pulse->sense * pulse->height : 0.0;
     squares += height * height;
     for (std::size_t k = 0; k < count; ++k) {
       mean[k] += height * strain[shot.quiet_samples - 1 - k];
@@ -43,8 +46,12 @@ class Blocks {
     fit_line();
   }
 
-  /// How far a block lies above the line, in deviations of its own and the line's together.
+  /// How far a block lies above the line, in deviations of its own and the line's together; 0 where
+  /// a converter's steps hide all that differs.
   [[nodiscard]] double above(std::size_t block) const {
+    if (!(sd_ > 0.0)) {
+      return 0.0;
+    }
     const double x = static_cast<double>(block) - centre_;
     return (means_[block] - level_ - slope_ * x) /
            (sd_ * std::sqrt(1.0 + 1.0 / count() + x * x / spread_));
@@ -92,12 +99,13 @@ std::size_t soft_foot_samples(const std::vector<CampaignShot>& shots, std::size_
   for (const CampaignShot& shot : shots) {
     shortest = std::min(shortest, shot.quiet_samples);
   }
-  const auto longest = static_cast<std::size_t>(std::ceil(kLongestBlock_s / period_s));
+  const auto longest =
+      std::max<std::size_t>(1, static_cast<std::size_t>(kLongestBlock_s / period_s));
   const std::size_t length = std::min(longest, shortest / kBlocks);
   if (length == 0) {
     return 0;
   }
-  const Blocks blocks(backwards(shots, gauge, kBlocks * length), length, kOfAFoot);
+  const Blocks blocks(backwards(shots, gauge, kBlocks * length, 1.0 / period_s), length, kOfAFoot);
   if (blocks.above(0) < kSeen) {
     return 0;
   }
@@ -106,7 +114,8 @@ std::size_t soft_foot_samples(const std::vector<CampaignShot>& shots, std::size_
     ++rising;
   }
   // What is left of it below what a block shows lies in the next.
-  return std::min(rising + 1, kOfAFoot) * length;
+  return std::min(std::min(rising + 1, kOfAFoot) * length,
+                  shortest - std::min(shortest, kFewestQuiet));
 }
 
 }  // namespace kolsky

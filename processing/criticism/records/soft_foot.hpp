@@ -12,7 +12,8 @@ namespace kolsky {
 /// shot, and passes there for a drift or a hum that all shots have. Seen in the mean of all shots
 /// over their heights, as what leaves the line through the quiet before.
 /// @param gauge  the one that the pulses come to first
-/// @return at most 100 us and a third of the shortest quiet
+/// @return at most ten samples or 100 us and a third of the shortest quiet, so that kFewestQuiet
+/// stay
 [[nodiscard]] std::size_t soft_foot_samples(const std::vector<CampaignShot>& shots,
                                             std::size_t gauge, double period_s);
 

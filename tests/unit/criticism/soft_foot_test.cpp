@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -42,15 +43,40 @@ TEST(SoftFoot, IsSeenInAllShotsTogether) {
   }
 }
 
-// Of noise alone, and of what drifts as much before as at the end, hardly anything is taken.
-TEST(SoftFoot, IsNeitherNoiseNorADrift) {
+// A wave that comes back larger and of the other sign changes nothing.
+TEST(SoftFoot, IsOfTheFirstPulse) {
+  const auto before = [](double samples) { return 6e-3 * std::exp(-samples / 8.0); };
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::vector<CampaignShot> shots = shots_with(seed, before);
+    for (std::size_t n = 0; n < shots.size(); n += 2) {
+      std::vector<double>& strain = shots[n].strain.front();
+      strain.insert(strain.end(), 600, -1.2 * strain.back());
+    }
+    EXPECT_GE(soft_foot_samples(shots, 0, kPeriod_s), 15U) << seed;
+  }
+}
+
+// Of noise alone, and of what drifts or hums as much before as at the end, hardly anything is
+// taken.
+TEST(SoftFoot, IsNeitherNoiseNorADriftNorAHum) {
+  const auto hum = [](double samples) { return 5e-3 * std::sin(1.0 - 3.14e-4 * samples); };
   std::size_t taken = 0;
   for (unsigned seed = 1; seed <= 50; ++seed) {
     taken += soft_foot_samples(shots_with(seed, [](double) { return 0.0; }), 0, kPeriod_s);
     taken += soft_foot_samples(shots_with(seed, [](double samples) { return -2e-5 * samples; }), 0,
                                kPeriod_s);
+    taken += soft_foot_samples(shots_with(seed, hum), 0, kPeriod_s);
   }
-  EXPECT_LT(taken, 100 * kQuiet / 30);
+  EXPECT_LT(taken, 6 * 2 * kQuiet / 30) << "six false feet of 150";
+}
+
+// A quiet of one code has nothing to tell.
+TEST(SoftFoot, IsNotSeenInAQuietWithoutNoise) {
+  std::vector<CampaignShot> shots = shots_with(1, [](double) { return 0.0; });
+  for (CampaignShot& shot : shots) {
+    std::fill_n(shot.strain.front().begin(), kQuiet, 0.0);
+  }
+  EXPECT_EQ(soft_foot_samples(shots, 0, kPeriod_s), 0U);
 }
 
 }  // namespace
