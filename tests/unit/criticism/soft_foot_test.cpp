@@ -67,7 +67,8 @@ TEST(SoftFoot, IsNeitherNoiseNorADriftNorAHum) {
                                kPeriod_s);
     taken += soft_foot_samples(shots_with(seed, hum), 0, kPeriod_s);
   }
-  EXPECT_LT(taken, 6 * 2 * kQuiet / 30) << "six false feet of 150";
+  constexpr std::size_t kFew = 6;  // of 150
+  EXPECT_LT(taken, kFew * 2 * kQuiet / 30);
 }
 
 // A quiet of one code has nothing to tell.
