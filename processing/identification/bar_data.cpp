@@ -11,6 +11,8 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/identification/bar_judge.hpp"
+#include "processing/reduction/first_pulse.hpp"
+#include "processing/reduction/gauge_sign.hpp"
 #include "processing/waves/band_limit.hpp"
 
 namespace kolsky {
@@ -44,6 +46,27 @@ std::size_t longest(const std::vector<BarRecords>& shots) {
   return samples;
 }
 
+/// A wave that a gauge reads with the other sign than the others, in every shot and far out of its
+/// noise in one, is no wave of the bar: what a pulse hardly out of its noise does is by chance.
+void require_one_sense(const Bench& bench, const std::vector<BarRecords>& shots) {
+  const bool loading_pulls = bench.loading == PositiveSense::tension;
+  const std::size_t gauges = shots.front().pulls.size();
+  std::vector<std::string> odd;
+  for (std::size_t j = 0; j < gauges; ++j) {
+    const bool always = std::ranges::all_of(
+        shots, [&](const BarRecords& shot) { return shot.pulls[j] != loading_pulls; });
+    const bool clear = std::ranges::any_of(
+        shots, [&](const BarRecords& shot) { return shot.peak[j] > kFarOut * shot.noise_rms[j]; });
+    if (always && clear) {
+      odd.push_back(bench.gauges[shots.front().channel[j]].name);
+    }
+  }
+  if (!odd.empty() && odd.size() < gauges) {
+    throw InputError("gauges", other_sign_text(odd, bench.loading, false),
+                     "correct the bench file, or check the leads");
+  }
+}
+
 std::vector<BarRecords> read_all(const std::vector<Shot>& shots, const FirstPass& first,
                                  Bench& bench) {
   std::vector<BarRecords> records;
@@ -58,6 +81,7 @@ std::vector<BarRecords> read_all(const std::vector<Shot>& shots, const FirstPass
       throw error.inside("capture " + shot.id);
     }
   }
+  require_one_sense(bench, records);
   if (bench.gauges.size() == 1) {
     split_passes(bench, records, first);
   }

@@ -10,7 +10,6 @@
 #include "processing/bridge/channel_delay.hpp"
 #include "processing/reduction/code_steps.hpp"
 #include "processing/reduction/first_pulse.hpp"
-#include "processing/reduction/gauge_sign.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/record_faults.hpp"
@@ -88,6 +87,7 @@ void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readi
   records.noise_rms.push_back(
       std::max(quiet_before(strain, records.quiet_samples).noise_rms, step / std::sqrt(12.0)));
   records.rise_s.push_back(pulse.half * records.period_s);
+  records.pulls.push_back(pulse.sense * bridge.sensitivity() < 0.0);
   records.position_m.push_back(gauge.position_m);
   const auto rise = static_cast<std::size_t>(pulse.half);
   const std::size_t end = std::min(strain.size(), rise + pulse_reach(1.0 / records.period_s));
@@ -97,24 +97,6 @@ void append_gauge(const Shot& shot, std::size_t index, std::vector<double> readi
                                  strain.begin() + static_cast<std::ptrdiff_t>(end), larger)));
   records.step.push_back(step);
   records.strain.push_back(std::move(strain));
-}
-
-/// A wave that a gauge reads with the other sign than the others is no wave of the bar.
-void require_one_sense(const Shot& shot, const BarRecords& records,
-                       const std::vector<FirstPulse>& pulses) {
-  std::vector<std::string> odd;
-  for (std::size_t j = 0; j < pulses.size(); ++j) {
-    const Gauge& gauge = shot.bench.gauges[records.channel[j]];
-    const BridgeConversion bridge(gauge, shot.bench.bar_of(gauge), shot.bench.positive);
-    const bool pulled = pulses[j].sense * bridge.sensitivity() < 0.0;
-    if (pulled != (shot.bench.loading == PositiveSense::tension)) {
-      odd.push_back(gauge.name);
-    }
-  }
-  if (!odd.empty() && odd.size() < pulses.size()) {
-    throw InputError("gauges", other_sign_text(odd, shot.bench.loading, false),
-                     "correct the bench file, or check the leads");
-  }
 }
 
 }  // namespace
@@ -143,7 +125,6 @@ BarRecords read_bar_records(const Shot& shot) {
   }
   records.quiet_samples = pulses.front().quiet;
   require_quiet(records.quiet_samples);
-  require_one_sense(shot, records, pulses);
   records.foot_s = pulses.front().foot * records.period_s;
   for (std::size_t j = 0; j < readings.size(); ++j) {
     append_gauge(shot, records.channel[j], std::move(readings[j]), pulses[j], codes[j], records);

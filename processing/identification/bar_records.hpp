@@ -16,6 +16,7 @@ struct BarRecords {
   std::vector<double> step;       ///< of strain from code to code, the converter's
   std::vector<double> rise_s;     ///< when the first pulse passes half of its peak
   std::vector<double> peak;       ///< of the first pulse
+  std::vector<bool> pulls;        ///< whether that is a tension
   std::vector<std::size_t> channel;  ///< each one's place in the bench's list of gauges
   std::size_t quiet_samples = 0;     ///< before the pulse
   double foot_s = 0.0;               ///< of the pulse at the first gauge, from the first sample

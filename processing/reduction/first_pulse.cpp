@@ -24,6 +24,10 @@ double passage(std::span<const double> record, std::size_t below, double level) 
 
 }  // namespace
 
+bool stands_far_out(std::span<const double> record, const FirstPulse& pulse) {
+  return pulse.height > kFarOut * quiet_before(record, pulse.quiet).noise_rms;
+}
+
 std::size_t pulse_reach(double rate_Hz) {
   return static_cast<std::size_t>(kReach_s * rate_Hz);
 }

@@ -23,6 +23,11 @@ struct FirstPulse {
 /// @return nothing where none stands out of the noise
 [[nodiscard]] std::optional<FirstPulse> first_pulse(std::span<const double> record, double rate_Hz);
 
+/// Of the noise: below that what is found first may by chance be a wave that came back inverted.
+inline constexpr double kFarOut = 20.0;
+/// @param record  in which the pulse was found
+[[nodiscard]] bool stands_far_out(std::span<const double> record, const FirstPulse& pulse);
+
 /// How far behind its rise a pulse's own peak is looked for.
 [[nodiscard]] std::size_t pulse_reach(double rate_Hz);
 

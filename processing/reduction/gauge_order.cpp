@@ -29,6 +29,11 @@ std::optional<double> passes(std::span<const double> strain, const FirstPulse& p
                        : std::nullopt;
 }
 
+bool clear(const std::vector<double>& strain, double rate_Hz) {
+  const auto pulse = first_pulse(strain, rate_Hz);
+  return pulse && stands_far_out(strain, *pulse);
+}
+
 }  // namespace
 
 std::vector<double> strain_of_gauge(const Shot& shot, std::size_t gauge) {
@@ -82,7 +87,8 @@ std::optional<Check> gauge_order(const Shot& shot) {
     // Those of a pair lie at one place: which of them reads more decides which is passed sooner.
     const bool at_one_place = way_to_m(shot.bench, second) - way_to_m(shot.bench, first) <
                               shot.bench.bar_of(first).diameter_m;
-    if (strain[i].empty() || strain[i + 1].empty() || at_one_place) {
+    if (at_one_place || !clear(strain[i], shot.rate.Hz()) ||
+        !clear(strain[i + 1], shot.rate.Hz())) {
       continue;
     }
     const double later = later_by(strain[i], strain[i + 1], shot.rate.Hz()).value_or(0.0);
