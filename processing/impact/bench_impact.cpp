@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kMassTolerance = 1e-3;
 
-double sphere_m3(double diameter_m) {
-  return std::numbers::pi / 6.0 * diameter_m * diameter_m * diameter_m;
-}
-
 double youngs_modulus(double shear_Pa, double bulk_Pa) {
   return 9.0 * bulk_Pa * shear_Pa / (3.0 * bulk_Pa + shear_Pa);
 }
@@ -61,16 +57,28 @@ Solid solid_of(const BallMaterial& material) {
   return solid;
 }
 
+double mass_kg(const std::vector<Layer>& layers) {
+  double inside_m3 = 0.0;
+  double sum_kg = 0.0;
+  for (const Layer& layer : layers) {
+    const double whole_m3 = std::numbers::pi / 6.0 * std::pow(layer.outer_diameter_m, 3);
+    sum_kg += layer.solid.density_kg_m3 * (whole_m3 - inside_m3);
+    inside_m3 = whole_m3;
+  }
+  return sum_kg;
+}
+
 bool MassCheck::differs() const {
   return std::abs(filed_kg - geometry_kg) >
          std::max(kMassTolerance * geometry_kg, 3.0 * filed_sd_kg);
 }
 
 MassCheck check_mass(const Ball& ball, const Material& core, const Material& cover) {
+  std::vector<Layer> layers{{ball.core_diameter_m, {}}, {ball.outer_diameter_m, {}}};
+  layers[0].solid.density_kg_m3 = core.density_kg_m3;
+  layers[1].solid.density_kg_m3 = cover.density_kg_m3;
   MassCheck mass;
-  const double inside_m3 = sphere_m3(ball.core_diameter_m);
-  mass.geometry_kg = core.density_kg_m3 * inside_m3 +
-                     cover.density_kg_m3 * (sphere_m3(ball.outer_diameter_m) - inside_m3);
+  mass.geometry_kg = mass_kg(layers);
   mass.filed_kg = ball.mass_kg ? ball.mass_kg->value : mass.geometry_kg;
   mass.filed_sd_kg = ball.mass_kg ? ball.mass_kg->sd : 0.0;
   if (!mass.differs()) {

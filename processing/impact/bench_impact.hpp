@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "processing/base/bench.hpp"
 #include "processing/base/material.hpp"
 #include "processing/impact/impact_model.hpp"
@@ -19,6 +21,9 @@ struct BallMaterial {
 /// @throws InputError as solid_of does
 [[nodiscard]] Solid solid_of(const BallMaterial& material);
 
+/// Of a ball of such layers, by its spheres exactly.
+[[nodiscard]] double mass_kg(const std::vector<Layer>& layers);
+
 /// The filed mass of a ball against what its geometry and densities give.
 struct MassCheck {
   double geometry_kg = 0.0;
@@ -30,7 +35,6 @@ struct MassCheck {
   double filed_sd_kg = 0.0;
 };
 
-/// The spheres' mass, exactly.
 /// @throws InputError "ball.mass_kg" if the filed mass differs and the bench does not say
 /// scale_density
 [[nodiscard]] MassCheck check_mass(const Ball& ball, const Material& core, const Material& cover);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -64,17 +63,6 @@ std::string effect_at(const std::string& member) {
   return member;
 }
 
-double mass_of(const impact::ImpactModel& model) {
-  double inside_m3 = 0.0;
-  double mass_kg = 0.0;
-  for (const impact::Layer& layer : model.layers) {
-    const double whole_m3 = std::numbers::pi / 6.0 * std::pow(layer.outer_diameter_m, 3);
-    mass_kg += layer.solid.density_kg_m3 * (whole_m3 - inside_m3);
-    inside_m3 = whole_m3;
-  }
-  return mass_kg;
-}
-
 /// Of a campaign's many speeds the one at which the model's ball is refused is to be known.
 impact::ImpactHistory thrown(const impact::ImpactModel& model) {
   try {
@@ -111,11 +99,11 @@ std::shared_ptr<const BallRun> BallRuns::run(const BallScene& ball, double speed
   impact::ImpactModel model = impact::impact_on(bench_, material_of(ball.core, ball.reading, form),
                                                 material_of(ball.cover, ball.reading, form),
                                                 impact::TargetKind::dashpot, speed_m_per_s);
-  const double mass_kg = mass_of(model);
+  const double filed_kg = impact::mass_kg(model.layers);
   model.layers[0].outer_diameter_m = ball.core_diameter_m;
   model.layers[1].outer_diameter_m = ball.outer_diameter_m;
   // A ball that was weighed keeps its mass however large it is.
-  const double denser = bench_.ball->mass_kg ? mass_kg / mass_of(model) : 1.0;
+  const double denser = bench_.ball->mass_kg ? filed_kg / impact::mass_kg(model.layers) : 1.0;
   for (impact::Layer& layer : model.layers) {
     layer.solid.density_kg_m3 *= denser * (1.0 + ball.heavier);
   }
