@@ -25,9 +25,10 @@ constexpr double kPower = 0.8;
 constexpr double kTrace = 1e-3;
 constexpr int kMostSteps = 12;
 constexpr double kAtRest = 0.1;  // of chi-square
-constexpr double kLeastShare = 0.02;
-constexpr int kMostTurns = 3;
-constexpr double kSettled = 10.0;  // of chi-square, in a turn
+constexpr double kLeastDamping = 1e-3;
+constexpr double kMostDamping = 1e3;
+constexpr int kMostTurns = 12;
+constexpr double kSettled = 1.0;  // of chi-square, in a turn
 constexpr int kNoiseDraws = 200;
 // What the whole change has less of than this share at a gauge is rounding.
 constexpr double kUntouched = 1e-9;
@@ -198,7 +199,13 @@ FailingPlaces::FirstOrder::FirstOrder(const Campaign& about)
     products(i, i) += direction.known();
     direction.readings = left_of(std::move(direction.readings));
   }
-  information.compute(products);
+  information = std::move(products);
+}
+
+Eigen::VectorXd FailingPlaces::FirstOrder::step(const Eigen::VectorXd& pull, double damping) const {
+  Eigen::MatrixXd damped = information;
+  damped.diagonal() *= 1.0 + damping;
+  return damped.ldlt().solve(pull);
 }
 
 Readings FailingPlaces::FirstOrder::left_of(Readings change) const {
@@ -259,31 +266,32 @@ double FailingPlaces::approach(FirstOrder& about, const Campaign& hidden, Fit& f
   fit.left = left_at(fit.places);
   const double begun = about.objective(fit.left, fit.places);
   double least = begun;
-  double share = 1.0;
-  for (int step = 0; step < kMostSteps && share > kLeastShare;) {
+  double damping = 0.0;
+  for (int step = 0; step < kMostSteps && damping < kMostDamping;) {
     const Eigen::VectorXd pull = about.pull_of(fit.left, fit.places);
-    const Eigen::VectorXd move = about.information.solve(pull);
+    const Eigen::VectorXd move = about.step(pull, damping);
     if (pull.dot(move) < kAtRest) {
       break;
     }
-    const Eigen::VectorXd next = fit.places + share * move;
+    const Eigen::VectorXd next = fit.places + move;
     Readings there = left_at(next);
     const double found = about.objective(there, next);
     if (!(found < least)) {
-      share *= 0.5;
+      damping = std::max(kLeastDamping, 10.0 * damping);
       continue;
     }
     ++step;
     fit.places = next;
     fit.left = std::move(there);
     least = found;
-    share = std::min(1.0, 2.0 * share);
+    damping = damping > kLeastDamping ? 0.1 * damping : 0.0;
   }
   return begun - least;
 }
 
-// By Gauss and Newton's method, with derivatives of the bare campaign and then of where these lead:
-// a large misfit carries moduli to where they do something else.
+// By Levenberg and Marquardt's steps, with derivatives of the bare campaign and then of where these
+// lead, until nothing falls any more: a large misfit carries moduli along a curved valley to where
+// they do something else.
 Readings FailingPlaces::left_by_fit(const Campaign& hidden) {
   Fit fit{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(about_bare_.nuisances.size())), {}};
   double fallen = approach(about_bare_, hidden, fit);

@@ -73,10 +73,14 @@ class FailingPlaces {
     [[nodiscard]] double objective(const testing::Readings& left,
                                    const Eigen::VectorXd& places) const;
 
+    /// Levenberg and Marquardt's. @param damping  of the information's diagonal; 0: Gauss's and
+    /// Newton's
+    [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& pull, double damping) const;
+
     Prober prober;
     SourceFreedom freedom;
-    std::vector<Direction> nuisances;          ///< what sources and offsets leave of them
-    Eigen::LDLT<Eigen::MatrixXd> information;  ///< of the nuisances, priors in it
+    std::vector<Direction> nuisances;  ///< what sources and offsets leave of them
+    Eigen::MatrixXd information;       ///< of the nuisances, priors in it
   };
   /// Where a fit has come to.
   struct Fit {
