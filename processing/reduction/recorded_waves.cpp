@@ -236,11 +236,11 @@ RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& optio
   all.blind = blind_frequencies(bar, *model.compliance, options.theory, records.gauges, ends,
                                 all.band_limit_Hz);
   // What lies beyond the record comes back through the filter.
-  const auto smear =
-      static_cast<std::size_t>(std::ceil(BandLimit::smear_s(all.band_limit_Hz) * shot.rate.Hz()));
+  const auto reach =
+      static_cast<std::size_t>(std::ceil(BandLimit::reach_s(all.band_limit_Hz) * shot.rate.Hz()));
   for (const double position_m : places) {
     const std::size_t told = separation.known(position_m);
-    all.known = std::min(all.known, told - std::min(told, smear));
+    all.known = std::min(all.known, told - std::min(told, reach));
     all.places.push_back(
         {position_m, separation.at(position_m), separation.stress_noise_Pa(position_m, all.quiet)});
   }

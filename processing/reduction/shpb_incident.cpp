@@ -74,7 +74,11 @@ std::span<const double> ShpbPass::incident_strain() const {
 }
 
 void ShpbPass::transform_records() {
-  choose_band(incident_strain().subspan(quiet_));
+  const std::span<const double> pulse = pulse_without_cut();
+  choose_band(pulse);
+  if (options_.theory == WaveTheory::elementary) {
+    moved_by_lateral_inertia_ = moved_by_lateral_inertia(pulse);
+  }
   t_.transform.forward(t_.input_strain, in_band(t_.rest));
   t_.transform.forward(t_.output_strain, in_band(t_.output_spectrum));
   for (auto* spectrum : {&t_.rest, &t_.output_spectrum}) {

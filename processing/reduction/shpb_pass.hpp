@@ -56,6 +56,10 @@ class ShpbPass {
   /// Foot at the gauge itself, from the unfiltered record.
   [[nodiscard]] double rough_foot(const Rise& rise, std::size_t reach);
   void transform_records();
+  /// The incident pulse from its quiet part on; of one that is hidden before it is over, less what
+  /// is left of it there, risen to as smoothly as the pulse is long: a step's spectrum would count
+  /// as its own, far above what the noise allows.
+  [[nodiscard]] std::span<const double> pulse_without_cut();
   /// The incident pulse at its gauge, as long as the specimen's answer does not hide it.
   [[nodiscard]] std::span<const double> incident_strain() const;
   void choose_band(std::span<const double> pulse);
@@ -69,12 +73,15 @@ class ShpbPass {
   void complete_incident();
   /// Share of a pulse, rms over rms, that lateral inertia moves on its way to the specimen: by the
   /// phase that Love's bar adds, k = (w/c) sqrt(1 + (nu a w/c)^2 / 2).
-  [[nodiscard]] double moved_by_lateral_inertia(std::span<const Complex> pulse) const;
+  [[nodiscard]] double moved_by_lateral_inertia(std::span<const double> pulse) const;
   /// Behind what is known of it: for as long again as it is known, which is beyond the loading.
   void let_push_go_on(std::span<double> push_Pa, double stress_Pa) const;
   void incident_from_push(std::span<const double> push_Pa, std::span<Complex> incident);
-  /// How much of the push is left at the end of what is known of it, averaged over a few samples so
-  /// that it is the push that is judged and not the noise.
+  /// Samples at an end of so many over which a level is averaged, so that it is judged and not the
+  /// noise; and what of that noise alone does not exceed.
+  [[nodiscard]] std::size_t few_of(std::size_t samples) const;
+  [[nodiscard]] double noise_of_few(std::size_t few) const;
+  /// How much of the push is left at the end of what is known of it.
   void judge_push(std::span<const double> push);
   /// Whether what the gauge sees of the push alone ends on its rise: on a ramp the last fifth of
   /// the window is 1.3 times the one before and near the peak, on a plateau that creeps no more

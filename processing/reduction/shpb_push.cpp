@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace kolsky {
@@ -13,13 +14,35 @@ constexpr double kStandsOut = 3.0;
 
 }  // namespace
 
+std::size_t ShpbPass::few_of(std::size_t samples) const {
+  constexpr double kFew_s = 10e-6;
+  return std::min(samples, static_cast<std::size_t>(kFew_s * rate_Hz_) + 1);
+}
+
+double ShpbPass::noise_of_few(std::size_t few) const {
+  return kStandsOut * input_noise_ / std::sqrt(static_cast<double>(std::max<std::size_t>(few, 1)));
+}
+
+std::span<const double> ShpbPass::pulse_without_cut() {
+  const std::span<const double> pulse = incident_strain().subspan(std::min(quiet_, split_));
+  const std::size_t few = few_of(pulse.size());
+  const std::span<const double> last = pulse.last(few);
+  const double left = std::accumulate(last.begin(), last.end(), 0.0) /
+                      static_cast<double>(std::max<std::size_t>(few, 1));
+  if (std::abs(left) <= noise_of_few(few)) {
+    return pulse;
+  }
+  const double turn = std::numbers::pi / static_cast<double>(pulse.size());
+  for (std::size_t n = 0; n < pulse.size(); ++n) {
+    t_.scratch[n] = pulse[n] - left / 2.0 * (1.0 - std::cos(turn * static_cast<double>(n)));
+  }
+  return std::span<const double>(t_.scratch).first(pulse.size());
+}
+
 void ShpbPass::complete_incident() {
   const std::span<Complex> incident = in_band(t_.incident);
   t_.transform.forward(incident_strain(), incident);
   t_.band.apply_half(reduction_.band_limit_Hz, incident);
-  if (options_.theory == WaveTheory::elementary) {
-    moved_by_lateral_inertia_ = moved_by_lateral_inertia(incident);
-  }
   bars_.kernels.push_from_incident(incident);
   const double known =
       static_cast<double>(split_) - BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
@@ -31,20 +54,17 @@ void ShpbPass::complete_incident() {
   incident_from_push(push, incident);
 }
 
-double ShpbPass::moved_by_lateral_inertia(std::span<const Complex> pulse) const {
+double ShpbPass::moved_by_lateral_inertia(std::span<const double> pulse) const {
   const Bar& bar = shot_.bench.input;
   const double nu_a_m = bar.poisson_ratio.value * bar.diameter_m.value / 2.0;
-  double moved = 0.0;
-  double all = 0.0;
-  for (std::size_t k = 0; k < pulse.size(); ++k) {
-    const double wavenumber_per_m = t_.transform.s(k).imag() / wave_speed_m_per_s();
-    const double love = std::sqrt(1.0 + std::pow(nu_a_m * wavenumber_per_m, 2) / 2.0);
-    const double turn = wavenumber_per_m * (love - 1.0) * in_.gauge_to_specimen_m;
-    const double power = std::norm(pulse[k]);
-    moved += power * std::norm(std::polar(1.0, turn) - 1.0);
-    all += power;
-  }
-  return all > 0.0 ? std::sqrt(moved / all) : 0.0;
+  const double moved =
+      t_.band.mean_over_energy(pulse, input_noise_, reduction_.band_limit_Hz, [&](double f_Hz) {
+        const double wavenumber_per_m = 2.0 * std::numbers::pi * f_Hz / wave_speed_m_per_s();
+        const double love = std::sqrt(1.0 + std::pow(nu_a_m * wavenumber_per_m, 2) / 2.0);
+        const double turn = wavenumber_per_m * (love - 1.0) * in_.gauge_to_specimen_m;
+        return std::norm(std::polar(1.0, turn) - 1.0);
+      });
+  return std::sqrt(moved);
 }
 
 void ShpbPass::let_push_go_on(std::span<double> push_Pa, double stress_Pa) const {
@@ -63,15 +83,14 @@ void ShpbPass::incident_from_push(std::span<const double> push_Pa, std::span<Com
 }
 
 void ShpbPass::judge_push(std::span<const double> push) {
-  const auto few = std::min(push.size(), static_cast<std::size_t>(10e-6 * rate_Hz_) + 1);
+  const std::size_t few = few_of(push.size());
   for (const double stress_Pa : push.last(few)) {
     push_left_Pa_ += stress_Pa / static_cast<double>(few);
   }
   push_peak_Pa_ = largest(push);
   push_left_share_ = push_peak_Pa_ > 0.0 ? std::abs(push_left_Pa_) / push_peak_Pa_ : 1.0;
   // Less than that is the noise's account.
-  push_noise_share_ = kStandsOut * input_noise_ / std::max(largest(incident_strain()), 1e-300) /
-                      std::sqrt(static_cast<double>(std::max<std::size_t>(few, 1)));
+  push_noise_share_ = noise_of_few(few) / std::max(largest(incident_strain()), 1e-300);
   if (push_left_share_ > push_noise_share_) {
     reduction_.push_left_share = push_left_share_;
   }

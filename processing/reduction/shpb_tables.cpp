@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processing/reduction/pulse.hpp"
+#include "processing/waves/lateral_delay.hpp"
 #include "processing/waves/seen_modes.hpp"
 
 namespace kolsky {
@@ -32,10 +33,17 @@ ShpbBar::ShpbBar(const Bar& bar, const BarStation& station, const Material& visc
             station.gauge_to_far_end_m,
             bar.far_end,
             front_speed_m_per_s,
-            {}} {}
+            {}},
+      lateral_delay_s_per_m{} {}
 
 double ShpbBar::front_time_s(double distance_m) const {
   return distance_m / front_speed_m_per_s;
+}
+
+double ShpbBar::travel_s(std::span<const Complex> path, double band_limit_Hz) const {
+  return front_time_s(waves.gauge_to_specimen_m) +
+         waves.gauge_to_specimen_m *
+             lateral_delay_within(lateral_delay_s_per_m, path, band_limit_Hz);
 }
 
 std::vector<double> shpb_numbers(const Bench& b, const Material& m, WaveTheory theory,
@@ -138,6 +146,10 @@ void ShpbTables::reach(const ShpbPlans& plans, std::size_t bins) {
                                   plans.path.begin() + static_cast<std::ptrdiff_t>(bins));
   input.waves.modes = seen_modes(theory, input_bar, *input.compliance, path);
   output.waves.modes = seen_modes(theory, output_bar, *output.compliance, path);
+  input.lateral_delay_s_per_m =
+      kolsky::lateral_delay_s_per_m(theory, input_bar, *input.compliance, input.waves.modes, path);
+  output.lateral_delay_s_per_m = kolsky::lateral_delay_s_per_m(
+      theory, output_bar, *output.compliance, output.waves.modes, path);
   const double delay_s = static_cast<double>(plan.delay) * plan.rate.period_s();
   kernels = CarryingKernels(path, input.waves, output.waves, specimen_length_m, delay_s);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "processing/base/shot.hpp"
@@ -15,11 +16,14 @@ struct ShpbBar {
   std::unique_ptr<const Compliance> compliance;
   double front_speed_m_per_s;
   CarryingBar waves;
+  std::vector<double> lateral_delay_s_per_m;  ///< by bin
 
   ShpbBar(const Bar& bar, const BarStation& station, const Material& viscoelastic);
 
   /// Seconds a front needs over a distance.
   [[nodiscard]] double front_time_s(double distance_m) const;
+  /// Seconds that the slowest waves of a band need from the gauge to the specimen.
+  [[nodiscard]] double travel_s(std::span<const Complex> path, double band_limit_Hz) const;
 };
 
 /// What decides the kernels: two shots that agree in it are reduced with the same ones.

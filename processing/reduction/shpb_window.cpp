@@ -59,8 +59,8 @@ bool ShpbPass::choose_window() {
   const double duration_s =
       options_.duration_s.value_or(std::max(first_return_s(), first_loading_s()));
   // A wave that is under a gauge where the record ends is cut there, a step, and the filter looks
-  // ahead: one smear before it is still off by 4 % of that wave, three by half of a per cent.
-  const double ahead = 3.0 * BandLimit::smear_s(reduction_.band_limit_Hz) * rate_Hz_;
+  // ahead.
+  const double ahead = BandLimit::reach_s(reduction_.band_limit_Hz) * rate_Hz_;
   const double wanted = arrival + duration_s * rate_Hz_;
   const double last = std::min(wanted, known_samples() - ahead);
   missing_s_ = (wanted - last) * period_s_;
@@ -81,8 +81,13 @@ double ShpbPass::first_return_s() const {
 }
 
 double ShpbPass::known_samples() const {
-  return static_cast<double>(
-      faces_ ? faces_->known : shot_.samples() - longest_travel(shot_, bars_.input, bars_.output));
+  if (faces_) {
+    return static_cast<double>(faces_->known);
+  }
+  const auto path = std::span(t_.path);
+  const double travel_s = std::max(bars_.input.travel_s(path, reduction_.band_limit_Hz),
+                                   bars_.output.travel_s(path, reduction_.band_limit_Hz));
+  return static_cast<double>(shot_.samples()) - std::ceil(travel_s * rate_Hz_);
 }
 
 double ShpbPass::first_loading_s() const {

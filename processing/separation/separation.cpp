@@ -7,6 +7,7 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/waves/band_limit.hpp"
+#include "processing/waves/lateral_delay.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -227,7 +228,10 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
   require_gauges(bar, gauges, ends);
   // Waves are looked for where they came from, before the gauges saw them: room for two passages.
   const double passage_s = length_m_ / front_speed_m_per_s(bar, compliance);
-  lead_ = static_cast<std::size_t>(std::ceil(2.5 * passage_s / period_s_)) + 16;
+  // And for what the filter spreads to both sides: what wraps round, damping makes larger than
+  // everything else.
+  const double room_s = 2.5 * passage_s + 2.0 * BandLimit::reach_s(band_limit_Hz_);
+  lead_ = static_cast<std::size_t>(std::ceil(room_s / period_s_)) + 16;
   work_ = std::make_unique<Work>(samples_ + 2 * lead_, period_s_);
   const std::size_t bins = BandLimit::bins_within(work_->transform, band_limit_Hz_);
   path_.reserve(bins);
@@ -246,6 +250,11 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
     stiffness_.push_back(bar.density_kg_m3.value / (slowness * slowness) *
                          modes_[k].mean_over_surface);
   }
+  slowest_s_per_m_ = std::max(
+      slowest_s_per_m_,
+      1.0 / front_speed_m_per_s(bar, compliance) +
+          lateral_delay_within(lateral_delay_s_per_m(theory, bar, compliance, modes_, path_), path_,
+                               band_limit_Hz_));
   share_out(gauges, ends);
   solve(gauges);
   if (gauges.size() > gauges_needed(ends)) {

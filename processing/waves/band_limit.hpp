@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -39,6 +40,12 @@ class BandLimit {
   /// Share of a pulse's energy, less that of its noise, that the filter with this limit takes off.
   [[nodiscard]] double loss(std::span<const double> pulse, double noise_rms, double limit_Hz);
 
+  /// Mean of a weight of frequency [Hz] over a pulse's energy, less that of its noise, of what the
+  /// filter with this limit lets through.
+  [[nodiscard]] double mean_over_energy(std::span<const double> pulse, double noise_rms,
+                                        double limit_Hz,
+                                        const std::function<double(double)>& weight);
+
   /// Multiplies a spectrum, or its first bins, by the filter with this limit.
   void apply(double limit_Hz, std::span<Complex> spectrum);
 
@@ -57,6 +64,11 @@ class BandLimit {
 
   /// How far the filter's kernel reaches to each side, in seconds (where it has fallen to a tenth).
   [[nodiscard]] static double smear_s(double limit_Hz);
+
+  /// From how far before a step in time on, in seconds, the filter shows less than half a per cent
+  /// of it: what a record that ends under a wave can be believed up to. One smear before it is off
+  /// by 4 % of that wave.
+  [[nodiscard]] static double reach_s(double limit_Hz);
 
  private:
   [[nodiscard]] double floor_below(std::size_t top);
