@@ -130,6 +130,9 @@ void settle(Study& study, const std::optional<SmallRest>& own, Findings& found) 
   if (blames_times_of_several_gauges(diagnosis, study.campaign())) {
     diagnosis.notes.push_back(several_times_text());
   }
+  if (blames_even_loss(diagnosis)) {
+    diagnosis.notes.push_back(even_loss_text());
+  }
 }
 
 void note_one_shot(Diagnosis& diagnosis) {

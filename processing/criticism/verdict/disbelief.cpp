@@ -224,6 +224,16 @@ std::string several_times_text() {
          "the library lacks; measure the bar along its length before these are added";
 }
 
+bool blames_even_loss(const Diagnosis& diagnosis) {
+  return std::ranges::find(diagnosis.effects, "series-dashpot") != diagnosis.effects.end();
+}
+
+std::string even_loss_text() {
+  return "series-dashpot takes the same share of waves of every frequency on each metre, as a bar "
+         "does that widens on its way or rubs where it is held: no record tells these apart; "
+         "measure the bar's diameter along it and lift it off its supports before it is believed";
+}
+
 std::string left_of_one_shot_text(const std::string& what, double misfit) {
   return fmt::format(
       "{} leaves {:.3g} times the noise before the pulse, and of one shot nothing tells noise from "

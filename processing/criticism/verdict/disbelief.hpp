@@ -38,6 +38,11 @@ inline constexpr std::size_t kMostBelieved = 2;
                                                   const Campaign& campaign);
 [[nodiscard]] std::string several_times_text();
 
+/// Whether a claim is of a loss that is the same for all frequencies, which a section that changes
+/// along the bar, and supports that rub, make of waves, too.
+[[nodiscard]] bool blames_even_loss(const Diagnosis& diagnosis);
+[[nodiscard]] std::string even_loss_text();
+
 /// What gauges that are loud show, in a sentence. @param loud  the least likely first
 [[nodiscard]] std::string loud_text(const std::vector<LoudPulses>& loud, const Campaign& campaign);
 /// @param what    leaves it

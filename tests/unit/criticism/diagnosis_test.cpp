@@ -176,6 +176,18 @@ Diagnosis diagnosed_split(const testing::Campaign& truth) {
   return diagnose(study, filed_split_bar(truth), {});
 }
 
+// To first order both multiply a wave by exp(-k x) at every frequency.
+TEST(Diagnosis, SaysThatATaperLosesLikeADashpot) {
+  const testing::CampaignWishes wishes{.seed = 205, .shots = 6, .gauges = 4, .noise_strain = 2e-6};
+  testing::Campaign truth = testing::draw_campaign(wishes);
+  testing::hide(truth, testing::parse_effect("x-taper=0.03"));
+  const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+  ASSERT_EQ(diagnosis.effects, std::vector<std::string>{"series-dashpot"});
+  EXPECT_TRUE(std::ranges::any_of(diagnosis.notes, [](const std::string& note) {
+    return note.find("widens on its way") != std::string::npos;
+  }));
+}
+
 TEST(Diagnosis, SaysThatTimesOfSeveralGaugesMayHaveOneCause) {
   const Campaign campaign = read_campaign(make(77, {}).shots);
   const auto blamed = [&](std::vector<std::string> effects) {
