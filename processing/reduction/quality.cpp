@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kEnergyLimit = 0.05;
 constexpr double kLateralLimit = 0.05;
+constexpr double kGaugeLengthLimit = 0.02;
 constexpr double kBandLossLimit = 0.02;
 constexpr double kSignalToNoiseLimit_dB = 30.0;
 constexpr double kSignalToNoiseFloor_dB = 15.0;
@@ -417,6 +418,22 @@ Check wave_theory(const QualityInputs& in) {
   return check;
 }
 
+/// What gauges that are long against a front leave out.
+Check gauge_length(const QualityInputs& in) {
+  Check check{.name = "gauge_length",
+              .value = in.lost_in_gauge_length,
+              .limit = kGaugeLengthLimit,
+              .unit = "1",
+              .verdict = Verdict::warn,
+              .text = {}};
+  check.text = formatted(
+      "a gauge of %.3g mm reads the mean over its length, which takes %.1f %% (rms) off how fast "
+      "this pulse rises and falls (limit %.0f %%), and a reduction takes readings for those at its "
+      "middle: rates at fronts are too low; use shorter gauges or longer rises",
+      1e3 * in.gauge_length_m, 100 * check.value, 100 * kGaugeLengthLimit);
+  return check;
+}
+
 /// An arrival that was given against what the record shows.
 Check arrival(double late_s, double way_s) {
   Check check{
@@ -571,6 +588,9 @@ void judge(const QualityInputs& inputs, Reduction& reduction) {
   }
   if (inputs.moved_by_lateral_inertia > kLateralLimit) {
     reduction.quality.checks.push_back(wave_theory(inputs));
+  }
+  if (inputs.lost_in_gauge_length > kGaugeLengthLimit) {
+    reduction.quality.checks.push_back(gauge_length(inputs));
   }
   if (inputs.arrival_late_s) {
     reduction.quality.checks.push_back(arrival(*inputs.arrival_late_s, inputs.way_to_specimen_s));

@@ -89,6 +89,10 @@ struct QualityInputs {
   /// Of elementary waves: how much of the incident pulse (rms over rms) lateral inertia would have
   /// moved on its way to the specimen.
   double moved_by_lateral_inertia = 0.0;
+  /// Of the longest gauge: how much of the incident pulse's rate of change (rms over rms) is lost
+  /// in the mean over its length.
+  double lost_in_gauge_length = 0.0;
+  double gauge_length_m = 0.0;
 };
 
 /// Judges a reduction: equilibrium, signal to noise, window overlap, clipping, loop closure, the

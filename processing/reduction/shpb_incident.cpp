@@ -76,6 +76,7 @@ std::span<const double> ShpbPass::incident_strain() const {
 void ShpbPass::transform_records() {
   const std::span<const double> pulse = pulse_without_cut();
   choose_band(pulse);
+  lost_in_gauge_length_ = lost_in_gauge_length(pulse);
   if (options_.theory == WaveTheory::elementary) {
     moved_by_lateral_inertia_ = moved_by_lateral_inertia(pulse);
   }

@@ -43,6 +43,8 @@ void ShpbPass::judge_quality() {
   }
   q.band_loss = band_loss_;
   q.moved_by_lateral_inertia = moved_by_lateral_inertia_;
+  q.lost_in_gauge_length = lost_in_gauge_length_;
+  q.gauge_length_m = longest_gauge_m();
   q.arrival_late_s = arrival_late_s_;
   q.way_to_specimen_s = bars_.input.front_time_s(in_.gauge_to_specimen_m);
   if (faces_) {

@@ -74,6 +74,10 @@ class ShpbPass {
   /// Share of a pulse, rms over rms, that lateral inertia moves on its way to the specimen: by the
   /// phase that Love's bar adds, k = (w/c) sqrt(1 + (nu a w/c)^2 / 2).
   [[nodiscard]] double moved_by_lateral_inertia(std::span<const double> pulse) const;
+  [[nodiscard]] double longest_gauge_m() const;
+  /// Share of a pulse's rate of change, rms over rms, that is not in the mean over the longest
+  /// gauge's length: of a wave of wavenumber k that mean is sin(k l / 2) / (k l / 2).
+  [[nodiscard]] double lost_in_gauge_length(std::span<const double> pulse) const;
   /// Behind what is known of it: for as long again as it is known, which is beyond the loading.
   void let_push_go_on(std::span<double> push_Pa, double stress_Pa) const;
   void incident_from_push(std::span<const double> push_Pa, std::span<Complex> incident);
@@ -169,6 +173,7 @@ class ShpbPass {
   bool strain_rate_known_ = false;
   double band_loss_ = 0.0;
   double moved_by_lateral_inertia_ = 0.0;
+  double lost_in_gauge_length_ = 0.0;
   double strain_before_ = 0.0;
   double missing_s_ = 0.0;
   std::vector<double> front_rate_per_s_;  ///< of the front face alone

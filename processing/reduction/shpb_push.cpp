@@ -67,6 +67,33 @@ double ShpbPass::moved_by_lateral_inertia(std::span<const double> pulse) const {
   return std::sqrt(moved);
 }
 
+double ShpbPass::longest_gauge_m() const {
+  double longest_m = 0.0;
+  for (const BarStation* station : {&in_, &out_}) {
+    for (const std::size_t channel : station->channels) {
+      longest_m =
+          std::max(longest_m, shot_.bench.gauges[channel].length_m.value_or(Measured{}).value);
+    }
+  }
+  return longest_m;
+}
+
+double ShpbPass::lost_in_gauge_length(std::span<const double> pulse) const {
+  const double half_m = longest_gauge_m() / 2.0;
+  if (half_m == 0.0) {
+    return 0.0;
+  }
+  const auto mean = [&](const std::function<double(double)>& weight) {
+    return t_.band.mean_over_energy(pulse, input_noise_, reduction_.band_limit_Hz, weight);
+  };
+  const double lost = mean([&](double f_Hz) {
+    const double turn = 2.0 * std::numbers::pi * f_Hz / wave_speed_m_per_s() * half_m;
+    return turn > 0.0 ? std::pow(f_Hz * (1.0 - std::sin(turn) / turn), 2) : 0.0;
+  });
+  const double rate = mean([](double f_Hz) { return f_Hz * f_Hz; });
+  return rate > 0.0 ? std::sqrt(lost / rate) : 0.0;
+}
+
 void ShpbPass::let_push_go_on(std::span<double> push_Pa, double stress_Pa) const {
   const std::span<double> behind = push_Pa.subspan(push_end_);
   const auto known =

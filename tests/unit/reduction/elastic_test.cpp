@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "processing/base/error.hpp"
 #include "processing/reduction/loop_summary.hpp"
@@ -127,6 +128,41 @@ TEST(ElasticReduction, LateralInertiaIsToldOfThePulseAndNotOfItsNoise) {
     model.rise_s = 3e-6;
     EXPECT_TRUE(says_lateral_inertia(model.shot(model.solve(), 3e-6, 16, 0.01, 1))) << duration_s;
   }
+}
+
+/// Of half a sine, the rate of an edge, rms over rms: what its mean over a time is off by.
+double lost_in_mean(double edge_s, double time_s) {
+  const double pi = std::numbers::pi;
+  const auto risen = [&](double t) {
+    const double place = std::clamp(t / edge_s, 0.0, 1.0);
+    return edge_s / pi * (1.0 - std::cos(pi * place));
+  };
+  double lost = 0.0;
+  double all = 0.0;
+  for (double t = -time_s; t < edge_s + time_s; t += 1e-8) {
+    const double rate = t > 0.0 && t < edge_s ? std::sin(pi * t / edge_s) : 0.0;
+    const double mean = (risen(t + time_s / 2.0) - risen(t - time_s / 2.0)) / time_s;
+    lost += std::pow(rate - mean, 2);
+    all += rate * rate;
+  }
+  return std::sqrt(lost / all);
+}
+
+TEST(ElasticReduction, SaysWhatALongGaugeLosesOfAFront) {
+  ElasticShpb model;
+  model.rise_s = 20e-6;
+  Shot shot = noiseless(model, model.solve());
+  const auto said = [&](double length_m) {
+    shot.bench.gauges[1].length_m = Measured{length_m, 0.0};
+    const Reduction r = Reducer().reduce(shot);
+    const auto check = std::ranges::find(r.quality.checks, "gauge_length", &Check::name);
+    return check != r.quality.checks.end() ? check->value : 0.0;
+  };
+  EXPECT_EQ(said(0.0), 0.0);
+  EXPECT_EQ(said(0.003), 0.0);
+  const double speed_m_per_s = std::sqrt(model.youngs_modulus_Pa / model.density_kg_m3);
+  const double exact = lost_in_mean(model.rise_s, 0.03 / speed_m_per_s);
+  EXPECT_NEAR(said(0.03), exact, 0.1 * exact);
 }
 
 TEST(ElasticReduction, BandOfExactWavesEndsBeforeSurfaceGaugesGoBlind) {
