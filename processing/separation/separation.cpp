@@ -8,6 +8,7 @@
 #include "processing/base/range.hpp"
 #include "processing/waves/band_limit.hpp"
 #include "processing/waves/lateral_delay.hpp"
+#include "processing/waves/seen_modes.hpp"
 #include "processing/waves/transform.hpp"
 
 namespace kolsky {
@@ -197,7 +198,7 @@ std::vector<BlindFrequency> blind_frequencies(const Bar& bar, const Compliance& 
       front_speed_m_per_s(bar, compliance) / (2.0 * way_between(gauges, ends, bar.length_m));
   // Blindness is that of the undamped waves.
   const std::vector<Complex> axis = axis_to(band_limit_Hz, spacing_Hz / kPerSpacing);
-  const std::vector<BarMode> modes = bar_modes(theory, bar, compliance, axis);
+  const std::vector<BarMode> modes = seen_modes(theory, bar, compliance, axis);
   const NoiseGain noise_gain(gauges, ends, bar.length_m);
   std::vector<double> gain;
   gain.reserve(axis.size());
@@ -238,7 +239,7 @@ WaveSeparation::WaveSeparation(const Bar& bar, const Compliance& compliance, Wav
   for (std::size_t k = 0; k < bins; ++k) {
     path_.push_back(work_->transform.s(k));
   }
-  modes_ = bar_modes(theory, bar, compliance, path_);
+  modes_ = seen_modes(theory, bar, compliance, path_);
   across_.reserve(bins);
   stiffness_.reserve(bins);
   for (std::size_t k = 0; k < bins; ++k) {

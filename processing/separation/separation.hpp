@@ -63,6 +63,7 @@ struct BlindFrequency {
 /// where it is matched. Solved at each s = eta + i w by least squares weighted with the noise: with
 /// damping (see DampedTransform) overlapping passes and a record that is cut between them cost
 /// nothing, and blind frequencies amplify noise but never divide by zero.
+/// Beyond what gauges see waves go on as seen_modes has it: the band's flank reaches there.
 /// Holds its own work space: one thread at a time.
 class WaveSeparation {
  public:
