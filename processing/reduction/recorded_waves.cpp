@@ -9,6 +9,7 @@
 #include "processing/base/bar_model_check.hpp"
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
+#include "processing/reduction/finite.hpp"
 #include "processing/reduction/first_pulse.hpp"
 #include "processing/reduction/quality.hpp"
 #include "processing/reduction/requested.hpp"
@@ -192,6 +193,20 @@ void require_whole(const Shot& shot) {
   }
 }
 
+/// What is no number must not pass for one, whatever made it.
+void require_numbers(const WavesAtPlace& place) {
+  const SeparatedWaves& waves = place.waves;
+  for (const auto* history : {&waves.right_going, &waves.left_going, &waves.stress_Pa,
+                              &waves.velocity_m_per_s, &place.stress_noise_Pa}) {
+    if (!all_finite(*history)) {
+      throw InputError(
+          "record",
+          "gives waves at " + in_words(place.position_m, "m") + " that are no finite numbers",
+          kCheckPlacesAndBars);
+    }
+  }
+}
+
 std::vector<double> places_of(const RecordedWavesOptions& options, const Bar& bar) {
   if (options.positions_m.empty()) {
     return {0.0, bar.length_m};
@@ -243,6 +258,7 @@ RecordedWaves recorded_waves(const Shot& shot, const RecordedWavesOptions& optio
     all.known = std::min(all.known, told - std::min(told, reach));
     all.places.push_back(
         {position_m, separation.at(position_m), separation.stress_noise_Pa(position_m, all.quiet)});
+    require_numbers(all.places.back());
   }
   if (all.known <= all.quiet) {
     throw InputError("record", "ends before it tells the waves at the places asked for",

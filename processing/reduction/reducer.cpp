@@ -9,6 +9,7 @@
 #include "processing/base/error.hpp"
 #include "processing/base/range.hpp"
 #include "processing/reduction/ball/ball_reducer.hpp"
+#include "processing/reduction/finite.hpp"
 #include "processing/reduction/gauge_order.hpp"
 #include "processing/reduction/gauge_sign.hpp"
 #include "processing/reduction/gauge_silent.hpp"
@@ -65,6 +66,24 @@ void ask_how_gauges_are_connected(const Shot& shot, Reduction& reduction) {
   }
 }
 
+/// What is no number must not pass for a result, whatever made it. Of a strain that no bar bears
+/// that is why.
+Reduction of_numbers(Reduction reduction) {
+  const bool numbers = all_finite(reduction.time_s) && all_finite(reduction.stress_Pa) &&
+                       all_finite(reduction.strain) && all_finite(reduction.strain_rate_per_s) &&
+                       all_finite(reduction.force_front_N) && all_finite(reduction.force_back_N) &&
+                       all_finite(reduction.incident) && all_finite(reduction.reflected) &&
+                       all_finite(reduction.transmitted) &&
+                       !(reduction.ball && !all_finite(reduction.ball->force_N));
+  if (numbers) {
+    return reduction;
+  }
+  const Check* strain = reduction.quality.find("bar_strain");
+  return not_reducible(
+      strain != nullptr ? strain->text : "what was recorded comes out as no finite numbers",
+      kCheckPlacesAndBars);
+}
+
 /// What fails is read first.
 void put_failures_first(std::vector<Check>& checks) {
   std::stable_partition(checks.begin(), checks.end(),
@@ -114,7 +133,8 @@ Reduction Reducer::reduce(const Shot& shot) {
   const ReductionOptions& options = state_->options;
   require_band_of_record(options.band_limit_Hz, shot.rate.Hz());
   const bool is_ball = shot.bench.kind == BenchKind::impact;
-  Reduction reduction = is_ball ? state_->ball.reduce(shot, options) : state_->reduce(shot);
+  Reduction reduction =
+      of_numbers(is_ball ? state_->ball.reduce(shot, options) : state_->reduce(shot));
   reduction.theory = options.theory;
   reduction.stress_from = options.stress;
   reduction.corrections = options.corrections;

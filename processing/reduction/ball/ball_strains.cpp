@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "processing/bridge/bridge.hpp"
+#include "processing/reduction/finite.hpp"
 #include "processing/reduction/pulse.hpp"
 #include "processing/reduction/requested.hpp"
 #include "processing/waves/band_limit.hpp"
@@ -74,7 +75,7 @@ bool BallPass::read_strains() {
       value -= level;
     }
     noise_strain_.push_back(quiet_before(strain, quiet).noise_rms);
-    if (!std::all_of(strain.begin(), strain.end(), [](double v) { return std::isfinite(v); })) {
+    if (!all_finite(strain)) {
       return false;
     }
   }

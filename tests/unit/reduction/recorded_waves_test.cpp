@@ -240,6 +240,12 @@ TEST(RecordedWaves, WhatCannotBeToldIsRefused) {
   EXPECT_EQ(place(silent, {}), "record");
 }
 
+TEST(RecordedWaves, ThatAreNoNumbersAreRefused) {
+  Shot shot = solved(4e-6).shot;
+  shot.bench.gauges.back().position_m = shot.bench.output->length_m;  // free: no strain there
+  EXPECT_EQ(refusal(shot, {.bar = "output"}), "record");
+}
+
 TEST(RecordedWaves, OfRecordsThatAreNotWholeAreRefused) {
   const Shot shot = solved(4e-6).shot;
   Shot holed = shot;
