@@ -117,7 +117,7 @@ double band_limit_of(const Shot& shot, const SeparationRecords& records, const F
   BandLimit band(transform, pulse.size());
   const double limit_Hz = std::min(band.from_noise(pulse, records.noise_rms[first.gauge]),
                                    model.most_band_Hz.value_or(nyquist_Hz));
-  return blind_Hz < nyquist_Hz ? std::min(limit_Hz, highest_band_limit_Hz(blind_Hz)) : limit_Hz;
+  return std::min(limit_Hz, highest_band_limit_Hz(blind_Hz));
 }
 
 /// Root of the mean square of what the waves leave of each record, from the pulse to `known`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace kolsky {
@@ -40,15 +41,6 @@ std::vector<BarMode> love_modes(const Bar& bar, const Compliance& compliance,
   return modes;
 }
 
-/// As many as there are where none is blind.
-std::size_t first_blind(std::span<const BarMode> modes) {
-  return static_cast<std::size_t>(std::ranges::find_if(modes, is_blind) - modes.begin());
-}
-
-double frequency_Hz(Complex s) {
-  return s.imag() / (2.0 * std::numbers::pi);
-}
-
 }  // namespace
 
 std::vector<BarMode> bar_modes(WaveTheory theory, const Bar& bar, const Compliance& compliance,
@@ -71,8 +63,11 @@ bool is_blind(const BarMode& mode) {
 }
 
 double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path) {
-  const std::size_t first = first_blind(modes);
-  return frequency_Hz(first < modes.size() ? path[first] : path.back());
+  const auto first =
+      static_cast<std::size_t>(std::ranges::find_if(modes, is_blind) - modes.begin());
+  // Not the path's end, which a limit asked for may be beyond by rounding.
+  return first < modes.size() ? path[first].imag() / (2.0 * std::numbers::pi)
+                              : std::numeric_limits<double>::infinity();
 }
 
 double blind_from_Hz(WaveTheory theory, const Bar& bar, const Compliance& compliance,
@@ -83,9 +78,7 @@ double blind_from_Hz(WaveTheory theory, const Bar& bar, const Compliance& compli
   for (std::size_t n = 1; n <= kSteps; ++n) {
     path.emplace_back(0.0, 2.0 * std::numbers::pi * highest_Hz * static_cast<double>(n) / kSteps);
   }
-  const std::size_t first = first_blind(bar_modes(theory, bar, compliance, path));
-  // The path's own end is that but for rounding, which a limit asked for would be beyond.
-  return first < kSteps ? frequency_Hz(path[first]) : highest_Hz;
+  return blind_from_Hz(bar_modes(theory, bar, compliance, path), path);
 }
 
 double front_speed_m_per_s(const Bar& bar, const Compliance& compliance) {

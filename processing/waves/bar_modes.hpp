@@ -25,10 +25,10 @@ inline constexpr double kBlindMeanOverSurface = 2.0;
 [[nodiscard]] bool is_blind(const BarMode& mode);
 
 /// Where surface gauges go blind: the frequency [Hz] on the path from which they read less than
-/// half of the mean strain. The path's highest frequency where that does not happen.
+/// half of the mean strain; infinite where the path does not reach that.
 [[nodiscard]] double blind_from_Hz(std::span<const BarMode> modes, std::span<const Complex> path);
 
-/// The same of a bar; `highest_Hz` where that does not happen up to there.
+/// The same of a bar up to `highest_Hz`.
 [[nodiscard]] double blind_from_Hz(WaveTheory theory, const Bar& bar, const Compliance& compliance,
                                    double highest_Hz);
 

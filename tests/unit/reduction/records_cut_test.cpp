@@ -99,6 +99,16 @@ TEST(BandLimit, BeyondTheRecordIsRefused) {
   }
 }
 
+// Half the rate is in every record, whatever rounding makes of its transform's last frequency.
+TEST(BandLimit, AtHalfTheRateIsTakenOfRecordsOfAnyLength) {
+  for (const Shot& shot : {bar_shot(), ball_shot()}) {
+    for (std::size_t n = 0; n < 12; ++n) {
+      const Shot cut = first_samples(shot, shot.samples() - 31 * n);
+      EXPECT_NO_THROW((void)limited_to(cut, 0.5 * shot.rate.Hz())) << cut.samples();
+    }
+  }
+}
+
 /// Of its histories.
 std::size_t samples_until(const Reduction& r, double share_of_peak) {
   const double peak = peak_Pa(r);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 
 #include "processing/base/error.hpp"
@@ -116,14 +117,14 @@ TEST(BlindFrom, IsNearTheKnownFrequencyOfSurfaceGauges) {
   const auto modes = bar_modes(WaveTheory::exact, bar, unit, path);
   EXPECT_NEAR(blind_from_Hz(modes, path), 0.26, 0.03);
   const auto thin = bar_modes(WaveTheory::elementary, bar, unit, path);
-  EXPECT_NEAR(blind_from_Hz(thin, path), 0.4, 1e-9);
+  EXPECT_EQ(blind_from_Hz(thin, path), std::numeric_limits<double>::infinity());
 }
 
 // A band that a user gives is not beyond what it is itself.
-TEST(BlindFrom, IsTheHighestFrequencyToItsLastBitWhereNothingIsBlind) {
+TEST(BlindFrom, IsNotBelowABandInWhichNothingIsBlind) {
   const ThreeElementSolid pmma(paper_pmma());
   for (const double highest_Hz : {52208.24682190047, 7930.420743478792, 56123.07}) {
-    EXPECT_EQ(blind_from_Hz(WaveTheory::elementary, pmma_bar(), pmma, highest_Hz), highest_Hz);
+    EXPECT_GE(blind_from_Hz(WaveTheory::elementary, pmma_bar(), pmma, highest_Hz), highest_Hz);
   }
 }
 
