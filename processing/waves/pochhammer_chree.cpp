@@ -16,6 +16,8 @@ constexpr double kMostDamped = 0.9;
 /// Below which hardly any ratio moves a wave.
 constexpr double kLeastLimit = 0.15;
 constexpr double kFarthest = 12.0;
+/// Below which rounding moves the strain at the surface more than what goes sideways does.
+constexpr double kLeastRatio = 1e-8;
 
 /// Follows the root along a path of z, by a parabola through what is known of it.
 class RootFollower {
@@ -72,8 +74,13 @@ std::vector<BarMode> PochhammerChree::along(const std::vector<Complex>& path) co
   std::vector<BarMode> modes;
   modes.reserve(path.size());
   RootFollower follower(poisson_ratio_);
+  const bool sections_stay_plane = std::abs(poisson_ratio_) < kLeastRatio;
   for (const Complex s : path) {
     const Complex elementary = s * std::sqrt(density_kg_m3_ * compliance_->at(s));
+    if (sections_stay_plane) {
+      modes.push_back({elementary, 1.0, 0.5});
+      continue;
+    }
     const double reach = std::abs(elementary) * radius_m_;
     if (modes.empty()) {
       require_little_damping(elementary.real() * radius_m_);

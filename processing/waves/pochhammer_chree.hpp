@@ -37,6 +37,10 @@ class PochhammerChree {
   /// The first mode meets another where the real part of gamma0 a is about Poisson's ratio (and the
   /// imaginary part 1.8): to the right of that it is not the same mode any more, and sends waves
   /// ahead of themselves. A path that starts there is of a record that is too short for its bar.
+  ///
+  /// Without a Poisson's ratio the elementary wave is that mode, nothing goes sideways, and it
+  /// meets the other without coupling. The equation says so of gamma, and nothing (0 / 0) of the
+  /// surface's strain.
   /// @throws InputError with how much longer a record has to be
   [[nodiscard]] std::vector<BarMode> along(const std::vector<Complex>& path) const;
 

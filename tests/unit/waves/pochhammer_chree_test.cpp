@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "processing/base/error.hpp"
 #include "tests/unit/waves/pochhammer_table.hpp"
@@ -93,6 +95,42 @@ TEST(PochhammerChree, APathThatIsDampedWithinARadiusIsRefused) {
     EXPECT_NE(std::string(error.what()).find("record 2 times as long"), std::string::npos)
         << error.what();
   }
+}
+
+// Sections stay plane where nothing goes sideways: the elementary wave is exact, whatever its
+// damping and frequency.
+TEST(PochhammerChree, OfNoPoissonsRatioIsTheElementaryWave) {
+  const ElasticSolid unit(1.0);
+  std::vector<Complex> path;
+  for (double up = 0.0; up < 14.0; up += 0.01) {
+    path.emplace_back(0.14, up);
+  }
+  const auto modes_of = [&](double poisson_ratio) {
+    return PochhammerChree(1.0, poisson_ratio, 1.0, unit).along(path);
+  };
+  for (const double none : {0.0, 1e-17, 1e-13}) {
+    const auto modes = modes_of(none);
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      ASSERT_NEAR(std::abs(modes[k].gamma - path[k]), 0.0, 1e-12);
+      ASSERT_NEAR(std::abs(modes[k].mean_over_surface - 1.0), 0.0, 1e-12);
+      ASSERT_NEAR(std::abs(modes[k].slope - 0.5), 0.0, 1e-12);
+    }
+  }
+  // What little goes sideways moves the mean's share by as little, and the speed by its square.
+  const auto off = [&](double poisson_ratio) {
+    const auto modes = modes_of(poisson_ratio);
+    std::pair<double, double> most{0.0, 0.0};
+    for (std::size_t k = 0; path[k].imag() < 1.0; ++k) {
+      most.first = std::max(most.first, std::abs(modes[k].gamma - path[k]));
+      most.second = std::max(most.second, std::abs(modes[k].mean_over_surface - 1.0));
+    }
+    return most;
+  };
+  const auto thousandth = off(1e-3);
+  const auto tenth_of_it = off(1e-4);
+  EXPECT_LT(thousandth.second, 1e-3);
+  EXPECT_NEAR(tenth_of_it.first / thousandth.first, 0.01, 1e-4);
+  EXPECT_NEAR(tenth_of_it.second / thousandth.second, 0.1, 1e-3);
 }
 
 TEST(PochhammerChree, UpToThereDampingDoesNotMatter) {
