@@ -237,22 +237,45 @@ void check_gauge_name(const std::string& place, const std::string& name) {
   }
 }
 
-void check_position(const std::string& place, const Gauge& gauge, const Bar& bar, bool split) {
+/// A free end has no strain at any time, and the struck one none but while it is pushed: a gauge
+/// filed there is filed in a wrong place. How the end of a bar by itself is held no file says, and
+/// of a ball the struck face has the whole push.
+void refuse_at_free_end(const std::string& place, const Gauge& gauge, const Bar& bar,
+                        BenchKind kind, const std::string& mend) {
+  const bool at_far_end = gauge.position_m == bar.length_m.value;
+  if (kind == BenchKind::impact && at_far_end) {
+    throw InputError(place, "is at the bar's far end, which is free: there is no strain", mend);
+  }
+  if (kind != BenchKind::shpb) {
+    return;
+  }
+  if (gauge.bar == "output" && at_far_end && bar.far_end == FarEnd::free) {
+    throw InputError(place, "is at the bar's far end, which is free: there is no strain",
+                     mend + ", or far_end = \"matched\" where another bar goes on");
+  }
+  if (gauge.bar == "input" && gauge.position_m == 0.0) {
+    throw InputError(place, "is at the struck end, which is free but for the striker's push", mend);
+  }
+}
+
+void check_position(const std::string& place, const Gauge& gauge, const Bench& bench) {
+  const Bar& bar = bench.bar_of(gauge);
   const std::string where = gauge.bar == "output" ? "the specimen's end" : "the impacted end";
+  const std::string mend = "give metres from " + where + ": 300 mm is 0.3";
   const Range on_the_bar{0.0, bar.length_m, "m", "give metres from the end of the bar"};
   if (!(gauge.position_m >= on_the_bar.least && gauge.position_m <= on_the_bar.most)) {
     throw InputError(
         place + ".position_m",
         in_words(gauge.position_m, "m") + " is not on the " + in_words(bar.length_m, "m") + " bar",
-        "give metres from " + where + ": 300 mm is 0.3");
+        mend);
   }
   require_in_range(place + ".position_m", gauge.position_m, on_the_bar);
   const double face_m = gauge.bar == "output" ? 0.0 : bar.length_m.value;
-  if (split && gauge.position_m == face_m) {
+  if (bench.output && gauge.position_m == face_m) {
     throw InputError(place + ".position_m",
-                     "is at the specimen's face, where waves to and fro are one",
-                     "give metres from " + where + ": 300 mm is 0.3");
+                     "is at the specimen's face, where waves to and fro are one", mend);
   }
+  refuse_at_free_end(place + ".position_m", gauge, bar, bench.kind, mend);
   require_tolerance(place + ".position_m", gauge.position_m, 0.1 * bar.length_m);
 }
 
@@ -265,7 +288,7 @@ void check_gauge(const std::string& place, const Gauge& gauge, const Bench& benc
     throw InputError(place + ".bar", "is \"output\", and this bench has no output bar",
                      "give \"input\"");
   }
-  check_position(place, gauge, bench.bar_of(gauge), bench.output.has_value());
+  check_position(place, gauge, bench);
   check_number(place + ".length_m", gauge.length_m, kGaugeLength);
   require_in_range(place + ".delay_s", gauge.delay_s, kDelay);
   require_tolerance(place + ".delay_s", gauge.delay_s, kMostDelaySd_s);

@@ -112,7 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"bars.input.length_m", [](Bench& b) { b.input.length_m.value = 15.0; }},
         Change{"nothing", [](Bench& b) { b.input.density_kg_m3.value = 25.0; }},
         Change{"bars.input.density_kg_m3", [](Bench& b) { b.input.density_kg_m3.value = 19.3; }},
-        Change{"nothing", [](Bench& b) { b.gauges[0].position_m.value = 0.0; }},
+        Change{"nothing",
+               [](Bench& b) { b.gauges[0].position_m.value = std::nextafter(0.0, 1.0); }},
         Change{"nothing",
                [](Bench& b) { b.gauges[0].position_m.value = std::nextafter(0.7, 0.0); }},
         Change{"gauges[0].position_m",
@@ -145,7 +146,37 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"gauges[0].position_m",
                [](Bench& b) { b.gauges[0].position_m.value = b.input.length_m; }},
         Change{"gauges[1].position_m", [](Bench& b) { b.gauges[1].position_m.value = 0.0; }},
+        Change{"gauges[0].position_m", [](Bench& b) { b.gauges[0].position_m.value = 0.0; }},
+        Change{"gauges[1].position_m",
+               [](Bench& b) { b.gauges[1].position_m.value = b.output->length_m; }},
+        Change{"nothing",
+               [](Bench& b) {
+                 b.gauges[1].position_m.value = b.output->length_m;
+                 b.output->far_end = FarEnd::matched;
+               }},
         Change{"bars.input.side_m", [](Bench& b) { b.input.section = Section::square; }}));
+
+Bench one_bar(BenchKind kind, double position_m) {
+  Bench bench = paper_bench();
+  bench.kind = kind;
+  bench.output.reset();
+  bench.specimen.reset();
+  bench.gauges.pop_back();
+  bench.gauges[0].position_m.value = position_m;
+  if (kind == BenchKind::impact) {
+    bench.ball = Ball{{0.0427}, {0.03565}, Measured{0.0434}, false};
+  }
+  return bench;
+}
+
+// A ball's push is all at the struck face and nothing at the free end; no file says how a bar by
+// itself is held.
+TEST(Bench, OfOneBarRefusesAGaugeAtAnEndThatIsFreeForSure) {
+  EXPECT_EQ(place_refused(one_bar(BenchKind::impact, 0.0)), "nothing");
+  EXPECT_EQ(place_refused(one_bar(BenchKind::impact, 0.7)), "gauges[0].position_m");
+  EXPECT_EQ(place_refused(one_bar(BenchKind::bar, 0.0)), "nothing");
+  EXPECT_EQ(place_refused(one_bar(BenchKind::bar, 0.7)), "nothing");
+}
 
 }  // namespace
 }  // namespace kolsky
