@@ -86,6 +86,11 @@ bool push_hidden(const Quality& quality) {
   return overlap != nullptr && overlap->verdict == Verdict::fail;
 }
 
+bool sign_is_wrong(const Quality& quality) {
+  const Check* sign = quality.find("gauge_sign");
+  return sign != nullptr && sign->verdict == Verdict::fail;
+}
+
 /// A history counted positive in the sense of the loading.
 std::vector<double> in_sense(std::span<const double> history, double sense) {
   std::vector<double> turned(history.begin(), history.end());
@@ -156,6 +161,13 @@ LoopSummary summarise(const Reduction& reduction) {
   summary.peak_strain = strain[index_of_largest(in_sense(strain, sense))];
   const Loading loading = loading_of(reduction, sense);
   if (!loading.missing.empty()) {
+    // In what sense it is loaded is not known then, nor how it should have moved.
+    if (sign_is_wrong(reduction.quality)) {
+      summary.no_loading =
+          "stress and strain do not go together, a gauge seems to read with the "
+          "other sign (gauge_sign)";
+      return summary;
+    }
     summary.no_loading = loading.missing;
     if (push_hidden(reduction.quality)) {
       summary.no_loading += "; the reflection hides the striker's push (window_overlap)";

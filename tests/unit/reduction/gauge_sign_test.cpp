@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "processing/reduction/loop_summary.hpp"
 #include "processing/reduction/reducer.hpp"
 #include "processing/reduction/validity.hpp"
 #include "tests/unit/reduction/solved_bench.hpp"
@@ -58,6 +59,17 @@ TEST(GaugeSign, OfOneThatIsInvertedFailsNamesItAndIsFiledSo) {
     EXPECT_EQ(mended.stress_Pa, right.stress_Pa);
     EXPECT_EQ(mended.quality.find("gauge_sign"), nullptr);
   }
+}
+
+// The back's force pulls at the specimen then: not to be told as the cause.
+TEST(GaugeSign, OfAnOutputThatIsInvertedIsWhyThereIsNoLoading) {
+  Shot shot = solved(testing::kPmma, testing::kCore);
+  turn_round(shot.channels.back());
+  ReductionOptions options;
+  options.stress = StressFrom::back;
+  const LoopSummary loop = summarise(Reducer(options).reduce(shot));
+  EXPECT_NE(loop.no_loading.find("gauge_sign"), std::string::npos) << loop.no_loading;
+  EXPECT_EQ(loop.no_loading.find("lengthened"), std::string::npos) << loop.no_loading;
 }
 
 TEST(GaugeSign, OfAllThatAreInvertedWarnsUnlessTheBarsAreLoadedSo) {
