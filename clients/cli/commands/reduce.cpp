@@ -118,6 +118,15 @@ void write_files(const Settings& settings, const ReducedShot& reduced) {
   }
 }
 
+// It would be the same capture again.
+void refuse_to_save_the_same(const Settings& settings) {
+  if (settings.save && !settings.bench) {
+    throw InputError(std::string(kName) + ": --save",
+                     "writes the samples with a corrected bench, and none is given",
+                     "give --bench beside it, or leave it out");
+  }
+}
+
 // What asks for a specimen means nothing for a ball.
 void refuse_for_ball(const Settings& settings, const Shot& ball) {
   as_given([&] { require_suits(settings.request, ball.bench, {}); });
@@ -162,6 +171,7 @@ int reduce_several(const Settings& settings, const Asked& asked, Context& contex
 
 int run(const Settings& settings, Context& context) {
   refuse_one_name_for_two(settings);
+  refuse_to_save_the_same(settings);
   std::optional<BarModelFile> bars;
   if (settings.bar_model.has_value()) {
     bars = read_bar_model(*settings.bar_model);
@@ -257,7 +267,7 @@ Command reduce_command() {
              "a corrected bench file: a new result beside the one with the capture's own",
              &s.bench),
       option("--save", "CAPTURE.h5",
-             "a new capture to write: the same samples with the corrected bench", &s.save),
+             "a new capture to write: the same samples with the bench of --bench", &s.save),
       option("--svg", "FILE", "a page of plots to write", &s.svg),
       option("--csv", "FILE", "a table of the histories to write, with the gauges beside it",
              &s.csv)};

@@ -66,6 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"shots", "--most", "0"}, {"--most", "1 or more"}},
         Misuse{{"fire", "--wait", "-1"}, {"--wait", "more than 0"}},
         Misuse{{"reduce", "a.h5", "--softening", "-1"}, {"--softening", "0 to 1"}},
+        Misuse{{"reduce", "a.h5", "--save", "b.h5"}, {"--save", "give --bench beside it"}},
         Misuse{{"reduce", "a.h5", "--svg", "x", "--csv", "./x"}, {"x", "two files"}},
         Misuse{{"fire", "now"}, {"\"now\" is one word too many"}}));
 
