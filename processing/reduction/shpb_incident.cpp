@@ -73,6 +73,10 @@ std::span<const double> ShpbPass::incident_strain() const {
   return std::span<const double>(t_.input_strain).first(split_);
 }
 
+std::span<const double> ShpbPass::pulse_as_read() const {
+  return incident_strain().subspan(std::min(quiet_, split_));
+}
+
 void ShpbPass::transform_records() {
   const std::span<const double> pulse = pulse_without_cut();
   choose_band(pulse);
@@ -107,7 +111,7 @@ void ShpbPass::choose_band(std::span<const double> pulse) {
     bins_ = BandLimit::bins_within(t_.transform, limit_Hz);
   }
   reduction_.band_limit_Hz = limit_Hz;
-  band_loss_ = t_.band.loss(pulse, input_noise_, limit_Hz);
+  band_loss_ = t_.band.loss(pulse_as_read(), input_noise_, limit_Hz);
 }
 
 void ShpbPass::require_band_of_pulse(double limit_Hz) const {

@@ -56,9 +56,11 @@ class ShpbPass {
   /// Foot at the gauge itself, from the unfiltered record.
   [[nodiscard]] double rough_foot(const Rise& rise, std::size_t reach);
   void transform_records();
-  /// The incident pulse from its quiet part on; of one that is hidden before it is over, less what
-  /// is left of it there, risen to as smoothly as the pulse is long: a step's spectrum would count
-  /// as its own, far above what the noise allows.
+  /// The incident pulse from its quiet part on, until it is hidden.
+  [[nodiscard]] std::span<const double> pulse_as_read() const;
+  /// Of one that is hidden before it is over, less what is left of it there, risen to as smoothly
+  /// as the pulse is long: a step's spectrum would count as its own, far above what the noise
+  /// allows.
   [[nodiscard]] std::span<const double> pulse_without_cut();
   /// The incident pulse at its gauge, as long as the specimen's answer does not hide it.
   [[nodiscard]] std::span<const double> incident_strain() const;

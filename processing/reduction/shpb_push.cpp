@@ -24,7 +24,7 @@ double ShpbPass::noise_of_few(std::size_t few) const {
 }
 
 std::span<const double> ShpbPass::pulse_without_cut() {
-  const std::span<const double> pulse = incident_strain().subspan(std::min(quiet_, split_));
+  const std::span<const double> pulse = pulse_as_read();
   const std::size_t few = few_of(pulse.size());
   const std::span<const double> last = pulse.last(few);
   const double left = std::accumulate(last.begin(), last.end(), 0.0) /
@@ -58,13 +58,15 @@ double ShpbPass::moved_by_lateral_inertia(std::span<const double> pulse) const {
   const Bar& bar = shot_.bench.input;
   const double nu_a_m = bar.poisson_ratio.value * bar.diameter_m.value / 2.0;
   const double moved =
-      t_.band.mean_over_energy(pulse, input_noise_, reduction_.band_limit_Hz, [&](double f_Hz) {
+      t_.band.weighed_energy(pulse, input_noise_, reduction_.band_limit_Hz, [&](double f_Hz) {
         const double wavenumber_per_m = 2.0 * std::numbers::pi * f_Hz / wave_speed_m_per_s();
         const double love = std::sqrt(1.0 + std::pow(nu_a_m * wavenumber_per_m, 2) / 2.0);
         const double turn = wavenumber_per_m * (love - 1.0) * in_.gauge_to_specimen_m;
         return std::norm(std::polar(1.0, turn) - 1.0);
       });
-  return std::sqrt(moved);
+  const std::span<const double> whole = pulse_as_read();
+  const double all = std::inner_product(whole.begin(), whole.end(), whole.begin(), 0.0);
+  return all > 0.0 ? std::sqrt(moved / all) : 0.0;
 }
 
 double ShpbPass::longest_gauge_m() const {
@@ -83,14 +85,14 @@ double ShpbPass::lost_in_gauge_length(std::span<const double> pulse) const {
   if (half_m == 0.0) {
     return 0.0;
   }
-  const auto mean = [&](const std::function<double(double)>& weight) {
-    return t_.band.mean_over_energy(pulse, input_noise_, reduction_.band_limit_Hz, weight);
+  const auto energy = [&](const std::function<double(double)>& weight) {
+    return t_.band.weighed_energy(pulse, input_noise_, reduction_.band_limit_Hz, weight);
   };
-  const double lost = mean([&](double f_Hz) {
+  const double lost = energy([&](double f_Hz) {
     const double turn = 2.0 * std::numbers::pi * f_Hz / wave_speed_m_per_s() * half_m;
     return turn > 0.0 ? std::pow(f_Hz * (1.0 - std::sin(turn) / turn), 2) : 0.0;
   });
-  const double rate = mean([](double f_Hz) { return f_Hz * f_Hz; });
+  const double rate = energy([](double f_Hz) { return f_Hz * f_Hz; });
   return rate > 0.0 ? std::sqrt(lost / rate) : 0.0;
 }
 

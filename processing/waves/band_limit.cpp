@@ -97,24 +97,22 @@ double BandLimit::loss(std::span<const double> pulse, double noise_rms, double l
   return all > 0.0 ? std::clamp(taken / all, 0.0, 1.0) : 0.0;
 }
 
-double BandLimit::mean_over_energy(std::span<const double> pulse, double noise_rms, double limit_Hz,
-                                   const std::function<double(double)>& weight) {
+double BandLimit::weighed_energy(std::span<const double> pulse, double noise_rms, double limit_Hz,
+                                 const std::function<double(double)>& weight) {
   pulse_transform_.forward(pulse, pulse_spectrum_);
   const double noise = noise_rms * noise_rms * static_cast<double>(pulse.size());
   const std::size_t bins =
       std::min(bins_within(pulse_transform_, limit_Hz), pulse_spectrum_.size());
   const double wc = corner_per_s(limit_Hz);
-  double all = 0.0;
-  double weighed = 0.0;
+  double sum = 0.0;
   for (std::size_t k = 0; k < bins; ++k) {
     const double w = pulse_transform_.s(k).imag();
     const double square = std::pow(w / wc, 2);
-    const double energy =
-        (std::norm(pulse_spectrum_[k]) - noise) * std::exp(-2.0 * square * square);
-    all += energy;
-    weighed += energy * weight(w / (2.0 * std::numbers::pi));
+    sum += (std::norm(pulse_spectrum_[k]) - noise) * std::exp(-2.0 * square * square) *
+           weight(w / (2.0 * std::numbers::pi));
   }
-  return all > 0.0 ? std::max(0.0, weighed / all) : 0.0;
+  // A line stands for both signs of its frequency.
+  return std::max(0.0, 2.0 * sum / static_cast<double>(pulse_transform_.length()));
 }
 
 const BandLimit::Filter& BandLimit::filter(double limit_Hz) {

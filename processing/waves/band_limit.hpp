@@ -40,11 +40,10 @@ class BandLimit {
   /// Share of a pulse's energy, less that of its noise, that the filter with this limit takes off.
   [[nodiscard]] double loss(std::span<const double> pulse, double noise_rms, double limit_Hz);
 
-  /// Mean of a weight of frequency [Hz] over a pulse's energy, less that of its noise, of what the
-  /// filter with this limit lets through.
-  [[nodiscard]] double mean_over_energy(std::span<const double> pulse, double noise_rms,
-                                        double limit_Hz,
-                                        const std::function<double(double)>& weight);
+  /// Sum of a pulse's squares, less that of its noise, of what the filter with this limit lets
+  /// through, each frequency [Hz] by its weight.
+  [[nodiscard]] double weighed_energy(std::span<const double> pulse, double noise_rms,
+                                      double limit_Hz, const std::function<double(double)>& weight);
 
   /// Multiplies a spectrum, or its first bins, by the filter with this limit.
   void apply(double limit_Hz, std::span<Complex> spectrum);

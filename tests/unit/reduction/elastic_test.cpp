@@ -119,7 +119,8 @@ bool says_lateral_inertia(const Shot& shot) {
 // more the shorter they are.
 TEST(ElasticReduction, LateralInertiaIsToldOfThePulseAndNotOfItsNoise) {
   ElasticShpb model;
-  model.pulse_s = 200e-6;
+  model.length_in_m = 1.5;
+  model.gauge_to_A_m = 1.0;
   model.foot_at_gauge_s = 400e-6;
   for (const double duration_s : {1.0e-3, 1.3e-3, 4e-3}) {
     model.duration_s = duration_s;
