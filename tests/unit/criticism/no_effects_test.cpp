@@ -302,6 +302,24 @@ TEST(ChangingGauge, IsToldWithItsSizeAndTime) {
   EXPECT_NEAR(number_told(diagnosis, " % more from ", " us after the foot"), 150.0, 5.0);
 }
 
+// Nothing changes within a shot: a bridge that was balanced anew reads 1 % more from then on.
+TEST(ChangingGauge, IsNoGainThatDiffersBetweenShots) {
+  const Campaign even = read_campaign(testing::shots_of(
+      testing::draw_campaign({.seed = 23, .shots = 6, .gauges = 4, .noise_strain = 2e-6})));
+  for (std::size_t gauge = 1; gauge < even.gauges(); ++gauge) {
+    Campaign campaign = even;
+    for (std::size_t n = 3; n < campaign.shots.size(); ++n) {
+      for (double& strain : campaign.shots[n].strain[gauge]) {
+        strain *= 1.01;
+      }
+    }
+    const Diagnosis diagnosis = diagnosed(campaign, paper_model(BenchKind::bar, false));
+    EXPECT_EQ(name_of(diagnosis.verdict), "unknown") << gauge;
+    EXPECT_TRUE(says(diagnosis, "gauges do not read all shots alike")) << gauge;
+    EXPECT_FALSE(says(diagnosis, "nearly all of it")) << gauge;
+  }
+}
+
 TEST(Unlisted, LeavesTrueEffectsWhatTheyAre) {
   testing::Campaign truth = testing::draw_campaign({.seed = 2, .shots = 6, .gauges = 3});
   for (const char* effect : {"crosstalk:g1=0.004", "second-relaxation=6e-12"}) {
