@@ -162,8 +162,9 @@ int run(const Settings& settings, Context& context) {
               << misfit_text(studied.misfit) << in_words(studied.misfit, campaign.shots.size())
               << "\n"
               << strained_text(studied.model) << "\n"
-              << (fails_anywhere(comparison) ? places_table(comparison, campaign)
-                                             : "  " + nothing_fails_words(studied.model) + "\n")
+              << (fails_anywhere(comparison)
+                      ? places_table(comparison, campaign)
+                      : "  " + nothing_fails_words(studied.model, studied.misfit) + "\n")
               << "\n"
               << (strengths.empty() ? "" : strengths + "\n")
               << worst_plot(comparison, comparer, study, studied.fit.residual, context.terminal);

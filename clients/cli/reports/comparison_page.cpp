@@ -189,15 +189,18 @@ PageSection misfit_section(const std::string& title, const Misfit& misfit, std::
            {"noise", misfit.noise_floor_share}}};
 }
 
+/// @param hidden  what to say of what no single place shows
 PageSection where_section(const std::string& title, const Comparison& comparison,
-                          const Campaign& campaign) {
+                          const Campaign& campaign, const std::string& hidden) {
   PageSection section{
       title,
       {"Rms of the residuals in units of the measured noise: 1 is noise alone. A gauge's deviation "
        "is that from the wave common to all gauges."}};
   section.maps = atlas(comparison, campaign);
   if (!fails_anywhere(comparison)) {
-    section.text.emplace_back("No place stands out: every one is as noise alone leaves it.");
+    const std::string together = together_words(comparison.misfit);
+    section.text.push_back("No single place stands out of the noise" +
+                           (together.empty() ? "." : "; " + together + ".") + hidden);
   }
   return section;
 }
@@ -257,10 +260,9 @@ std::string headline(const Comparison& comparison, const Model& model, const Cam
   const auto worst = std::find_if(comparison.regions.begin(), comparison.regions.end(),
                                   [](const Region& region) { return region.significant; });
   if (worst == comparison.regions.end()) {
-    return is_strained(model)
-               ? "No place stands out of the noise, but filed numbers are strained to "
-                 "that end beyond three deviations."
-               : "The model agrees with the records everywhere to within the noise.";
+    std::string words = nothing_fails_words(model, comparison.misfit);
+    words.front() = 'N';
+    return words + ".";
   }
   return fmt::format(
       "The model fails most at gauge {}, {}, {}: {:.0f} % of the misfit, {:.3g} times the noise{}.",
@@ -284,6 +286,16 @@ std::string verdict_line(const Diagnosis& diagnosis) {
     }
   }
   return text + ".";
+}
+
+/// How a verdict goes with places of which none stands out.
+std::string hidden_words(const Diagnosis& diagnosis) {
+  if (!diagnosis.effects.empty()) {
+    return " What was found is spread over places or hides in slow noise.";
+  }
+  return diagnosis.verdict == DiagnosisVerdict::unknown
+             ? " What is unknown is spread over places or hides in slow noise."
+             : "";
 }
 
 PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
@@ -317,14 +329,17 @@ Page comparison_page(const std::string& title, std::vector<std::string> notes, S
   Page page;
   page.title = title;
   page.headline = headline(comparison, studied.model, campaign);
-  page.good = !fails_anywhere(comparison) && !is_strained(studied.model);
+  page.good =
+      !fails_anywhere(comparison) && !fails_together(studied.misfit) && !is_strained(studied.model);
   page.notes = std::move(notes);
   page.notes.push_back(
       fmt::format("{}, {}, judged up to {}", counted(campaign.shots.size(), "shot"),
                   counted(campaign.gauges(), "gauge"), with_unit(band.limit_Hz, "Hz")));
   page.sections.push_back(
       misfit_section("How large the misfit is", studied.misfit, campaign.shots.size()));
-  page.sections.push_back(where_section("Where it is", comparison, campaign));
+  page.sections.push_back(where_section(
+      "Where it is", comparison, campaign,
+      " `kolsky diagnose` looks for what is spread over places or hides in slow noise."));
   page.sections.push_back(records_section(study, studied, comparer, comparison));
   if (fails_anywhere(comparison)) {
     add_strengths(page, by_strength(comparison, studied.model, campaign), campaign);
@@ -351,7 +366,8 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
   const auto fitted = [&](const Model& model) { return study.beside_quiet(study.fit(model)); };
   const Studied first = fitted(before);
   const Comparison failed = compare(study, first);
-  page.sections.push_back(where_section("Where the model failed before", failed, campaign));
+  page.sections.push_back(
+      where_section("Where the model failed before", failed, campaign, hidden_words(diagnosis)));
   add_places(page, failed, campaign);
   page.sections.push_back(
       {"What might be missing", {}, {}, {}, {candidates_table(diagnosis, "shots")}});
@@ -359,7 +375,7 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
   Comparer comparer(study.residuals(), last.composition, last.fit.theta);
   const Comparison after = comparer.compare(last.fit.residual, last.misfit);
   if (diagnosis.model) {
-    page.sections.push_back(where_section("What is left after", after, campaign));
+    page.sections.push_back(where_section("What is left after", after, campaign, ""));
     add_places(page, after, campaign);
   }
   page.sections.push_back(

@@ -26,6 +26,10 @@ struct Fades {
   double out_s = 0.0;
 };
 
+double deviations_beyond_noise(const Misfit& misfit) {
+  return (misfit.chi2_reduced - 1.0) * std::sqrt(misfit.degrees_of_freedom / 2.0);
+}
+
 /// Half of a fade lies outside its window's limits.
 Fades fades_of(const ArrivalWindow& window, const WhiteResiduals& residuals, std::size_t shot) {
   const double period_s = residuals.judged_period_s();
@@ -187,11 +191,31 @@ bool fails_anywhere(const Comparison& comparison) {
                      [](const Tile& tile) { return tile.significant; });
 }
 
-std::string nothing_fails_words(const Model& model) {
-  return is_strained(model)
-             ? "no place stands out of the noise, but filed numbers are strained to that end "
-               "beyond three deviations: the model is not adequate while they are"
-             : "the model fails nowhere: every place is as noise alone leaves it";
+bool fails_together(const Misfit& misfit) {
+  constexpr double kBeyond = 3.0;
+  return deviations_beyond_noise(misfit) > kBeyond;
+}
+
+std::string together_words(const Misfit& misfit) {
+  return fails_together(misfit)
+             ? fmt::format(
+                   "all together hold more than the noise before the pulses, by {:.2g} deviations",
+                   deviations_beyond_noise(misfit))
+             : "";
+}
+
+std::string nothing_fails_words(const Model& model, const Misfit& misfit) {
+  std::string text = "no single place stands out of the noise";
+  if (fails_together(misfit)) {
+    text += ", but " + together_words(misfit);
+  }
+  if (is_strained(model)) {
+    text += fails_together(misfit) ? ", and" : ", but";
+    text +=
+        " filed numbers are strained to that end beyond three deviations: the model is not "
+        "adequate while they are";
+  }
+  return text + "; `kolsky diagnose` looks for what is spread over places or hides in slow noise";
 }
 
 std::string places_table(const Comparison& comparison, const Campaign& campaign) {
@@ -276,7 +300,7 @@ std::string worst_plot(const Comparison& comparison, Comparer& comparer, Study& 
   }
   const PlotSize size{std::min(terminal.columns, kPlotColumns), kPlotRows};
   return (fails ? "  where it fails most:\n"
-                : "  nothing fails; where it comes nearest to failing:\n") +
+                : "  no place fails; the one that comes nearest to it:\n") +
          plot_text(above, size, terminal.colour) + plot_text(panel, size, terminal.colour);
 }
 

@@ -36,9 +36,15 @@ namespace kolsky::cli {
 /// The places that fail, as a table; none where there are none.
 [[nodiscard]] std::string places_table(const Comparison& comparison, const Campaign& campaign);
 
-/// What to conclude where no place fails: filed numbers that are strained may have taken up what is
-/// wrong.
-[[nodiscard]] std::string nothing_fails_words(const Model& model);
+/// Whether chi-square is three deviations beyond what noise as in the quiet leaves of it, which no
+/// single place need show.
+[[nodiscard]] bool fails_together(const Misfit& misfit);
+/// By how much all places together do; empty where they do not.
+[[nodiscard]] std::string together_words(const Misfit& misfit);
+
+/// What to conclude where no place fails. That is not that nothing is missing: filed numbers that
+/// are strained may have taken it up, it may be spread over all places, or be one of slow noise.
+[[nodiscard]] std::string nothing_fails_words(const Model& model, const Misfit& misfit);
 
 /// Prediction over measurement at the gauge and shot that fail most (that deviate most where none
 /// does), and below it the deviation with the noise's two deviations to either side.

@@ -86,7 +86,7 @@ PageSection places_section(const ImpactComparison& comparison, const Campaign& c
   }
   if (table.rows.empty()) {
     section.text.emplace_back(
-        "No place stands out of the noise and of what the calculation may be off by.");
+        "No single place stands out of the noise and of what the calculation may be off by.");
   } else {
     section.tables.push_back(std::move(table));
   }
@@ -208,7 +208,8 @@ std::string places_table(const ImpactComparison& comparison, const Campaign& cam
     }
   }
   if (shown == 0) {
-    return "  the model fails nowhere: every place is within noise and the solver's own bounds\n";
+    return "  no single place stands out of the noise and of the solver's own bounds; `kolsky "
+           "diagnose` looks for what is spread over places\n";
   }
   return fmt::format("  {:<8} {:<10} {:<20} {:>9} {:<20} {:>8} {:>8} {:>10}\n", "gauge", "window",
                      "band", "speed m/s", "shot", "share", "sigma", "of peak") +

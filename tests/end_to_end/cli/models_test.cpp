@@ -236,7 +236,7 @@ TEST(Comparing, SaysThatFiledNumbersHideWhatIsWrong) {
   const scene::Answer compared =
       kolsky({"compare", folder / "shots", "--model", folder / "m.toml"});
   EXPECT_NE(compared.out.find("gauge-factor:g1.kappa"), std::string::npos);
-  EXPECT_EQ(compared.out.find("fails nowhere"), std::string::npos) << compared.out;
+
   EXPECT_NE(compared.out.find("filed numbers are strained"), std::string::npos) << compared.out;
 }
 
