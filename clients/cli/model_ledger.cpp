@@ -133,11 +133,17 @@ void require_model_of(const Bench& bench, const Model& model, const std::string&
   }
 }
 
+std::string edited_text(const ModelFile& file) {
+  return file.edited_by_hand ? fmt::format("edited by hand after step {}", file.history.size())
+                             : "";
+}
+
 JsonValue describe(const ModelStep& step) {
-  JsonObject object{
-      {"action", step.action},           {"when", step.when},         {"note", step.note},
-      {"data_sha256", step.data_sha256}, {"software", step.software}, {"parent", step.parent},
-      {"verdict", step.verdict},         {"added", step.added},       {"seeds", step.seeds}};
+  JsonObject object{{"action", step.action},     {"when", step.when},
+                    {"note", step.note},         {"data_sha256", step.data_sha256},
+                    {"software", step.software}, {"parent", step.parent},
+                    {"verdict", step.verdict},   {"added", step.added},
+                    {"seeds", step.seeds},       {"edited_by_hand", step.edited_by_hand}};
   if (step.fit) {
     object.push_back({"fit", JsonObject{{"captures", step.fit->captures},
                                         {"chi2_reduced", step.fit->chi2_reduced},
@@ -160,6 +166,9 @@ JsonValue describe(const ModelStep& step) {
 
 std::string ledger_text(const ModelStep& step) {
   std::string text;
+  if (step.edited_by_hand) {
+    text += "      the file had been edited by hand; the step before lists that with its own\n";
+  }
   if (!step.data_sha256.empty()) {
     text += fmt::format("      data {}..., kolsky {}\n", step.data_sha256.substr(0, 12),
                         step.software.empty() ? "of unknown version" : step.software);

@@ -32,6 +32,9 @@ void require_model_of(const Bench& bench, const Model& model, const std::string&
 /// The same for programs: `kept`.
 void add_kept(const std::string& kept, JsonObject& answer);
 
+/// "edited by hand after step 2"; empty where it was not.
+[[nodiscard]] std::string edited_text(const ModelFile& file);
+
 /// A step as `kolsky model history --json` gives it.
 [[nodiscard]] JsonValue describe(const ModelStep& step);
 

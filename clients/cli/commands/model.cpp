@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <ostream>
+#include <sstream>
 #include <utility>
 
 #include "clients/cli/command.hpp"
@@ -30,13 +31,15 @@ void print(const ModelFile& file, const std::string& name, Context& context,
                       {"kind", name_of(file.model.kind)},
                       {"effects", describe_effects(file.model)},
                       {"parameters", describe_parameters(file.model)},
-                      {"parent", file.parent()}};
+                      {"parent", file.parent()},
+                      {"edited_by_hand", file.edited_by_hand}};
     add_kept(kept, object);
     context.out << to_text(object) << "\n";
     return;
   }
   context.out << kept_text(name, kept) << name << ": " << name_of(file.model.kind) << ", "
-              << counted(file.model.effects.size(), "effect") << "\n"
+              << counted(file.model.effects.size(), "effect")
+              << (file.edited_by_hand ? "; " + edited_text(file) : "") << "\n"
               << (file.bar_source.empty()
                       ? ""
                       : (file.model.kind == BenchKind::impact ? "  " : "  bars: ") +
@@ -338,13 +341,16 @@ int show(const EditSettings& settings, Context& context) {
 
 std::string changes(const Model& before, const Model& after) {
   std::string text;
+  for (const Declared& own : declared_anew(before, after)) {
+    text += "      " + own.text() + "\n";
+  }
   for (const EffectUse& use : after.effects) {
     const EffectUse* old = before.find(use.id());
     if (old == nullptr) {
       text += "      + " + use.id() + "\n";
       continue;
     }
-    for (std::size_t p = 0; p < use.values.size(); ++p) {
+    for (std::size_t p = 0; p < std::min(use.values.size(), old->values.size()); ++p) {
       if (use.values[p].value != old->values[p].value) {
         const EffectParameter& parameter = use.effect->about().parameters[p];
         text += fmt::format("        {}.{}: {} -> {}\n", use.id(), parameter.name,
@@ -361,6 +367,16 @@ std::string changes(const Model& before, const Model& after) {
   return text;
 }
 
+/// Under a step's line, each line of it.
+std::string indented(const std::string& note) {
+  std::string text;
+  std::istringstream lines(note);
+  for (std::string line; std::getline(lines, line);) {
+    text += "      " + line + "\n";
+  }
+  return text;
+}
+
 int history(const EditSettings& settings, Context& context) {
   const ModelFile file = read_model(settings.model);
   if (context.json) {
@@ -372,7 +388,8 @@ int history(const EditSettings& settings, Context& context) {
     }
     context.out << to_text(JsonObject{{"history", std::move(steps)},
                                       {"effects", describe_effects(file.model)},
-                                      {"parent", file.parent()}})
+                                      {"parent", file.parent()},
+                                      {"edited_by_hand", file.edited_by_hand}})
                 << "\n";
     return kDone;
   }
@@ -381,8 +398,10 @@ int history(const EditSettings& settings, Context& context) {
     const Model before = file.at(i).model;
     const Model after = file.at(i + 1).model;
     context.out << fmt::format("{:>3}  {}  {}\n", i + 1, step.when, step.action)
-                << (step.note.empty() ? "" : "      " + step.note + "\n") << ledger_text(step)
-                << changes(before, after);
+                << indented(step.note) << ledger_text(step) << changes(before, after);
+  }
+  if (file.edited_by_hand) {
+    context.out << "     " << edited_text(file) << ", which lists that with its own\n";
   }
   if (file.history.empty()) {
     context.out << "no steps yet\n";

@@ -246,12 +246,14 @@ int run(const Settings& settings, Context& context) {
     }
     context.out << to_text(JsonObject{{"model", settings.model},
                                       {"effects", describe_effects(file.model)},
-                                      {"expressions", std::move(expressions)}})
+                                      {"expressions", std::move(expressions)},
+                                      {"edited_by_hand", file.edited_by_hand}})
                 << "\n";
     return kDone;
   }
   context.out << settings.model << ": sound; " << counted(file.model.effects.size(), "effect")
-              << ", " << counted(list.size(), "expression") << " of its own\n";
+              << ", " << counted(list.size(), "expression") << " of its own"
+              << (file.edited_by_hand ? "; " + edited_text(file) : "") << "\n";
   for (const Checked& own : list) {
     context.out << "\n" << text_of(own);
   }

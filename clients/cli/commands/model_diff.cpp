@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <ostream>
@@ -37,21 +38,31 @@ struct Difference {
   std::vector<std::string> added;
   std::vector<std::string> removed;
   std::vector<Change> changes;
+  std::vector<Declared> expressions;
+  bool otherwise = false;  ///< in what none of these tells: bounds, priors, shots of their own
 };
 
 bool differ(const ModelValue& a, const ModelValue& b) {
   return a.value != b.value || a.free != b.free || a.prior_sd != b.prior_sd;
 }
 
+std::string text_of(const Model& model) {
+  ModelFile file;
+  file.model = model;
+  return format_model(file);
+}
+
 Difference difference_of(const Model& before, const Model& after) {
   Difference difference;
+  difference.expressions = declared_anew(before, after);
+  difference.otherwise = text_of(before) != text_of(after);
   for (const EffectUse& use : after.effects) {
     const EffectUse* old = before.find(use.id());
     if (old == nullptr) {
       difference.added.push_back(use.id());
       continue;
     }
-    for (std::size_t p = 0; p < use.values.size(); ++p) {
+    for (std::size_t p = 0; p < std::min(use.values.size(), old->values.size()); ++p) {
       if (differ(old->values[p], use.values[p])) {
         const EffectParameter& parameter = use.effect->about().parameters[p];
         difference.changes.push_back(
@@ -83,9 +94,19 @@ JsonValue describe(const Difference& difference) {
                                  {"after", side(change.after)},
                                  {"deviations", change.deviations()}});
   }
+  JsonList expressions;
+  for (const Declared& own : difference.expressions) {
+    const auto formula = [](const std::string& text) {
+      return text.empty() ? JsonValue(nullptr) : JsonValue(text);
+    };
+    expressions.push_back(
+        JsonObject{{"id", own.id}, {"before", formula(own.before)}, {"after", formula(own.after)}});
+  }
   return JsonObject{{"added", difference.added},
                     {"removed", difference.removed},
-                    {"changes", std::move(changes)}};
+                    {"changes", std::move(changes)},
+                    {"expressions", std::move(expressions)},
+                    {"same", !difference.otherwise}};
 }
 
 std::string how_held(const ModelValue& value) {
@@ -103,6 +124,9 @@ std::string text_of(const Difference& difference) {
   for (const std::string& id : difference.added) {
     text += "+ " + id + "\n";
   }
+  for (const Declared& own : difference.expressions) {
+    text += own.text() + "\n";
+  }
   for (const Change& change : difference.changes) {
     constexpr double kShown = 0.05;
     text += fmt::format("  {}.{}: {} -> {}", change.effect, change.parameter,
@@ -114,6 +138,10 @@ std::string text_of(const Difference& difference) {
     const std::string was = how_held(change.before);
     const std::string is = how_held(change.after);
     text += was == is ? "\n" : fmt::format(", {} -> {}\n", was, is);
+  }
+  if (text.empty() && difference.otherwise) {
+    return "the two models differ in deviations, bounds, priors, order or which shots share a "
+           "number\n";
   }
   return text.empty() ? "the two models are the same\n" : text;
 }
@@ -140,7 +168,7 @@ Command model_diff_command() {
   Command command;
   command.name = "model diff";
   command.purpose =
-      "what differs between two models: effects, and every number that moved\n"
+      "what differs between two models: effects, formulas, and every number that moved\n"
       "M.toml@N is a model as it was after N steps of its history, M.toml@0 as it began.";
   command.examples =
       "  kolsky model diff m1.toml m2.toml\n"

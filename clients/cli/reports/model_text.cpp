@@ -8,6 +8,7 @@
 
 #include "clients/cli/reports/diagnosis_text.hpp"
 #include "clients/figure/layout.hpp"
+#include "drivers/files/models/model_expressions.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/fitting/composition.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
@@ -153,6 +154,39 @@ std::string model_table(const Model& model) {
     text += effect_text(use);
   }
   return text;
+}
+
+std::string Declared::text() const {
+  if (before.empty() || after.empty()) {
+    return fmt::format("{} expression {}: {}", before.empty() ? '+' : '-', id, before + after);
+  }
+  return before == after
+             ? fmt::format("  expression {}: declared otherwise, its formula as before", id)
+             : fmt::format("  expression {}: {} -> {}", id, before, after);
+}
+
+std::vector<Declared> declared_anew(const Model& before, const Model& after) {
+  const auto declared = [](const Model& model, const std::string& id) -> const ExpressionText* {
+    const auto own = std::ranges::find_if(
+        model.expressions, [&](const auto& expression) { return expression->text().id == id; });
+    return own == model.expressions.end() ? nullptr : &(*own)->text();
+  };
+  std::vector<Declared> list;
+  for (const auto& own : before.expressions) {
+    const ExpressionText& old = own->text();
+    const ExpressionText* now = declared(after, old.id);
+    if (now == nullptr) {
+      list.push_back({old.id, old.formula, ""});
+    } else if (format_expression(old) != format_expression(*now)) {
+      list.push_back({old.id, old.formula, now->formula});
+    }
+  }
+  for (const auto& own : after.expressions) {
+    if (declared(before, own->text().id) == nullptr) {
+      list.push_back({own->text().id, "", own->text().formula});
+    }
+  }
+  return list;
 }
 
 bool is_strained(const Model& model) {

@@ -30,6 +30,18 @@ namespace kolsky::cli {
 /// All of a model's effects.
 [[nodiscard]] std::string model_table(const Model& model);
 
+/// An expression that two models do not declare alike.
+struct Declared {
+  std::string id;
+  std::string before;  ///< its formula; empty where it is not declared
+  std::string after;
+
+  /// For people, a line.
+  [[nodiscard]] std::string text() const;
+};
+
+[[nodiscard]] std::vector<Declared> declared_anew(const Model& before, const Model& after);
+
 /// Filed numbers that a fit holds more than three of their deviations off: {"name", "deviations"}
 /// each. Either they are not as filed, or they stand in for what the model lacks.
 [[nodiscard]] JsonValue describe_strained(const Model& model);

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "drivers/files/models/model_expressions.hpp"
 #include "drivers/files/models/toml_values.hpp"
@@ -146,10 +147,36 @@ EffectUse read_use(const TomlTable& table, const Model& model) {
 
 void require_a_model(const TomlTable& table);
 
+/// Without its seal any history would pass.
+void require_sealed(const TomlTable& table, const std::vector<ModelStep>& history) {
+  const auto seal = table.optional_text("ledger");
+  if (!seal && history.empty()) {
+    return;
+  }
+  if (!seal) {
+    throw table.error("ledger", "is not there: nothing tells whether the history is as it was",
+                      "take the file from a copy that has that line, or begin anew without any "
+                      "`[[history]]`");
+  }
+  if (*seal != ledger_digest(history)) {
+    throw table.error("ledger", "is not the SHA-256 of the history as it stands here",
+                      "the history was edited or cut: take the file from a copy that was not");
+  }
+}
+
+std::string digest_of_text(const std::string& text) {
+  return sha256_hex(std::as_bytes(std::span(text)));
+}
+
+/// Of what it is now, whatever the file's comments and blanks.
+std::string state_digest(const ModelFile& file) {
+  return digest_of_text(format_model(file, false));
+}
+
 ModelFile read(const TomlTable& table) {
   require_a_model(table);
-  table.expect({"kolsky_model", "kind", "bar_source", "gauges", "ledger", "expressions", "effects",
-                "history"});
+  table.expect({"kolsky_model", "kind", "bar_source", "gauges", "ledger", "state", "expressions",
+                "effects", "history"});
   if (table.integer("kolsky_model") != kFormat) {
     throw table.error("kolsky_model", "is a format that this version does not know",
                       "make the model anew with `kolsky model new`");
@@ -181,12 +208,9 @@ ModelFile read(const TomlTable& table) {
   for (const TomlTable& own : table.tables("history")) {
     file.history.push_back(read_step(own));
   }
-  // Versions up to 0.1.0 wrote none.
-  if (const auto ledger = table.optional_text("ledger");
-      ledger && *ledger != ledger_digest(file.history)) {
-    throw table.error("ledger", "is not the SHA-256 of the history as it stands here",
-                      "the history was edited or cut: take the file from a copy that was not");
-  }
+  require_sealed(table, file.history);
+  const auto state = table.optional_text("state");
+  file.edited_by_hand = !file.history.empty() && state != state_digest(file);
   table.finish();
   return file;
 }
@@ -228,10 +252,6 @@ std::string format_use(const EffectUse& use) {
     text += std::string("free = ") + (value.free ? "true" : "false") + "\n";
   }
   return text;
-}
-
-std::string digest_of_text(const std::string& text) {
-  return sha256_hex(std::as_bytes(std::span(text)));
 }
 
 std::vector<std::string> digests_of(const std::vector<std::filesystem::path>& files) {
@@ -281,6 +301,8 @@ std::string format_model(const ModelFile& file, bool with_history) {
   text += file.gauges.empty() ? "" : "]\n";
   if (with_history && !file.history.empty()) {
     text += "ledger = " + toml_quoted(ledger_digest(file.history)) + "\n";
+    // What was edited has none until a step notes it.
+    text += file.edited_by_hand ? "" : "state = " + toml_quoted(state_digest(file)) + "\n";
   }
   for (const auto& expression : file.model.expressions) {
     text += format_expression(expression->text());
@@ -332,8 +354,7 @@ ModelFile ModelFile::at(std::size_t steps) const {
 
 std::size_t ModelFile::first_alike(std::size_t steps) const {
   const auto digest = [&](std::size_t after) {
-    return after < history.size() ? history[after].parent
-                                  : digest_of_text(format_model(*this, false));
+    return after < history.size() ? history[after].parent : state_digest(*this);
   };
   const std::string own = digest(steps);
   std::size_t first = 0;
@@ -348,6 +369,7 @@ void begin_step(ModelFile& file, const std::string& action, const std::string& w
   step.action = action;
   step.when = when;
   step.software = KOLSKY_VERSION;
+  step.edited_by_hand = std::exchange(file.edited_by_hand, false);
   step.before = format_model(file, false);
   step.parent = digest_of_text(step.before);
   file.history.push_back(std::move(step));

@@ -16,6 +16,8 @@ struct ModelFile {
   /// Names of the gauges of the bench that it was made for or fitted on last; empty: not known.
   std::vector<std::string> gauges;
   std::vector<ModelStep> history;
+  /// Its file holds another model than its last step left: somebody wrote into it, as one may.
+  bool edited_by_hand = false;
 
   [[nodiscard]] std::string parent() const {
     return history.empty() ? std::string{} : history.back().parent;
@@ -28,11 +30,13 @@ struct ModelFile {
   [[nodiscard]] std::size_t first_alike(std::size_t steps) const;
 };
 
-/// @throws InputError: file, line, key and mend
+/// @throws InputError: file, line, key and mend; also where a history has no seal (`ledger`) or
+/// another's
 [[nodiscard]] ModelFile read_model(const std::filesystem::path& path);
 [[nodiscard]] ModelFile parse_model(const std::string& text, const std::string& name);
 
-/// TOML that reads back as the same bits; without the history where it is not asked for.
+/// TOML that reads back as the same bits; without the history where it is not asked for. With one
+/// its seal is written, and that of the model as the last step left it (`state`).
 [[nodiscard]] std::string format_model(const ModelFile& file, bool with_history = true);
 
 /// One digest of several captures, of their own digests in rising order: by it a history knows what
@@ -47,7 +51,8 @@ struct ModelFile {
 /// "2026-11-21T14:00:00Z", as a history has it.
 [[nodiscard]] std::string utc_now();
 
-/// Appends a step: the file as it is now becomes the parent of what follows.
+/// Appends a step: the file as it is now becomes the parent of what follows. What was edited by
+/// hand before is noted with the step.
 void begin_step(ModelFile& file, const std::string& action, const std::string& when = utc_now());
 
 }  // namespace kolsky

@@ -94,6 +94,7 @@ std::string step_text(const ModelStep& step, const std::string& before) {
     }
     text += "seeds = [" + seeds + "]\n";
   }
+  text += step.edited_by_hand ? "edited_by_hand = true\n" : "";
   text += "parent = " + toml_quoted(step.parent) + "\nbefore = " + before + "\n";
   if (step.fit) {
     text += format_fit(*step.fit);
@@ -114,7 +115,7 @@ std::string step_text(const ModelStep& step, const std::string& before) {
 
 ModelStep read_step(const TomlTable& table) {
   table.expect({"action", "when", "note", "data_sha256", "software", "verdict", "added", "seeds",
-                "fit", "held_out", "tests", "parent", "before"});
+                "edited_by_hand", "fit", "held_out", "tests", "parent", "before"});
   ModelStep step;
   step.action = table.text("action");
   step.when = table.text("when");
@@ -126,6 +127,7 @@ ModelStep read_step(const TomlTable& table) {
   if (table.has("seeds")) {
     step.seeds = table.numbers("seeds");
   }
+  step.edited_by_hand = table.optional_flag("edited_by_hand").value_or(false);
   if (const auto fit = table.optional_table("fit")) {
     step.fit = read_fit(*fit);
   }

@@ -48,6 +48,9 @@ struct ModelStep {
   std::string verdict;             ///< of a diagnosis
   std::vector<std::string> added;  ///< effects that the step put in, in their order
   std::vector<double> seeds;       ///< of what it simulated
+  /// The model that it began with was edited by hand after the step before: `before` has more than
+  /// that step did.
+  bool edited_by_hand = false;
   std::optional<StepFit> fit;
   std::optional<StepHeldOut> held_out;
   std::vector<StepTest> tests;

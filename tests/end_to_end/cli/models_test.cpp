@@ -116,6 +116,63 @@ TEST_F(SimulatedBar, FreesAFiledNumberOfWhatIsFiledWhenItIsAdded) {
   EXPECT_NE(now.find(id), std::string::npos);
 }
 
+TEST_F(SimulatedBar, IsEditedByHandAndSaysSo) {
+  const std::string model = file("edited.toml");
+  ASSERT_EQ(
+      kolsky({"model", "add", file("m.toml"), "temperature", "-o", model, "--note", "two\nlines"})
+          .code,
+      0);
+  EXPECT_EQ(kolsky({"model", "check", model}).out.find("by hand"), std::string::npos);
+  std::string text = content(model);
+  const std::size_t at = text.find("value = ") + 8;
+  text.replace(at, text.find('\n', at) - at, "5.5e9");
+  std::ofstream(model) << text;
+  for (const char* command : {"check", "show", "history"}) {
+    const scene::Answer told = kolsky({"model", command, model});
+    EXPECT_NE(told.out.find("edited by hand after step 1"), std::string::npos) << told.out;
+    EXPECT_EQ(json_of(kolsky({"model", command, model, "--json"}))["edited_by_hand"], true);
+  }
+  ASSERT_EQ(kolsky({"model", "add", model, "crosstalk:g2"}).code, 0);
+  const json steps = json_of(kolsky({"model", "history", model, "--json"}))["history"];
+  EXPECT_EQ(steps[0]["edited_by_hand"], false);
+  EXPECT_EQ(steps[1]["edited_by_hand"], true);
+  const scene::Answer told = kolsky({"model", "history", model});
+  EXPECT_NE(told.out.find("      two\n      lines\n"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("had been edited by hand"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("edited by hand after"), std::string::npos) << told.out;
+}
+
+TEST_F(SimulatedBar, DiffersByAFormulaToo) {
+  const auto with_formula = [&](const std::string& name, const std::string& formula) {
+    std::ofstream(file(name)) << content(file("m.toml"))
+                              << "\n[[expressions]]\nid = \"mine\"\nstage = \"sensor\"\n"
+                                 "formula = \"" +
+                                     formula +
+                                     "\"\n[expressions.parameters.c]\nunit = \"-\"\n"
+                                     "null = 0.0\nbounds = [-0.1, 0.1]\ntypical = 0.01\n";
+  };
+  with_formula("one.toml", "1 + c");
+  with_formula("two.toml", "1 + 2*c");
+  const scene::Answer told = kolsky({"model", "diff", file("one.toml"), file("two.toml")});
+  EXPECT_NE(told.out.find("expression mine: 1 + c -> 1 + 2*c"), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("the same"), std::string::npos) << told.out;
+  const json told_json =
+      json_of(kolsky({"model", "diff", file("m.toml"), file("two.toml"), "--json"}));
+  EXPECT_EQ(told_json["expressions"][0]["before"], nullptr);
+  EXPECT_EQ(told_json["expressions"][0]["after"], "1 + 2*c");
+  EXPECT_EQ(kolsky({"model", "diff", file("two.toml"), file("two.toml")}).out,
+            "the two models are the same\n");
+}
+
+// Bounds, priors and which shots share a number have no line of their own.
+TEST_F(SimulatedBar, DoesNotPassForTheSameWhereOnlyABoundDiffers) {
+  std::string text = content(file("m.toml"));
+  const std::size_t at = text.find("value = ");
+  std::ofstream(file("bound.toml")) << text.insert(at, "bounds = [1e9, 9e9]\n");
+  const scene::Answer told = kolsky({"model", "diff", file("m.toml"), file("bound.toml")});
+  EXPECT_NE(told.out.find("the two models differ in"), std::string::npos) << told.out;
+}
+
 TEST_F(SimulatedBar, GoesBackStepByStepAndToAnyStep) {
   const std::string model = file("walk.toml");
   std::filesystem::copy_file(file("m.toml"), model);
@@ -236,7 +293,6 @@ TEST(Comparing, SaysThatFiledNumbersHideWhatIsWrong) {
   const scene::Answer compared =
       kolsky({"compare", folder / "shots", "--model", folder / "m.toml"});
   EXPECT_NE(compared.out.find("gauge-factor:g1.kappa"), std::string::npos);
-
   EXPECT_NE(compared.out.find("filed numbers are strained"), std::string::npos) << compared.out;
 }
 

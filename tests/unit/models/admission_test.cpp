@@ -264,5 +264,15 @@ TEST(ModelFile, KeepsItsExpressionsBitForBitAndInItsHistory) {
   EXPECT_EQ(before.model.find("mine"), nullptr);
 }
 
+TEST(ModelFile, KnowsAFormulaThatWasEditedByHand) {
+  ModelFile file = parse_model(with_expression("material", "D/(1 + s*tau)", kD + kTau), "m.toml");
+  begin_step(file, "add mine", "2026-01-02T03:04:05Z");
+  file.model.effects.push_back(use_named("mine", file.model));
+  std::string text = format_model(file);
+  const std::string formula = "D/(1 + s*tau)";
+  text.replace(text.find(formula), formula.size(), "2*" + formula);
+  EXPECT_TRUE(parse_model(text, "m.toml").edited_by_hand);
+}
+
 }  // namespace
 }  // namespace kolsky

@@ -392,6 +392,45 @@ TEST(ModelFile, RefusesALedgerOfWhichAnyNumberWasEditedOrAStepCutOff) {
     EXPECT_TRUE(refused(text.replace(text.find(from), from.size(), to))) << from;
   }
   EXPECT_TRUE(refused(sound.substr(0, sound.rfind("\n[[history]]"))));
+  std::string unsealed = sound;
+  const std::size_t seal = unsealed.find("ledger = ");
+  EXPECT_TRUE(refused(unsealed.erase(seal, unsealed.find('\n', seal) + 1 - seal)));
+}
+
+// A model may be edited, and no step is said to have done it.
+TEST(ModelFile, KnowsWhatWasEditedByHandAfterItsLastStep) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  begin_step(file, "add temperature", "2026-01-02T03:04:05Z");
+  file.model.effects.push_back(use_named("temperature"));
+  const std::string sound = format_model(file);
+  EXPECT_FALSE(parse_model("# of the blue bar\n" + sound, "m.toml").edited_by_hand);
+
+  std::string text = sound;
+  const std::size_t at = text.find("value = ") + 8;
+  text.replace(at, text.find('\n', at) - at, "5.5e9");
+  ModelFile edited = parse_model(text, "m.toml");
+  EXPECT_TRUE(edited.edited_by_hand);
+  EXPECT_TRUE(parse_model(format_model(edited), "m.toml").edited_by_hand);
+  EXPECT_FALSE(edited.at(0).edited_by_hand);
+
+  begin_step(edited, "add crosstalk:g1", "2026-01-02T03:05:05Z");
+  EXPECT_FALSE(edited.edited_by_hand);
+  const ModelFile again = parse_model(format_model(edited), "m.toml");
+  EXPECT_FALSE(again.edited_by_hand);
+  EXPECT_FALSE(again.history.front().edited_by_hand);
+  EXPECT_TRUE(again.history.back().edited_by_hand);
+}
+
+TEST(ModelFile, TakesAStateCutOutForAnEdit) {
+  ModelFile file;
+  file.model = paper_model(BenchKind::bar, false);
+  begin_step(file, "add temperature", "2026-01-02T03:04:05Z");
+  std::string text = format_model(file);
+  const std::size_t state = text.find("state = ");
+  ASSERT_NE(state, std::string::npos);
+  text.erase(state, text.find('\n', state) + 1 - state);
+  EXPECT_TRUE(parse_model(text, "m.toml").edited_by_hand);
 }
 
 TEST(ModelFile, HoldsBoundsOfItsOwnWithinTheEffectsOwn) {
