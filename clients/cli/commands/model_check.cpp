@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -188,6 +189,18 @@ JsonValue describe(const Checked& own) {
                     {"here", std::move(distinctions)}};
 }
 
+/// From which size on, if from any that its bounds allow.
+std::string seen_text(const Distinction& here) {
+  if (!std::isfinite(here.detectable)) {
+    return fmt::format("no {} within its bounds is seen here", here.parameter);
+  }
+  const std::string seen = fmt::format("{} from {:.2g} {} on is seen here, ", here.parameter,
+                                       here.detectable, here.unit);
+  return seen + (std::isfinite(here.identifiable)
+                     ? fmt::format("from {:.2g} told apart", here.identifiable)
+                     : "and none within its bounds told apart from what is nearest");
+}
+
 std::string text_of(const Checked& own) {
   const EffectAbout& about = own.effect->about();
   std::string text = fmt::format(
@@ -210,11 +223,8 @@ std::string text_of(const Checked& own) {
           "  {}: untestable on these captures, the model's own numbers take it up\n", here.effect);
       continue;
     }
-    text += fmt::format(
-        "  {}: {} from {:.2g} {} on is seen here, from {:.2g} told apart; {:.0f} % "
-        "of it is taken up by the model\n      nearest:",
-        here.effect, here.parameter, here.detectable, here.unit, here.identifiable,
-        100.0 * here.absorbed_share);
+    text += fmt::format("  {}: {}; {:.0f} % of it is taken up by the model\n      nearest:",
+                        here.effect, seen_text(here), 100.0 * here.absorbed_share);
     for (std::size_t i = 0; i < std::min(kRivalsShown, here.rivals.size()); ++i) {
       text += fmt::format("{} {} (cosine {:.3f})", i == 0 ? "" : ",", here.rivals[i].effect,
                           here.rivals[i].cosine);

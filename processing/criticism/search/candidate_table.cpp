@@ -262,14 +262,13 @@ void set_over_shots(const Studied& studied, const std::string& id, CandidateResu
 
 }  // namespace
 
-namespace {
-
-/// A size of a strength that its bounds allow; infinite: none that they allow is as large.
 double within_reach(const Candidate& candidate, double size) {
   const EffectParameter& own = candidate.use.effect->about().parameters.front();
   const double reach = std::max(own.upper - own.null_value, own.null_value - own.lower);
   return candidate.frees_prior || size <= reach ? size : INFINITY;
 }
+
+namespace {
 
 /// Strength of an effect as one of its variants has it. One of several numbers counts by their root
 /// mean square, and is as uncertain as all of them tell together.

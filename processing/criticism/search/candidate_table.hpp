@@ -51,6 +51,9 @@ struct Tried {
 /// First-order strengths and limits of every effect beside the model that was searched.
 [[nodiscard]] std::vector<CandidateResult> first_order_table(const Tried& tried);
 
+/// A size of a strength that its bounds allow; infinite: none that they allow is as large.
+[[nodiscard]] double within_reach(const Candidate& candidate, double size);
+
 /// Puts what refits found in the place of first order.
 /// @param held_out  one per refit
 /// @param which     of the refits; of several of one effect the first counts

@@ -6,12 +6,12 @@
 #include <map>
 
 #include "processing/algebra/algebra.hpp"
+#include "processing/criticism/search/candidate_table.hpp"
 
 namespace kolsky {
 
 namespace {
 
-constexpr double kDetected = 6.0;   ///< sigma
 constexpr double kToldApart = 5.0;  ///< sigma beside a rival
 /// Less of a direction than this is rounding.
 constexpr double kNothing = 1e-6;
@@ -91,6 +91,8 @@ std::vector<Distinction> distinctions(Study& study, const Studied& studied,
                    parameter.typical *
                        root(kToldApart * sd / std::sqrt(std::max(1e-12, 1.0 - closest * closest)),
                             parameter.power));
+      distinction.detectable = within_reach(candidates[i], distinction.detectable);
+      distinction.identifiable = within_reach(candidates[i], distinction.identifiable);
     }
     list.push_back(std::move(distinction));
   }

@@ -18,9 +18,9 @@ struct Distinction {
   std::string effect;
   std::string parameter;
   std::string unit;
-  double absorbed_share = 0.0;      ///< of its signature: what the model's own numbers take up
-  double detectable = 0.0;          ///< strength that stands at 6 sigma here; infinite: none does
-  double identifiable = 0.0;        ///< and still at 5 beside its nearest rival
+  double absorbed_share = 0.0;  ///< of its signature: what the model's own numbers take up
+  double detectable = 0.0;    ///< strength that stands at 6 sigma here; infinite: none that may be
+  double identifiable = 0.0;  ///< and still at 5 beside its nearest rival; infinite: none
   std::vector<Resemblance> rivals;  ///< nearest first
 };
 

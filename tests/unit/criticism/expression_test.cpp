@@ -1,5 +1,8 @@
 // Effects that a model file declares by formula, on campaigns made in the time domain.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "drivers/files/models/model_file.hpp"
 #include "processing/base/error.hpp"
@@ -121,6 +124,28 @@ TEST(Distinction, IsNoneBetweenTwoNamesOfOneEffect) {
     EXPECT_GE(rival.cosine, 0.0);
     EXPECT_LE(rival.cosine, 1.0);
   }
+}
+
+TEST(Distinction, IsNoneBeyondTheBoundsOfAStrength) {
+  const Campaign campaign = read_campaign(shots_with(91, ""));
+  Study study(campaign, 0.0, Workers{});
+  const Studied fitted = study.fit(paper_model(BenchKind::bar, false));
+  const auto of_most = [&](const std::string& most) {
+    std::string creep = kCreep;
+    creep.replace(creep.find("0.5]"), 3, most);
+    creep.replace(creep.find("0.01"), 4, "1e-6");
+    Studied declared = fitted;
+    declared.model.expressions = declaring(creep).expressions;
+    return distinctions(study, declared, {"my-creep"}).front();
+  };
+  const Distinction wide = of_most("0.5");
+  ASSERT_LT(wide.detectable, wide.identifiable);
+  ASSERT_LT(wide.identifiable, 0.5);
+  const Distinction less =
+      of_most(fmt::format("{:.9f}", std::sqrt(wide.detectable * wide.identifiable)));
+  EXPECT_TRUE(std::isfinite(less.detectable));
+  EXPECT_FALSE(std::isfinite(less.identifiable));
+  EXPECT_FALSE(std::isfinite(of_most(fmt::format("{:.9f}", 0.5 * wide.detectable)).detectable));
 }
 
 TEST(Expression, OfABallIsRefusedWithTheReasonWhateverItsStage) {
