@@ -128,8 +128,9 @@ int run(const Settings& settings, Context& context) {
   }
   Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
-  const Studied studied =
-      fit_first ? study.beside_quiet(study.fit(file.model)) : study.as_it_is(file.model);
+  const Studied studied = naming_model(settings.model, [&] {
+    return fit_first ? study.beside_quiet(study.fit(file.model)) : study.as_it_is(file.model);
+  });
   Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);
   const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
   const ShotGroups groups = by_strength(comparison, studied.model, campaign);

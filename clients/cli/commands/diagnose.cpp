@@ -74,20 +74,24 @@ JsonObject describe(const Diagnosis& diagnosis) {
                               {"deviations", experiment.deviations}});
   }
   const HeldOut& held_out = diagnosis.held_out;
-  return JsonObject{{"verdict", kolsky::name_of(diagnosis.verdict)},
-                    {"effects", diagnosis.effects},
-                    {"tied_with", std::move(ties)},
-                    {"misfit", JsonObject{{"before", cli::describe(diagnosis.before)},
-                                          {"after", cli::describe(diagnosis.after)},
-                                          {"held_out", JsonObject{{"before", held_out.before},
-                                                                  {"after", held_out.after},
-                                                                  {"floor", held_out.floor}}}}},
-                    {"candidates", std::move(candidates)},
-                    {"next_experiment", std::move(next)},
-                    {"parameters", diagnosis.model ? describe_parameters(*diagnosis.model)
-                                                   : JsonValue(JsonObject{})},
-                    {"unexplained_log_p", diagnosis.unexplained_log_p},
-                    {"notes", diagnosis.notes}};
+  const auto known = [&](double value) {
+    return was_reckoned(diagnosis.before) ? JsonValue(value) : JsonValue(nullptr);
+  };
+  return JsonObject{
+      {"verdict", kolsky::name_of(diagnosis.verdict)},
+      {"effects", diagnosis.effects},
+      {"tied_with", std::move(ties)},
+      {"misfit", JsonObject{{"before", cli::describe(diagnosis.before)},
+                            {"after", cli::describe(diagnosis.after)},
+                            {"held_out", JsonObject{{"before", known(held_out.before)},
+                                                    {"after", known(held_out.after)},
+                                                    {"floor", known(held_out.floor)}}}}},
+      {"candidates", std::move(candidates)},
+      {"next_experiment", std::move(next)},
+      {"parameters",
+       diagnosis.model ? describe_parameters(*diagnosis.model) : JsonValue(JsonObject{})},
+      {"unexplained_log_p", known(diagnosis.unexplained_log_p)},
+      {"notes", diagnosis.notes}};
 }
 
 Diagnosis examine_impacts(const Settings& settings, const Model& model,
@@ -181,7 +185,8 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
   }
   const Campaign campaign = read_campaign(shots);
   Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
-  Diagnosis diagnosis = diagnose(study, model, options);
+  Diagnosis diagnosis =
+      naming_model(settings.model, [&] { return diagnose(study, model, options); });
   diagnosis.next_experiment = next_experiments(study, diagnosis);
   if (settings.report) {
     replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",

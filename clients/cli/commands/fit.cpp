@@ -35,7 +35,7 @@ Studied fit(const Settings& settings, const Model& model, const Campaign& campai
     return naming_model(settings.model, [&] { return study.settled(study.fit(model)); });
   }
   Study study(campaign, band_limit_Hz, executor);
-  return study.beside_quiet(study.fit(model));
+  return naming_model(settings.model, [&] { return study.beside_quiet(study.fit(model)); });
 }
 
 int run(const Settings& settings, Context& context) {

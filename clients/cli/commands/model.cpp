@@ -9,6 +9,7 @@
 
 #include "clients/cli/command.hpp"
 #include "clients/cli/model_ledger.hpp"
+#include "clients/cli/reports/impact_criticism.hpp"
 #include "clients/cli/reports/json_value.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "drivers/files/models/model_file.hpp"
@@ -425,7 +426,7 @@ std::size_t target_of(const EditSettings& settings, const ModelFile& file) {
 int revert(const EditSettings& settings, Context& context) {
   ModelFile file = read_model(settings.model);
   const std::size_t target = target_of(settings, file);
-  const ModelFile before = file.at(target);
+  const ModelFile before = naming_model(settings.model, [&] { return file.at(target); });
   begin_step(file, fmt::format("revert to step {}", target));
   file.history.back().note = note_of(settings);
   file.model = before.model;

@@ -4,13 +4,20 @@
 
 namespace kolsky::cli {
 
+bool was_reckoned(const Misfit& misfit) {
+  return misfit.degrees_of_freedom > 0.0;
+}
+
 JsonValue describe(const Misfit& misfit) {
-  return JsonObject{{"chi2_reduced", misfit.chi2_reduced},
-                    {"repeatable_share", misfit.repeatable_share},
-                    {"noise_floor_share", misfit.noise_floor_share},
-                    {"scatter_share", misfit.scatter_share},
-                    {"degrees_of_freedom", misfit.degrees_of_freedom},
-                    {"noise_scale", misfit.noise_scale},
+  const auto known = [&](double value) {
+    return was_reckoned(misfit) ? JsonValue(value) : JsonValue(nullptr);
+  };
+  return JsonObject{{"chi2_reduced", known(misfit.chi2_reduced)},
+                    {"repeatable_share", known(misfit.repeatable_share)},
+                    {"noise_floor_share", known(misfit.noise_floor_share)},
+                    {"scatter_share", known(misfit.scatter_share)},
+                    {"degrees_of_freedom", known(misfit.degrees_of_freedom)},
+                    {"noise_scale", known(misfit.noise_scale)},
                     {"judged_to_Hz", misfit.judged_to_Hz > 0.0 ? JsonValue(misfit.judged_to_Hz)
                                                                : JsonValue(nullptr)}};
 }

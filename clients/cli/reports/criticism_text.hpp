@@ -7,6 +7,9 @@
 
 namespace kolsky::cli {
 
+/// Not where nothing was fitted: then none of its numbers means anything.
+[[nodiscard]] bool was_reckoned(const Misfit& misfit);
+/// Numbers are null where nothing was fitted.
 [[nodiscard]] JsonValue describe(const Misfit& misfit);
 [[nodiscard]] std::string misfit_text(const Misfit& misfit);
 /// ", judged up to 12 kHz", or nothing where no frequency is left out.

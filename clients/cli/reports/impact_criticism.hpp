@@ -16,7 +16,8 @@ namespace kolsky::cli {
 /// @throws InputError where the captures are of another kind of bench than the model
 void require_kind(const Model& model, const Campaign& campaign);
 
-/// What `act` returns; what the solver refuses of the model's ball is told with the model's file.
+/// What `act` returns; what is refused of the model (it lacks waves, its ball bursts) is told with
+/// its file.
 template <typename Act>
 auto naming_model(const std::string& file, const Act& act) {
   try {

@@ -288,9 +288,10 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
         "one which the library lacks");
   }
   if (surprises(diagnosis.effects, current.model).size() > kMostBelieved) {
-    reasons.emplace_back(
-        "it takes three effects of the library: likelier than that three are missing is that one "
-        "is which the library lacks");
+    reasons.push_back(
+        fmt::format("it takes {} effects of the library: likelier than that so many are missing is "
+                    "that one is which the library lacks",
+                    diagnosis.effects.size()));
   }
   for (const std::string& id : diagnosis.effects) {
     if (beyond_belief(current, id, campaign, 1.0)) {

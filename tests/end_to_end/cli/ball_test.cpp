@@ -352,6 +352,10 @@ TEST_F(BallTables, DataThatNothingWasFittedToHaveNoTableOfEffects) {
   ASSERT_EQ(told.code, 0) << told.err;
   EXPECT_NE(told.out.find("verdict: bad-data"), std::string::npos) << told.out;
   EXPECT_NE(told.out.find("note: "), std::string::npos) << told.out;
+  const json none = json_of(kolsky({"diagnose", capture, "--model", model, "--json"}));
+  EXPECT_TRUE(none["misfit"]["before"]["chi2_reduced"].is_null());
+  EXPECT_TRUE(none["misfit"]["held_out"]["floor"].is_null());
+  EXPECT_TRUE(none["unexplained_log_p"].is_null());
   for (const std::string unwanted : {"held-out misfit", "detectable"}) {
     EXPECT_EQ(told.out.find(unwanted), std::string::npos) << told.out;
   }

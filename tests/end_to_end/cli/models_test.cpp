@@ -195,7 +195,8 @@ TEST_F(SimulatedBar, GoesBackStepByStepAndToAnyStep) {
   EXPECT_TRUE(same("2"));
   EXPECT_EQ(kolsky({"model", "show", model + "@2"}).out.substr(model.size() + 2),
             kolsky({"model", "show", model}).out.substr(model.size()));
-  EXPECT_TRUE(refused(kolsky({"model", "revert", model, "--to", "9"}), {"step 9", "from 0 to 5"}));
+  EXPECT_TRUE(refused(kolsky({"model", "revert", model, "--to", "9"}),
+                      {"walk.toml", "step 9", "from 0 to 5"}));
   EXPECT_TRUE(refused(kolsky({"compare", file("shots"), "--model", model + "@9"}), {"@9"}));
 }
 
@@ -261,6 +262,14 @@ TEST_F(SimulatedBar, SaysWhatDoesNotFitTogether) {
   EXPECT_TRUE(
       refused(kolsky({"fit", file("shots"), "--model", file("m9.toml"), "-o", file("x.toml")}),
               {"m9.toml", "crosstalk:g9", "g1, g2, g3, g4"}));
+  std::ofstream(file("none.toml")) << "kolsky_model = 1\nkind = \"bar\"\n";
+  for (const char* command : {"fit", "compare", "diagnose"}) {
+    std::vector<std::string> call{command, file("shots"), "--model", file("none.toml"), "--json"};
+    if (call.front() == "fit") {
+      call.insert(call.end(), {"-o", file("x.toml")});
+    }
+    EXPECT_TRUE(refused(kolsky(call), {"none.toml", "lacks elementary-waves"})) << command;
+  }
   EXPECT_TRUE(refused(
       kolsky({"fit", file("shots"), "--model", file("campaign/bench.toml"), "-o", file("x.toml")}),
       {"bench.toml", "bench file", "model new"}));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/refits.hpp"
 #include "tests/generators/campaign.hpp"
 #include "tests/unit/criticism/filed_bars.hpp"
@@ -70,6 +71,19 @@ TEST_F(Doubts, AskShotsHeldOutOnlyOfClaimsAndWhereThatSafeguardStands) {
   EXPECT_FALSE(says_worse(worse, unguarded));
   found_.diagnosis.effects.clear();
   EXPECT_FALSE(says_worse(worse));
+}
+
+// Three were told of beside a list of four.
+TEST_F(Doubts, CountAsManyEffectsAsAreListed) {
+  found_.diagnosis.effects = {kClaim, "crosstalk:g3", "temperature", "geometric-dispersion"};
+  for (const char* id : {"crosstalk:g3", "temperature", "geometric-dispersion"}) {
+    found_.current.model.effects.push_back(use_named(id));
+  }
+  const std::vector<std::string> reasons =
+      why_unknown(found_.diagnosis, found_.current, campaign_, std::nullopt, 0.0, -5.0);
+  EXPECT_TRUE(std::ranges::any_of(reasons, [](const std::string& reason) {
+    return reason.find("it takes 4 effects") != std::string::npos;
+  }));
 }
 
 }  // namespace
