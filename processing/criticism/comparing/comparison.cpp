@@ -131,17 +131,20 @@ void Comparer::choose_bands() {
   }
 }
 
-std::vector<std::vector<TileNoise>> Comparer::noise_in(const std::vector<ArrivalWindow>& windows,
-                                                       const std::vector<double>& quiet) {
+std::vector<std::vector<PlaceNoise>> Comparer::noise_in(const std::vector<ArrivalWindow>& windows,
+                                                        const std::vector<double>& quiet) {
   std::vector<BinRange> ranges;
   for (const ComparedBand& band : bands_) {
     ranges.push_back(band.bins);
   }
   const std::size_t held = deviations_.bins_held();
   const QuietMean mean = quiet.empty() ? QuietMean() : QuietMean(transform_, quiet, held);
-  std::vector<std::vector<TileNoise>> list;
+  std::vector<std::vector<PlaceNoise>> list;
   for (const ArrivalWindow& window : windows) {
-    list.push_back(tile_noise(transform_, window.weight, mean, held, ranges));
+    std::vector<PlaceNoise>& by_band = list.emplace_back();
+    for (const TileNoise& own : tile_noise(transform_, window.weight, mean, held, ranges)) {
+      by_band.push_back({own, {}});
+    }
   }
   return list;
 }
@@ -159,7 +162,7 @@ void Comparer::level(std::vector<double>& record, std::size_t shot, std::size_t 
 
 std::vector<Comparer::Windowed> Comparer::windowed(const GaugeDeviation& reading,
                                                    std::size_t shot) {
-  const std::vector<std::vector<TileNoise>>& noise = noise_of(reading, shot);
+  const std::vector<std::vector<PlaceNoise>>& noise = noise_of(reading, shot);
   std::vector<double> record = reading.records[shot];
   level(record, shot, reading.gauge);
   std::vector<Windowed> list;
@@ -175,8 +178,8 @@ std::vector<Comparer::Windowed> Comparer::windowed(const GaugeDeviation& reading
   return list;
 }
 
-const std::vector<std::vector<TileNoise>>& Comparer::noise_of(const GaugeDeviation& reading,
-                                                              std::size_t shot) {
+const std::vector<std::vector<PlaceNoise>>& Comparer::noise_of(const GaugeDeviation& reading,
+                                                               std::size_t shot) {
   const std::size_t gauge = reading.gauge;
   if (reading.drawn == nullptr) {
     return noise_[shot][gauge];
@@ -186,13 +189,14 @@ const std::vector<std::vector<TileNoise>>& Comparer::noise_of(const GaugeDeviati
   if (known != drawn_.end()) {
     return known->second;
   }
-  for (std::size_t n = 0; n < windows_.size(); ++n) {
+  // What rounding leaves is each shot's own.
+  for (std::size_t n = 0; reading.rounded == nullptr && n < windows_.size(); ++n) {
     const auto other = drawn_.find({gauge, n});
     if (other != drawn_.end() && nearly_alike(windows_[n][gauge], windows_[shot][gauge])) {
       return drawn_.emplace(key, other->second).first->second;
     }
   }
-  std::vector<std::vector<TileNoise>> list;
+  std::vector<std::vector<PlaceNoise>> list;
   for (const ArrivalWindow& window : windows_[shot][gauge]) {
     list.push_back(drawn_noise(reading, shot, window));
   }
@@ -200,33 +204,57 @@ const std::vector<std::vector<TileNoise>>& Comparer::noise_of(const GaugeDeviati
 }
 
 /// By band.
-std::vector<TileNoise> Comparer::drawn_noise(const GaugeDeviation& reading, std::size_t shot,
-                                             const ArrivalWindow& window) {
+std::vector<PlaceNoise> Comparer::drawn_noise(const GaugeDeviation& reading, std::size_t shot,
+                                              const ArrivalWindow& window) {
   const auto bins = static_cast<Eigen::Index>(transform_.bins());
   Eigen::MatrixXd real(bins, static_cast<Eigen::Index>(reading.drawn->size()));
   Eigen::MatrixXd imaginary(bins, real.cols());
   Spectrum spectrum(transform_.bins());
   for (Eigen::Index d = 0; d < real.cols(); ++d) {
-    std::vector<double> record = (*reading.drawn)[static_cast<std::size_t>(d)];
-    level(record, shot, reading.gauge);
-    std::transform(record.begin(), record.end(), window.weight.begin(), record.begin(),
-                   std::multiplies<>());
-    transform_.forward(record, spectrum);
-    spectrum.front() *= std::sqrt(0.5);
-    spectrum.back() *= std::sqrt(0.5);
+    put_windowed((*reading.drawn)[static_cast<std::size_t>(d)], shot, reading.gauge, window,
+                 spectrum);
     const Eigen::Map<const Eigen::VectorXcd> values(spectrum.data(), bins);
     real.col(d) = values.real();
     imaginary.col(d) = values.imag();
   }
-  std::vector<TileNoise> list;
+  std::vector<PlaceNoise> list;
   for (const ComparedBand& band : bands_) {
     const auto first = static_cast<Eigen::Index>(band.bins.first);
     const auto size = static_cast<Eigen::Index>(band.bins.end) - first;
     Eigen::MatrixXd parts(2 * size, real.cols());
     parts << real.middleRows(first, size), imaginary.middleRows(first, size);
-    list.push_back(tile_noise_of(parts));
+    list.push_back({tile_noise_of(parts), {}});
+  }
+  if (reading.rounded != nullptr) {
+    add_rounded(reading, shot, window, list);
   }
   return list;
+}
+
+/// The transform of what a window passes, by which its squares add up to its energy.
+void Comparer::put_windowed(std::vector<double> record, std::size_t shot, std::size_t gauge,
+                            const ArrivalWindow& window, Spectrum& out) {
+  level(record, shot, gauge);
+  std::transform(record.begin(), record.end(), window.weight.begin(), record.begin(),
+                 std::multiplies<>());
+  transform_.forward(record, out);
+  out.front() *= std::sqrt(0.5);
+  out.back() *= std::sqrt(0.5);
+}
+
+void Comparer::add_rounded(const GaugeDeviation& reading, std::size_t shot,
+                           const ArrivalWindow& window, std::vector<PlaceNoise>& by_band) {
+  Spectrum spectrum(transform_.bins());
+  for (const std::vector<double>& draw : (*reading.rounded)[shot]) {
+    put_windowed(draw, shot, reading.gauge, window, spectrum);
+    for (std::size_t b = 0; b < bands_.size(); ++b) {
+      double energy = 0.0;
+      for (std::size_t f = bands_[b].bins.first; f < bands_[b].bins.end; ++f) {
+        energy += std::norm(spectrum[f]);
+      }
+      by_band[b].rounded.push_back(energy);
+    }
+  }
 }
 
 void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Windowed>& windows,
@@ -250,7 +278,8 @@ void Comparer::add_tiles(const GaugeDeviation& reading, const std::vector<Window
         tile.energy += power;
         squares += power * scale * scale;
       }
-      tile.noise = (*own.noise)[b];
+      tile.leaves = (*own.noise)[b];
+      tile.noise = tile.leaves.whole();
       tile.sigma = std::sqrt(tile.energy / tile.noise.mean);
       // Parseval: a mean square is 2/N times the one-sided sum over the window's length.
       const double mean_square = 2.0 * squares / static_cast<double>(weight.size()) / length;
@@ -304,8 +333,11 @@ std::map<Comparer::Key, Region> Comparer::regions_of(const std::vector<Tile>& ti
     region.window = tile.window;
     region.band = tile.band;
     region.energy += tile.energy;
-    region.noise += tile.noise;
+    region.leaves += tile.leaves;
     region.log_p = tile.log_p;
+  }
+  for (auto& [key, region] : regions) {
+    region.noise = region.leaves.whole();
   }
   return regions;
 }

@@ -26,7 +26,8 @@ struct Tile {
   std::size_t band = 0;
   std::size_t shot = 0;
   double energy = 0.0;           ///< whitened
-  TileNoise noise;               ///< what of it noise alone would leave
+  PlaceNoise leaves;             ///< what of it noise alone would leave
+  TileNoise noise;               ///< the same, whatever it is of
   double sigma = 0.0;            ///< rms in units of the noise's: 1 under the true model
   double percent_of_peak = 0.0;  ///< rms of the deviation, of the record's peak
   double share = 0.0;            ///< of the whole misfit's excess over noise
@@ -41,6 +42,7 @@ struct Region {
   std::string window;
   std::size_t band = 0;
   double energy = 0.0;
+  PlaceNoise leaves;
   TileNoise noise;
   double share = 0.0;
   double log_p = 0.0;
@@ -93,7 +95,7 @@ class Comparer {
   using Spectrum = std::vector<Complex>;
   struct Windowed {
     const ArrivalWindow* window;
-    const std::vector<TileNoise>* noise;  ///< by band
+    const std::vector<PlaceNoise>* noise;  ///< by band
     Spectrum spectrum;
   };
 
@@ -119,13 +121,17 @@ class Comparer {
   void choose_bands();
   [[nodiscard]] Comparison compared(const Eigen::VectorXd& white, const Misfit& misfit);
   [[nodiscard]] std::vector<Windowed> windowed(const GaugeDeviation& reading, std::size_t shot);
-  [[nodiscard]] const std::vector<std::vector<TileNoise>>& noise_of(const GaugeDeviation& reading,
-                                                                    std::size_t shot);
-  [[nodiscard]] std::vector<TileNoise> drawn_noise(const GaugeDeviation& reading, std::size_t shot,
-                                                   const ArrivalWindow& window);
+  [[nodiscard]] const std::vector<std::vector<PlaceNoise>>& noise_of(const GaugeDeviation& reading,
+                                                                     std::size_t shot);
+  [[nodiscard]] std::vector<PlaceNoise> drawn_noise(const GaugeDeviation& reading, std::size_t shot,
+                                                    const ArrivalWindow& window);
+  void put_windowed(std::vector<double> record, std::size_t shot, std::size_t gauge,
+                    const ArrivalWindow& window, Spectrum& out);
+  void add_rounded(const GaugeDeviation& reading, std::size_t shot, const ArrivalWindow& window,
+                   std::vector<PlaceNoise>& by_band);
   void add_tiles(const GaugeDeviation& reading, const std::vector<Windowed>& windows,
                  std::size_t shot, std::vector<Tile>& tiles);
-  [[nodiscard]] std::vector<std::vector<TileNoise>> noise_in(
+  [[nodiscard]] std::vector<std::vector<PlaceNoise>> noise_in(
       const std::vector<ArrivalWindow>& windows, const std::vector<double>& quiet);
   [[nodiscard]] std::map<Key, std::vector<Following>> add_all_tiles(const Eigen::VectorXd& white,
                                                                     std::vector<Tile>& tiles);
@@ -147,9 +153,9 @@ class Comparer {
   /// Weights of the mean before the pulse, by shot and gauge; empty where nothing is before it.
   std::vector<std::vector<std::vector<double>>> quiet_;
   /// By shot, gauge, window and band; of stationary noise.
-  std::vector<std::vector<std::vector<std::vector<TileNoise>>>> noise_;
+  std::vector<std::vector<std::vector<std::vector<PlaceNoise>>>> noise_;
   /// By gauge and shot, then by window and band; of drawn noise.
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::vector<TileNoise>>> drawn_;
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::vector<PlaceNoise>>> drawn_;
 };
 
 /// Compares a model where it stands. @param studied  of this study, the last one evaluated

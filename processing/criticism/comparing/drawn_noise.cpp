@@ -50,7 +50,7 @@ DrawnNoise::DrawnNoise(const WhiteResiduals& residuals, const PlainResiduals& pl
   const double longer = static_cast<double>(transform_.length()) / static_cast<double>(band.judged);
   Eigen::MatrixXd covariance;
   for (std::size_t k = 0; k < band.bins_judged; ++k) {
-    residuals.noise().put_covariance(k, covariance);
+    residuals.noise().put_covariance_but_steps(k, covariance);
     factor_.emplace_back((longer * covariance).llt().matrixL());
   }
 }

@@ -14,8 +14,9 @@ namespace kolsky {
 /// noise, of which a record holds none from before it began, grows all through it.
 [[nodiscard]] bool rings_on(const PlainResiduals& plain, std::size_t judged);
 
-/// Residuals of noise alone, drawn: each gauge's own as its records hold it, less its mean before
-/// the pulse, and of the reference gauge's what waves carry of it from the record's beginning on.
+/// Residuals of noise alone but for a coarse converter's rounding, drawn: each gauge's own as its
+/// records hold it, less its mean before the pulse, and of the reference gauge's what waves carry
+/// of it from the record's beginning on.
 ///
 /// Parts of a spectrum are drawn as signs: of the same second moments as a normal variable, which
 /// are all that is asked for.

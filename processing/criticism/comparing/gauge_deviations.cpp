@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "processing/criticism/comparing/drawn_noise.hpp"
+#include "processing/criticism/fitting/drawn_rounding.hpp"
 
 namespace kolsky {
 
@@ -82,6 +83,10 @@ GaugeDeviations::GaugeDeviations(WhiteResiduals& residuals, const Composition& c
   for (const auto& of_shot : plain_.records) {
     y_.push_back(received(of_shot));
   }
+  if (residuals.noise().knows_steps()) {
+    draw_rounding(residuals, composition, theta);
+    draw_noise();
+  }
 }
 
 /// By gauge, of a shot's residuals: the reference has none.
@@ -102,13 +107,29 @@ bool GaugeDeviations::draw_where_waves_ring() {
   if (draws() || !rings_on(plain_, residuals_.band().judged)) {
     return draws();
   }
+  draw_noise();
+  return true;
+}
+
+void GaugeDeviations::draw_noise() {
   const std::size_t draws =
       std::min(kMostDraws, kFewestDraws + kDrawsPerShot * residuals_.campaign().shots.size());
   DrawnNoise noise(residuals_, plain_);
   while (drawn_.size() < draws) {
     drawn_.push_back(received(noise.next()));
   }
-  return true;
+}
+
+void GaugeDeviations::draw_rounding(WhiteResiduals& residuals, const Composition& composition,
+                                    const std::vector<double>& theta) {
+  const DrawnRounding rounding(residuals, StepsLie::alike);
+  for (std::size_t n = 0; n < y_.size(); ++n) {
+    auto& of_shot = rounded_.emplace_back();
+    for (std::size_t d = 0; d < DrawnRounding::kDraws; ++d) {
+      of_shot.push_back(
+          received(residuals.plain_of_records(composition, theta, rounding.records(n, d), n)));
+    }
+  }
 }
 
 std::size_t GaugeDeviations::judged_bin(std::size_t fine) const {
@@ -195,9 +216,26 @@ GaugeDeviations::Drawn& GaugeDeviations::drawn(const std::vector<bool>& left_out
   if (known != drawn_of_.end()) {
     return known->second;
   }
+  Drawn out;
+  std::vector<PlaceNoise> energy;
+  for (const TileNoise& of_one : drawn_energy(estimate)) {
+    PlaceNoise& of_all = energy.emplace_back();
+    for (std::size_t n = 0; n < y_.size(); ++n) {
+      of_all.normal += of_one;
+    }
+  }
+  add_rounded_energy(estimate, energy);
+  for (const PlaceNoise& own : energy) {
+    out.energy.push_back(own.whole());
+  }
+  return drawn_of_.emplace(left_out, std::move(out)).first->second;
+}
+
+/// By gauge, of one shot's normal noise.
+std::vector<TileNoise> GaugeDeviations::drawn_energy(const Estimate& estimate) const {
   const auto size = static_cast<Eigen::Index>(2 * residuals_.band().bins_judged);
   std::vector<Eigen::MatrixXd> parts(
-      left_out.size(), Eigen::MatrixXd(2 * size, static_cast<Eigen::Index>(drawn_.size())));
+      y_.front().size(), Eigen::MatrixXd(2 * size, static_cast<Eigen::Index>(drawn_.size())));
   for (std::size_t d = 0; d < drawn_.size(); ++d) {
     const std::vector<Spectrum> own = deviations(estimate, drawn_[d]);
     for (std::size_t j = 0; j < own.size(); ++j) {
@@ -207,11 +245,25 @@ GaugeDeviations::Drawn& GaugeDeviations::drawn(const std::vector<bool>& left_out
       out.tail(size) = std::sqrt(0.5) * judged.imag();
     }
   }
-  Drawn out;
+  std::vector<TileNoise> list;
   for (const Eigen::MatrixXd& of_gauge : parts) {
-    out.energy.push_back(tile_noise_of(of_gauge));
+    list.push_back(tile_noise_of(of_gauge));
   }
-  return drawn_of_.emplace(left_out, std::move(out)).first->second;
+  return list;
+}
+
+/// By gauge, of all shots: in one draw steps lie alike in all of them.
+void GaugeDeviations::add_rounded_energy(const Estimate& estimate,
+                                         std::vector<PlaceNoise>& energy) const {
+  for (const auto& of_shot : rounded_) {
+    for (std::size_t d = 0; d < of_shot.size(); ++d) {
+      const std::vector<Spectrum> own = deviations(estimate, of_shot[d]);
+      for (std::size_t j = 0; j < own.size(); ++j) {
+        energy[j].rounded.resize(of_shot.size(), 0.0);
+        energy[j].rounded[d] += energy_of(own[j]);
+      }
+    }
+  }
 }
 
 void GaugeDeviations::put_drawn_records(const Estimate& estimate, Drawn& out) {
@@ -222,22 +274,26 @@ void GaugeDeviations::put_drawn_records(const Estimate& estimate, Drawn& out) {
       transform_.inverse(own[j], out.records[j].emplace_back(residuals_.band().judged));
     }
   }
+  out.rounded.assign(out.records.size(), std::vector<Records>(rounded_.size()));
+  for (std::size_t n = 0; n < rounded_.size(); ++n) {
+    for (const std::vector<Spectrum>& draw : rounded_[n]) {
+      const std::vector<Spectrum> own = deviations(estimate, draw);
+      for (std::size_t j = 0; j < own.size(); ++j) {
+        transform_.inverse(own[j], out.rounded[j][n].emplace_back(residuals_.band().judged));
+      }
+    }
+  }
 }
 
 /// By gauge, over the judged bins and all shots.
 std::vector<TileNoise> GaugeDeviations::noise_energy(const std::vector<bool>& left_out,
                                                      const Estimate& estimate) {
-  const double freedom = 2.0 * static_cast<double>(residuals_.band().bins_judged);
-  const std::vector<TileNoise> of_one =
-      draws() ? drawn(left_out, estimate).energy
-              : std::vector<TileNoise>(left_out.size(), {freedom, freedom, freedom});
-  std::vector<TileNoise> sum(left_out.size());
-  for (std::size_t n = 0; n < y_.size(); ++n) {
-    for (std::size_t j = 0; j < sum.size(); ++j) {
-      sum[j] += of_one[j];
-    }
+  if (draws()) {
+    return drawn(left_out, estimate).energy;
   }
-  return sum;
+  const double freedom =
+      2.0 * static_cast<double>(residuals_.band().bins_judged) * static_cast<double>(y_.size());
+  return std::vector<TileNoise>(left_out.size(), {freedom, freedom, freedom});
 }
 
 /// What the gauges that are not left out have beyond noise.
@@ -304,7 +360,11 @@ std::vector<GaugeDeviation> GaugeDeviations::by_gauge() {
   }
   std::vector<GaugeDeviation> list;
   for (std::size_t j = 0; j < gauges; ++j) {
-    GaugeDeviation own{j, {}, {}, noise != nullptr ? &noise->records[j] : nullptr};
+    GaugeDeviation own{j,
+                       {},
+                       {},
+                       noise != nullptr ? &noise->records[j] : nullptr,
+                       rounded_.empty() ? nullptr : &noise->rounded[j]};
     for (const std::vector<Spectrum>& of_shot : all.spectra) {
       own.records.emplace_back(residuals_.band().judged);
       transform_.inverse(of_shot[j], own.records.back());

@@ -19,6 +19,9 @@ struct GaugeDeviation {
   std::vector<double> scale;  ///< strain per unit, by judged bin
   /// The same of shots of noise alone, where that is not of unit power; null: it is.
   const std::vector<std::vector<double>>* drawn = nullptr;
+  /// What coarse converters leave of each shot, by shot and draw (drawn_rounding.hpp), which that
+  /// noise is without; null: none is coarse.
+  const std::vector<std::vector<std::vector<double>>>* rounded = nullptr;
 };
 
 /// Each gauge's deviation from the wave common to all, the shots' sources at their best, over its
@@ -35,7 +38,8 @@ struct GaugeDeviation {
 ///
 /// Deviations are of unit power as long as noise is stationary. Where waves ring to the record's
 /// end it is not: what they carry of it begins with the record, and a gauge may be told by the
-/// others early and tell them late. Then noise is drawn and goes the same way.
+/// others early and tell them late. Then noise is drawn and goes the same way. So does what coarse
+/// converters leave, which is where records creep.
 class GaugeDeviations {
  public:
   /// @param residuals  as frozen at theta
@@ -65,10 +69,13 @@ class GaugeDeviations {
     std::vector<std::vector<Spectrum>> spectra;  ///< by shot and gauge, over their deviations
     std::vector<double> energy;                  ///< by gauge, over the judged bins and all shots
   };
+  using Records = std::vector<std::vector<double>>;
   /// What drawn noise leaves of an estimate.
   struct Drawn {
-    std::vector<TileNoise> energy;                          ///< by gauge, of one shot
-    std::vector<std::vector<std::vector<double>>> records;  ///< by gauge and draw; where asked for
+    std::vector<TileNoise> energy;  ///< by gauge, of all shots
+    // Where asked for.
+    std::vector<Records> records;               ///< by gauge and draw
+    std::vector<std::vector<Records>> rounded;  ///< by gauge, shot and draw
   };
 
   [[nodiscard]] Estimate estimate(const std::vector<bool>& left_out) const;
@@ -79,6 +86,11 @@ class GaugeDeviations {
   [[nodiscard]] Found found(const Estimate& estimate) const;
   [[nodiscard]] Drawn& drawn(const std::vector<bool>& left_out, const Estimate& estimate);
   void put_drawn_records(const Estimate& estimate, Drawn& out);
+  void draw_noise();
+  void draw_rounding(WhiteResiduals& residuals, const Composition& composition,
+                     const std::vector<double>& theta);
+  [[nodiscard]] std::vector<TileNoise> drawn_energy(const Estimate& estimate) const;
+  void add_rounded_energy(const Estimate& estimate, std::vector<PlaceNoise>& energy) const;
   [[nodiscard]] std::vector<TileNoise> noise_energy(const std::vector<bool>& left_out,
                                                     const Estimate& estimate);
   [[nodiscard]] static double excess_of_others(const Found& now, const std::vector<bool>& left_out,
@@ -96,7 +108,9 @@ class GaugeDeviations {
   Spectrum mean_;                         ///< by bin: over a long reference gauge; empty: a point
   Eigen::MatrixXcd waves_;                ///< by gauge and bin: per unit source
   std::vector<std::vector<Spectrum>> y_;  ///< by shot and gauge: records less what is foretold
-  std::vector<std::vector<Spectrum>> drawn_;     ///< by draw and gauge: the same of noise alone
+  std::vector<std::vector<Spectrum>> drawn_;  ///< by draw and gauge: the same of noise alone
+  /// By shot, draw and gauge: the same of what coarse converters leave.
+  std::vector<std::vector<std::vector<Spectrum>>> rounded_;
   std::map<std::vector<bool>, Drawn> drawn_of_;  ///< by gauges left out
 };
 

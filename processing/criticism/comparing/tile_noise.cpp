@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "processing/base/wide.hpp"
@@ -291,6 +292,34 @@ TileNoise& TileNoise::operator+=(const TileNoise& other) {
   mean += other.mean;
   second += other.second;
   third += other.third;
+  return *this;
+}
+
+TileNoise PlaceNoise::whole() const {
+  if (rounded.empty()) {
+    return normal;
+  }
+  const Eigen::Map<const Eigen::ArrayXd> energy(rounded.data(),
+                                                static_cast<Eigen::Index>(rounded.size()));
+  const double mean = energy.mean();
+  const double variance = (energy - mean).square().mean();
+  const double cubes = (energy - mean).cube().mean();
+  // Noise of this power per component beside an energy R: variance 4 p R more, third moment 24 p^2
+  // R.
+  const double power = normal.mean > 0.0 ? normal.second / normal.mean : 0.0;
+  TileNoise sum = normal;
+  sum.mean += mean;
+  sum.second += 2.0 * power * mean + 0.5 * variance;
+  sum.third += 3.0 * power * power * mean + 1.5 * power * variance + 0.125 * cubes;
+  sum.third = std::max(sum.third, sum.second * sum.second / sum.mean);
+  return sum;
+}
+
+PlaceNoise& PlaceNoise::operator+=(const PlaceNoise& other) {
+  normal += other.normal;
+  rounded.resize(other.rounded.size(), 0.0);
+  std::transform(rounded.begin(), rounded.end(), other.rounded.begin(), rounded.begin(),
+                 std::plus<>());
   return *this;
 }
 

@@ -30,6 +30,20 @@ struct TileNoise {
 /// traces as their means. @param draws  components by draw
 [[nodiscard]] TileNoise tile_noise_of(const Eigen::MatrixXd& draws);
 
+/// What noise leaves in a place, that of a coarse converter beside all other.
+struct PlaceNoise {
+  TileNoise normal;
+  /// Energy of what rounding leaves, by where the converter's steps may lie; empty: its steps are
+  /// lost in the noise. It is no sum of squares of normal variables: a record that creeps over a
+  /// tenth of a step is mostly off by nothing, and by a whole step where it creeps over an edge.
+  std::vector<double> rounded;
+
+  /// Both together, by the first three moments of their sum.
+  [[nodiscard]] TileNoise whole() const;
+  /// Of another place, whose converters' steps lie where this one's do.
+  PlaceNoise& operator+=(const PlaceNoise& other);
+};
+
 /// Bins of a transform of the judged window, first to last.
 struct BinRange {
   std::size_t first = 0;

@@ -374,6 +374,24 @@ Eigen::VectorXd WhiteResiduals::whiten_records(const Composition& composition,
   return white;
 }
 
+std::vector<std::vector<double>> WhiteResiduals::plain_of_records(
+    const Composition& composition, const std::vector<double>& theta,
+    std::span<const std::vector<double>> records, std::size_t shot) {
+  Workspace& work = *work_.front();
+  know_waves(work, composition, StagedEffects(composition, theta, shot).on_waves, shot);
+  std::vector<Spectrum> spectra(records.size());
+  for (std::size_t j = 0; j < records.size(); ++j) {
+    work.transforms.carry(records[j], spectra[j]);
+  }
+  subtract(work, spectra);
+  std::vector<std::vector<double>> plain;
+  for (const Spectrum& residual : work.residuals) {
+    const std::span<const double> window = work.transforms.window_of(residual);
+    plain.emplace_back(window.begin(), window.end());
+  }
+  return plain;
+}
+
 Eigen::VectorXd WhiteResiduals::whiten_pulses(const Composition& composition,
                                               const std::vector<double>& theta,
                                               std::size_t worker) {

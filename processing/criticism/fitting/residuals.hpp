@@ -109,9 +109,13 @@ class WhiteResiduals : public ShotResiduals {
                                                const std::vector<double>& theta,
                                                std::span<const std::vector<double>> records,
                                                std::size_t worker);
-  /// The same of all shots, of whose records all but what stands out of their noise is zero: what
-  /// two compositions make of the pulses, without what they make of the noise of the reference
-  /// gauge.
+  /// The same before they are whitened, of a shot's own waves. @return by other gauge
+  [[nodiscard]] std::vector<std::vector<double>> plain_of_records(
+      const Composition& composition, const std::vector<double>& theta,
+      std::span<const std::vector<double>> records, std::size_t shot);
+  /// Whitened residuals of all shots, of whose records all but what stands out of their noise is
+  /// zero: what two compositions make of the pulses, without what they make of the noise of the
+  /// reference gauge.
   [[nodiscard]] Eigen::VectorXd whiten_pulses(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t worker);
   /// The residuals themselves. @param theta  as frozen

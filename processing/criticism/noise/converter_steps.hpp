@@ -21,6 +21,25 @@ namespace kolsky {
                                                  std::span<const double> clean, double step,
                                                  double noise_sd, std::size_t bins);
 
+/// What rounding leaves of a record at one place.
+class RoundingAt {
+ public:
+  RoundingAt(double step, double noise_sd);
+
+  /// On average, by the same sum. @param strain  before it was rounded, from the middle of a step
+  [[nodiscard]] double mean(double strain) const { return in(mean_, strain); }
+  /// What noise makes of it from sample to sample, where it is more than on the whole: a record at
+  /// rest between two codes goes over and back.
+  [[nodiscard]] double variance_beyond(double strain) const { return in(beyond_, strain); }
+
+ private:
+  [[nodiscard]] double in(const std::vector<double>& table, double strain) const;
+
+  double step_;
+  std::vector<double> mean_;    ///< over a step, from its lower end to its upper one
+  std::vector<double> beyond_;  ///< likewise
+};
+
 /// Deviation of white noise before rounding. A record at rest may show none of it between two
 /// steps, so it is taken from where records cross a few steps slowly: they change over and
 /// back there the more often, the more noise there is.

@@ -197,11 +197,19 @@ void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
 }
 
 void GaugeNoise::put_covariance(std::size_t bin, Eigen::MatrixXd& all) const {
+  put(scale_, bin, all);
+}
+
+void GaugeNoise::put_covariance_but_steps(std::size_t bin, Eigen::MatrixXd& all) const {
+  put(knows_steps() ? but_steps_ : scale_, bin, all);
+}
+
+void GaugeNoise::put(const Scales& scale, std::size_t bin, Eigen::MatrixXd& all) const {
   const auto gauges = static_cast<Eigen::Index>(scale_.size());
   all.resize(gauges, gauges);
   for (Eigen::Index a = 0; a < gauges; ++a) {
     for (Eigen::Index b = 0; b < gauges; ++b) {
-      all(a, b) = covariance(bin, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+      all(a, b) = covariance(scale, bin, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
     }
   }
 }
@@ -232,6 +240,7 @@ void GaugeNoise::carry(std::span<const std::vector<double>> responses, CarriedNo
 }
 
 void GaugeNoise::forget() {
+  but_steps_.clear();
   scale_.assign(campaign_.gauges(), std::vector<double>(band_.bins_judged, 1.0));
 }
 
@@ -251,6 +260,9 @@ bool GaugeNoise::is_coarse(std::size_t gauge) const {
 }
 
 void GaugeNoise::add_steps(std::size_t gauge, std::span<const std::vector<double>> clean) {
+  if (!knows_steps()) {
+    but_steps_ = scale_;
+  }
   const double step = campaign_.step[gauge];
   const double noise_sd = unrounded_sd(gauge);
   DampedTransform transform(clean.front().size(), campaign_.period_s, 1.0);

@@ -32,10 +32,11 @@ class GaugeNoise {
 
   /// Covariance of the gauges at a bin, in power of the judged window's transform.
   void put_covariance(std::size_t bin, Eigen::MatrixXd& all) const;
+  /// The same without what `add_steps` added.
+  void put_covariance_but_steps(std::size_t bin, Eigen::MatrixXd& all) const;
   /// That of two gauges.
   [[nodiscard]] double covariance(std::size_t bin, std::size_t a, std::size_t b) const {
-    return std::sqrt(scale_[a][bin] * scale_[b][bin]) *
-           quiet_[bin](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+    return covariance(scale_, bin, a, b);
   }
   /// Whether any other has a part of this gauge's noise.
   [[nodiscard]] bool shared_with(std::size_t gauge) const;
@@ -60,6 +61,10 @@ class GaugeNoise {
   /// Adds what a coarse converter's steps leave of records that move, where the quiet parts do not
   /// tell. @param clean  a gauge's records by shot, over the judged window at their own rate
   void add_steps(std::size_t gauge, std::span<const std::vector<double>> clean);
+  /// Whether that was done to any gauge.
+  [[nodiscard]] bool knows_steps() const { return !but_steps_.empty(); }
+  /// Deviation of this gauge's noise before its converter rounded it; see converter_steps.hpp.
+  [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
   /// @param power_over_quiet  of a gauge at each bin, as residuals show it; made smooth
   void learn(std::size_t gauge, const std::vector<double>& power_over_quiet, NoiseShown shown);
 
@@ -85,7 +90,12 @@ class GaugeNoise {
   [[nodiscard]] double flatness() const;
 
  private:
-  [[nodiscard]] double unrounded_sd(std::size_t gauge) const;
+  [[nodiscard]] double covariance(const Scales& scale, std::size_t bin, std::size_t a,
+                                  std::size_t b) const {
+    return std::sqrt(scale[a][bin] * scale[b][bin]) *
+           quiet_[bin](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+  void put(const Scales& scale, std::size_t bin, Eigen::MatrixXd& all) const;
   [[nodiscard]] double most_hidden(std::size_t bin) const;
   [[nodiscard]] double against(const QuietPower& quiet, std::size_t gauge, double share) const;
   /// The judged bin next to a place between bins.
@@ -98,6 +108,7 @@ class GaugeNoise {
   JudgedBand band_;
   std::vector<Eigen::MatrixXd> quiet_;      ///< by bin
   std::vector<std::vector<double>> scale_;  ///< by gauge and bin
+  Scales but_steps_;                        ///< the same before steps were added; empty: none were
   std::unique_ptr<CarriedNoise> carried_;
 };
 

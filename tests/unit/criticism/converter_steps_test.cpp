@@ -89,6 +89,46 @@ TEST(UnroundedSd, IsThatOfTheNoiseThoughTheRecordAtRestShowsNone) {
   }
 }
 
+// A stretch with a pulse's top in it ends as few steps from where it began as a slow one does.
+TEST(UnroundedSd, IsNotTakenFromPulses) {
+  constexpr double kWanted = 0.1;
+  std::mt19937_64 random(6);
+  std::vector<std::vector<double>> records;
+  for (int i = 0; i < 50; ++i) {
+    std::vector<double> record(300, 0.0);
+    for (int n = 0; n < 80; ++n) {
+      record.push_back(40.0 * kStep * std::sin(std::numbers::pi * n / 80.0));
+    }
+    for (const double value : creeping()) {
+      record.push_back(value);
+    }
+    records.push_back(rounded(record, kWanted * kStep, random));
+  }
+  const std::vector<std::span<const double>> views(records.begin(), records.end());
+  EXPECT_NEAR(unrounded_sd(views, kStep) / kStep, kWanted, 0.05);
+}
+
+TEST(RoundingAt, IsWhatRoundingDoesToARecordThere) {
+  constexpr double kNoise = 0.15;
+  const RoundingAt rounding(kStep, kNoise * kStep);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0.0, kNoise * kStep);
+  for (const double place : {-3.2, -0.5, 0.0, 0.3, 0.45, 0.6, 7.5}) {
+    constexpr int kRepeats = 40000;
+    const double strain = place * kStep;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int i = 0; i < kRepeats; ++i) {
+      const double read = std::round((strain + noise(random)) / kStep);
+      sum += read / kRepeats;
+      squares += read * read / kRepeats;
+    }
+    EXPECT_NEAR(rounding.mean(strain) / kStep, sum - place, 0.02) << place;
+    const double beyond = std::max(0.0, squares - sum * sum - 1.0 / 12.0);
+    EXPECT_NEAR(rounding.variance_beyond(strain) / (kStep * kStep), beyond, 0.02) << place;
+  }
+}
+
 TEST(UnroundedSd, IsUnknownWhereNothingMoves) {
   const std::vector<double> rest(500, 3.0 * kStep);
   const std::vector<std::span<const double>> views{rest};
