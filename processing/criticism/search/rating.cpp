@@ -5,10 +5,18 @@
 
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/beside.hpp"
+#include "processing/criticism/search/beside_rounding.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_weights.hpp"
 
 namespace kolsky {
+
+namespace {
+
+/// Chances (ln) that need no second look.
+constexpr double kOrdinary = -3.0;
+
+}  // namespace
 
 double gain_over_own_noise(const Refit& refit, const SearchGround& ground) {
   const double noise = noise_of(refit.studied.misfit, ground.study.campaign().shots.size());
@@ -132,8 +140,36 @@ void Rating::note_unconfirmed(const Refit& refit, double gain, double evidence) 
   }
 }
 
+/// How many times ln of a chance is what it would be if coarse converters left noise.
+double Rating::times_by_rounding(const Refit& refit, double noise) const {
+  if (ground_.far_off() || refit.products || refit.slow) {
+    return 1.0;
+  }
+  if (!drawn_) {
+    // Alike in all shots they would leave as much in each, and hide what is far above them.
+    drawn_ = drawn_rounding_and_noise(ground_.study, ground_.base, StepsLie::as_each_shot_has_them);
+  }
+  Exaggerated chances;
+  if (drawn_->cols() > 0) {
+    for (const double gain : gains_by_chance(refit.studied, candidate_of(refit).id(), *drawn_)) {
+      chances.add(chance_of(refit, gain / noise / refit.scatter));
+    }
+  }
+  return chances.times();
+}
+
+double Rating::beside_rounding(double log_p, const Refit& refit, double noise) const {
+  return with_search(log_p) <= kOrdinary ? log_p / times_by_rounding(refit, noise) : log_p;
+}
+
+void Rating::weigh_beside_rounding(std::vector<Refit>& list) const {
+  for (Refit& refit : list) {
+    refit.log_p = beside_rounding(refit.log_p, refit, refit.noise);
+    refit.rival_log_p = beside_rounding(refit.rival_log_p, refit, refit.noise);
+  }
+}
+
 void Rating::weigh_beside_slow_noise(std::vector<Refit>& list) const {
-  constexpr double kOrdinary = -3.0;
   const auto weighed = [&](const Refit& refit) {
     return with_search(refit.log_p) <= kOrdinary && !is_addition(*candidate_of(refit).use.effect);
   };

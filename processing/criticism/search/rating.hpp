@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,12 @@ class Rating {
   /// are judged by that noise already.
   void weigh_beside_slow_noise(std::vector<Refit>& list) const;
 
+  /// Nor may what coarse converters leave gain as much.
+  void weigh_beside_rounding(std::vector<Refit>& list) const;
+  /// ln of the chance of a refit's gain on noise, as it is where coarse converters leave more in
+  /// its direction. @param noise  per residual
+  [[nodiscard]] double beside_rounding(double log_p, const Refit& refit, double noise) const;
+
   /// Strengths of single shots that nothing confirms: slow noise, or something slow that the
   /// library lacks. Of several, what explains most stands beside what is rated from then on.
   void note_unconfirmed(const Refit& refit, double gain, double evidence);
@@ -44,6 +51,7 @@ class Rating {
   };
 
   void rate(Refit& refit, double noise) const;
+  [[nodiscard]] double times_by_rounding(const Refit& refit, double noise) const;
   [[nodiscard]] double chance_of(const Refit& refit, double gain) const;
   [[nodiscard]] double share_beside_unconfirmed(const Refit& refit, double evidence) const;
   [[nodiscard]] bool is_most_of_unconfirmed(const Refit& refit, double evidence) const;
@@ -54,6 +62,7 @@ class Rating {
   const SearchGround& ground_;
   double trials_;
   std::optional<Unconfirmed> unconfirmed_;
+  mutable std::optional<Eigen::MatrixXd> drawn_;  ///< what coarse converters leave, if asked for
 };
 
 /// Gain of the objective over the noise that a refit leaves.

@@ -49,6 +49,7 @@ std::vector<Refit> Search::refit_rivals() {
   if (safeguards_.slow_noise) {
     rating_.weigh_beside_slow_noise(list);
   }
+  rating_.weigh_beside_rounding(list);
   return list;
 }
 
@@ -60,7 +61,9 @@ bool Search::admit(Refit& refit) {
 void Search::dismiss(const Refit& refit) {
   const EffectUse& use = ground_.candidates[refit.candidate].use;
   const double gain = gain_over_own_noise(refit, ground_);
-  const double chance = log_gain_tail(gain, refit.freedom, Signs::both);
+  const double noise = noise_of(refit.studied.misfit, ground_.study.campaign().shots.size());
+  const double chance =
+      rating_.beside_rounding(log_gain_tail(gain, refit.freedom, Signs::both), refit, noise);
   Dismissed& own = dismissed_[use.id()];
   own.verdict = use.per_shot ? CandidateVerdict::unconfirmed : CandidateVerdict::rejected;
   own.gain = std::max(own.gain, gain);

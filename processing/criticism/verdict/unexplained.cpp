@@ -7,6 +7,7 @@
 
 #include "processing/algebra/algebra.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/beside_rounding.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_weights.hpp"
@@ -29,6 +30,9 @@ constexpr double kOfRepeats = 0.2;
 constexpr double kOfOwnNumbers = 0.1;
 constexpr double kOfOwnReadings = 0.1;
 constexpr double kOfAll = 0.1;
+
+/// Chances (ln) that need no second look.
+constexpr double kOrdinary = -3.0;
 
 /// Columns of one kind of distortion at one place, and where they stand among all.
 struct Kind {
@@ -263,12 +267,39 @@ Unexplained unexplained_by(Study& study, const Studied& studied, const Distortio
   return left;
 }
 
-}  // namespace
+/// What a fit leaves of other residuals.
+Studied fitted_to(Study& study, const Studied& studied, const Eigen::VectorXd& white) {
+  const ModelFit& fit = studied.fit;
+  Studied other = studied;
+  other.fit.residual = white - fit.jacobian * (fit.covariance * (fit.jacobian.transpose() * white));
+  other.misfit =
+      misfit_of(study.residuals(), other.fit.residual, studied.misfit.degrees_of_freedom);
+  return other;
+}
 
-Unexplained unexplained(Study& study, const Studied& studied) {
-  const Distortions unit = unit_columns(study, studied);
+/// What coarse converters leave is where records creep, alike in shots that are alike, and passes
+/// for what repeats by all measures of noise that is the same everywhere. These are told by what
+/// they say where rounding is all there is.
+void allow_for_rounding(Study& study, const Studied& studied, const Distortions& unit,
+                        Unexplained& left) {
+  const Eigen::MatrixXd drawn = drawn_rounding_and_noise(study, studied, StepsLie::alike);
+  Exaggerated all;
+  Exaggerated common;
+  Exaggerated apart;
+  for (Eigen::Index d = 0; d < drawn.cols(); ++d) {
+    const Unexplained own = unexplained_by(study, fitted_to(study, studied, drawn.col(d)), unit);
+    all.add(own.log_p);
+    common.add(own.common_log_p);
+    apart.add(own.apart.log_p);
+  }
+  left.log_p /= all.times();
+  left.common_log_p /= common.times();
+  left.apart.log_p /= apart.times();
+}
+
+/// Without what coarse converters leave.
+Unexplained unexplained_by_noise(Study& study, const Studied& studied, const Distortions& unit) {
   Unexplained left = unexplained_by(study, studied, unit);
-  constexpr double kOrdinary = -3.0;
   if (left.log_p > kOrdinary || study.campaign().shots.size() < 3) {
     return left;
   }
@@ -284,6 +315,17 @@ Unexplained unexplained(Study& study, const Studied& studied) {
     if (beside.log_p > left.log_p) {
       left = beside;
     }
+  }
+  return left;
+}
+
+}  // namespace
+
+Unexplained unexplained(Study& study, const Studied& studied) {
+  const Distortions unit = unit_columns(study, studied);
+  Unexplained left = unexplained_by_noise(study, studied, unit);
+  if (left.log_p < kOrdinary) {
+    allow_for_rounding(study, studied, unit, left);
   }
   return left;
 }

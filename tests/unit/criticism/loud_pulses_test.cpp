@@ -83,5 +83,30 @@ TEST(LoudPulses, AreNotWhatNoiseOfAnyColourAndCoarseStepsMake) {
   }
 }
 
+testing::Campaign on_coarse_steps(std::uint64_t seed, double noise_strain,
+                                  const std::vector<std::string>& effects) {
+  testing::Campaign campaign = testing::draw_campaign(
+      {.seed = seed, .shots = 6, .gauges = 4, .noise_strain = noise_strain, .bits = 8});
+  for (const std::string& effect : effects) {
+    testing::hide(campaign, testing::parse_effect(effect));
+  }
+  return campaign;
+}
+
+// Like shots have like saw teeth, which repeat; and a bending of -11 um gained as much by them as
+// by noise once in 400 campaigns.
+TEST(CoarseSteps, FarAboveTheNoiseAreNothingThatIsMissing) {
+  EXPECT_EQ(name_of(diagnosed(on_coarse_steps(90001, 2e-6, {}), 0, 0.0).verdict), "adequate");
+  EXPECT_EQ(name_of(diagnosed(on_coarse_steps(93003, 2e-6, {}), 0, 0.0).verdict), "adequate");
+  EXPECT_EQ(name_of(diagnosed(on_coarse_steps(94008, 4e-6, {}), 0, 0.0).verdict), "adequate");
+}
+
+TEST(CoarseSteps, HideNothingThatIsFarAboveThem) {
+  const Diagnosis diagnosis =
+      diagnosed(on_coarse_steps(90001, 2e-6, {"gauge-factor:g2=0.03"}), 0, 0.0);
+  EXPECT_EQ(name_of(diagnosis.verdict), "named");
+  EXPECT_EQ(diagnosis.effects, std::vector<std::string>{"gauge-factor:g2"});
+}
+
 }  // namespace
 }  // namespace kolsky
