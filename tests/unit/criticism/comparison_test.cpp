@@ -233,6 +233,14 @@ TEST(Comparison, TakesACoarseConvertersStepsForNoFailure) {
   }
 }
 
+/// Of the paper's model where its fit to them is, as it is in a file afterwards.
+Comparison of_the_fitted(const Campaign& campaign) {
+  Study fitting(campaign, 0.0, Workers{});
+  const Model model = fitting.fit(paper_model(BenchKind::bar, false)).model;
+  Study study(campaign, 0.0, Workers{});
+  return compare(study, study.as_it_is(model));
+}
+
 /// Saw teeth are where a record creeps: judged by their mean over all of it, dozens of places
 /// failed though all together left less than noise.
 TEST(Comparison, TakesSawTeethForNoFailureWhereTheyAre) {
@@ -240,10 +248,7 @@ TEST(Comparison, TakesSawTeethForNoFailureWhereTheyAre) {
     testing::CampaignWishes wishes{.seed = seed, .shots = 6, .gauges = 4, .bits = 8};
     wishes.noise_strain = seed < 91000 ? 2e-6 : 4e-6;
     const Campaign campaign = read_campaign(make(wishes, {}).shots);
-    Study fitting(campaign, 0.0, Workers{});
-    const Model model = fitting.fit(paper_model(BenchKind::bar, false)).model;
-    Study study(campaign, 0.0, Workers{});
-    const Comparison comparison = compare(study, study.as_it_is(model));
+    const Comparison comparison = of_the_fitted(campaign);
     EXPECT_EQ(std::ranges::count_if(comparison.tiles, &Tile::significant), 0) << seed;
   }
 }
@@ -252,10 +257,7 @@ TEST(Comparison, ShowsWhatIsFarAboveACoarseConvertersSteps) {
   testing::CampaignWishes wishes{.seed = 90001, .shots = 6, .gauges = 4, .bits = 8};
   wishes.noise_strain = 2e-6;
   const Campaign campaign = read_campaign(make(wishes, {"gauge-factor:g2=0.1"}).shots);
-  Study fitting(campaign, 0.0, Workers{});
-  const Model model = fitting.fit(paper_model(BenchKind::bar, false)).model;
-  Study study(campaign, 0.0, Workers{});
-  const Comparison comparison = compare(study, study.as_it_is(model));
+  const Comparison comparison = of_the_fitted(campaign);
   EXPECT_GT(std::ranges::count_if(comparison.tiles, &Tile::significant), 0);
 }
 
@@ -297,10 +299,7 @@ TEST(Comparison, TakesSlowNoiseForNoFailure) {
     testing::CampaignWishes wishes = wishes_of(seed);
     wishes.colour = testing::NoiseColour::pink;
     const Campaign campaign = read_campaign(make(wishes, {}).shots);
-    Study fitting(campaign, 0.0, Workers{});
-    const Model model = fitting.fit(paper_model(BenchKind::bar, false)).model;
-    Study study(campaign, 0.0, Workers{});
-    const Comparison comparison = compare(study, study.as_it_is(model));
+    const Comparison comparison = of_the_fitted(campaign);
     EXPECT_EQ(std::ranges::count_if(comparison.tiles, &Tile::significant), 0) << seed;
   }
 }
