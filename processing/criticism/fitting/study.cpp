@@ -5,6 +5,7 @@
 
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
+#include "processing/criticism/fitting/common_hum.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
 #include "processing/criticism/fitting/moduli_starts.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
@@ -114,13 +115,25 @@ Studied Study::as_it_is(const Model& model) {
   return beside_quiet({model, std::move(composition), std::move(fit), {}});
 }
 
+void Study::learn_noise(const Studied& studied) {
+  const std::optional<Model> humming = beside_common_hum(studied.model, campaign_);
+  if (!humming) {
+    residuals_.calibrate(studied.composition, studied.fit.theta, NoiseShown::what_quiet_hides);
+    return;
+  }
+  const Composition composition(*humming, campaign_);
+  const ModelFit fit = fit_model(composition, residuals_, executor_);
+  residuals_.calibrate(composition, fit.theta, NoiseShown::what_quiet_hides);
+  residuals_.freeze(studied.composition, studied.fit.theta);
+}
+
 Studied Study::beside_quiet(Studied studied) {
   const Composition& composition = studied.composition;
   ModelFit& fit = studied.fit;
   residuals_.believe_quiet();
   residuals_.freeze(composition, fit.theta);
   if (campaign_.shots.size() > 1) {
-    residuals_.calibrate(composition, fit.theta, NoiseShown::what_quiet_hides);
+    learn_noise(studied);
   }
   if (residuals_.know_steps()) {
     residuals_.freeze(composition, fit.theta);

@@ -62,6 +62,9 @@ class Study {
   /// The same from where nobody has fitted the moduli, where those of an earlier fit lead astray
   /// and that is better.
   [[nodiscard]] Attempt best_attempt(const Model& model);
+  /// What the quiet parts are too short to show of the noise, from what is left, but for what
+  /// hums.
+  void learn_noise(const Studied& studied);
 
   const Campaign& campaign_;
   Workers executor_;

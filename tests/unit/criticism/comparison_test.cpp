@@ -383,6 +383,18 @@ TEST(Comparison, TakesNothingForNoiseThatIsWhereWavesPass) {
   }
 }
 
+/// A hum does not follow the sources either, but the samples before the pulses slope as it does.
+TEST(Comparison, TakesAHumThatTheQuietShowsForNoSlowNoise) {
+  for (const std::uint64_t seed : {5U, 6U, 7U}) {
+    testing::CampaignWishes wishes = wishes_of(seed);
+    wishes.colour = testing::NoiseColour::white;
+    const auto chi2 = [&](const std::vector<std::string>& effects) {
+      return Compared(make(wishes, effects).shots).studied->misfit.chi2_reduced;
+    };
+    EXPECT_GT(chi2({"mains-hum=8e-5"}), chi2({}) + 0.04) << seed;
+  }
+}
+
 /// What a bar's end returns before a record is over the record cuts, so that it does not follow the
 /// sources; a fit takes it for noise, and by that measure nothing was amiss.
 TEST(Comparison, TakesNoFailureForNoiseThatTheQuietWouldShow) {

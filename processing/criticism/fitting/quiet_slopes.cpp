@@ -1,4 +1,4 @@
-#include "processing/criticism/search/quiet_slopes.hpp"
+#include "processing/criticism/fitting/quiet_slopes.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
