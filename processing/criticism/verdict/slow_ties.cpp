@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "processing/criticism/fitting/quiet_slopes.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/search/common_amplitude.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
-#include "processing/criticism/fitting/quiet_slopes.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/refits.hpp"
