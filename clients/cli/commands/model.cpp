@@ -49,7 +49,7 @@ void print(const ModelFile& file, const std::string& name, Context& context,
 }
 
 struct NewSettings {
-  std::string kind;
+  std::optional<std::string> kind;  ///< else the bench's
   std::optional<std::string> bench;
   std::optional<std::string> bar_model;
   std::optional<std::string> core;
@@ -154,31 +154,40 @@ std::string take_ball(const NewSettings& settings, const std::optional<Bench>& b
   return source;
 }
 
+/// As given, or as the bench has it.
+BenchKind kind_of(const NewSettings& settings, const std::optional<Bench>& filed) {
+  if (!settings.kind && !filed) {
+    throw InputError("--kind", "is missing, and no bench file says it",
+                     "give --kind bar, shpb or impact, or --bench B.toml");
+  }
+  const BenchKind kind = settings.kind ? bench_kind(*settings.kind) : filed->kind;
+  if (filed && filed->kind != kind) {
+    throw InputError(*settings.bench + ": kind",
+                     "is \"" + name_of(filed->kind) + "\" and --kind is " + *settings.kind,
+                     "give --kind " + name_of(filed->kind));
+  }
+  return kind;
+}
+
 int make_new(const NewSettings& settings, Context& context) {
   ModelFile file;
-  const BenchKind kind = bench_kind(settings.kind);
-  bool elastic = kind == BenchKind::impact;
   std::optional<Bench> filed;
+  if (settings.bench) {
+    filed = read_bench(*settings.bench).bench;
+  }
+  const BenchKind kind = kind_of(settings, filed);
+  bool elastic = kind == BenchKind::impact;
   if (kind != BenchKind::impact && (settings.core || settings.cover || settings.reading)) {
     throw InputError("--core, --cover, --reading", "belong to a ball",
                      "leave them out, or give --kind impact");
   }
-  if (settings.bench) {
-    filed = read_bench(*settings.bench).bench;
-    const Bench& bench = *filed;
-    if (bench.kind != kind) {
-      throw InputError(*settings.bench + ": kind",
-                       "is \"" + name_of(bench.kind) + "\" and --kind is " + settings.kind,
-                       "give --kind " + name_of(bench.kind));
-    }
-    refuse_own_material(bench, *settings.bench);
-    elastic = bench.input.youngs_modulus_Pa.has_value() &&
-              (!bench.output || bench.output->youngs_modulus_Pa.has_value());
-  }
-  file.model = paper_model(kind, elastic);
   if (filed) {
+    refuse_own_material(*filed, *settings.bench);
+    elastic = filed->input.youngs_modulus_Pa.has_value() &&
+              (!filed->output || filed->output->youngs_modulus_Pa.has_value());
     file.gauges = gauges_of(*filed);
   }
+  file.model = paper_model(kind, elastic);
   if (kind == BenchKind::impact) {
     if (settings.bar_model) {
       throw InputError("--bar-model", "belongs to viscoelastic bars; a ball strikes an elastic one",
@@ -489,14 +498,16 @@ Command model_new_command() {
       "within\n"
       "0.1, an endless bar.";
   command.examples =
-      "  kolsky model new --kind bar --bench bench.toml -o m.toml\n"
+      "  kolsky model new --bench bench.toml -o m.toml\n"
       "  kolsky model new --kind shpb --bench bench.toml --bar-model pmma.toml -o m.toml\n"
-      "  kolsky model new --kind impact --bench bench.toml --core core.toml -o m.toml\n";
-  Argument kind = needed("--kind", "KIND", "of the bench: bar, shpb or impact", &s.kind);
+      "  kolsky model new --kind impact -o m.toml\n";
+  Argument kind = option("--kind", "KIND",
+                         "of the bench: bar, shpb or impact; else as its file has it", &s.kind);
   kind.choices = {"bar", "shpb", "impact"};
   command.arguments = {
       kind,
-      option("--bench", "B.toml", "bench file: tells whether the bars are elastic", &s.bench),
+      option("--bench", "B.toml", "bench file: tells its gauges and whether its bars are elastic",
+             &s.bench),
       option("--bar-model", "M.toml", "material file of viscoelastic bars; else the paper's PMMA",
              &s.bar_model),
       option("--core", "C.toml", "material file of a ball's core; else the paper's", &s.core),

@@ -200,6 +200,18 @@ TEST_F(SimulatedBar, GoesBackStepByStepAndToAnyStep) {
   EXPECT_TRUE(refused(kolsky({"compare", file("shots"), "--model", model + "@9"}), {"@9"}));
 }
 
+TEST_F(SimulatedBar, BeginsAModelOfTheKindThatABenchHas) {
+  const std::string bench = file("campaign/bench.toml");
+  ASSERT_EQ(
+      kolsky({"model", "new", "--kind", "bar", "--bench", bench, "-o", file("said.toml")}).code, 0);
+  ASSERT_EQ(kolsky({"model", "new", "--bench", bench, "-o", file("read.toml")}).code, 0);
+  EXPECT_EQ(content(file("read.toml")), content(file("said.toml")));
+  EXPECT_TRUE(refused(kolsky({"model", "new", "-o", file("x.toml")}), {"--kind", "--bench"}));
+  EXPECT_TRUE(
+      refused(kolsky({"model", "new", "--kind", "shpb", "--bench", bench, "-o", file("x.toml")}),
+              {"bench.toml: kind", "give --kind bar"}));
+}
+
 TEST_F(SimulatedBar, KeepsAModelWithAHistoryWhoseNameANewOneTakes) {
   const std::string model = file("again.toml");
   const std::vector<std::string> anew{
