@@ -105,6 +105,18 @@ ModelFile model_named(const std::string& name) {
   return file.at(std::stoul(step));
 }
 
+ModelFile model_to_continue(const std::string& name) {
+  const auto at = name.rfind('@');
+  if (at != std::string::npos && !std::filesystem::exists(name)) {
+    const std::string path = name.substr(0, at);
+    throw InputError(name, "is a step of a history, which this would go on from",
+                     fmt::format("give {}, or `kolsky model revert {} --to {} -o ANOTHER.toml` "
+                                 "first",
+                                 path, path, name.substr(at + 1)));
+  }
+  return read_model(name);
+}
+
 std::vector<std::string> gauges_of(const Bench& bench) {
   std::vector<std::string> names;
   for (const Gauge& gauge : bench.gauges) {

@@ -12,6 +12,10 @@ namespace kolsky::cli {
 /// @throws InputError
 [[nodiscard]] ModelFile model_named(const std::string& name);
 
+/// The model of a file whose history goes on. @throws InputError of "M.toml@3", too: what was is
+/// not changed
+[[nodiscard]] ModelFile model_to_continue(const std::string& name);
+
 /// Their names, in the bench's order.
 [[nodiscard]] std::vector<std::string> gauges_of(const Bench& bench);
 

@@ -90,7 +90,8 @@ std::string with_unit(double value, const std::string& unit) {
   const double number = value * shown.factor;
   const std::string text =
       std::abs(number) >= 1000.0 ? fmt::format("{:.0f}", number) : fmt::format("{:.4g}", number);
-  return shown.name.empty() || shown.name == "1" ? text : text + " " + shown.name;
+  return shown.name.empty() || shown.name == "1" || shown.name == "-" ? text
+                                                                      : text + " " + shown.name;
 }
 
 std::string with_deviation(double value, double sd, const std::string& unit) {
@@ -102,7 +103,8 @@ std::string with_deviation(double value, double sd, const std::string& unit) {
   const int decimals = std::clamp(static_cast<int>(-last_digit), 0, 9);
   const std::string text =
       fmt::format("{:.{}f} ± {:.{}f}", value * shown.factor, decimals, sd * shown.factor, decimals);
-  return shown.name.empty() || shown.name == "1" ? text : text + " " + shown.name;
+  return shown.name.empty() || shown.name == "1" || shown.name == "-" ? text
+                                                                      : text + " " + shown.name;
 }
 
 AxisLayout lay_out(const Axis& axis, AxisRange range, int most_marks) {

@@ -42,6 +42,21 @@ constexpr std::string_view kRules =
     "summary{cursor:pointer;font-weight:600;padding:6px 0}svg{width:100%;height:auto}"
     "@media print{body{background:#fff}section{break-inside:avoid}}";
 
+/// Prose; what stands between backquotes, as commands do in a terminal's texts, is set as code.
+std::string prose(const std::string& text) {
+  std::string out;
+  bool code = false;
+  for (const char c : escaped(text)) {
+    if (c != '`') {
+      out += c;
+      continue;
+    }
+    out += code ? "</code>" : "<code>";
+    code = !code;
+  }
+  return code ? out + "</code>" : out;
+}
+
 std::string table_html(const PageTable& table) {
   std::string out = "<div class=\"scroll\"><table><tr>";
   for (const std::string& name : table.header) {
@@ -107,7 +122,7 @@ std::string bars_html(const std::vector<ShareBar>& bars) {
         escaped(bar.name), 100.0 * length,
         bar.share < 0.995 ? fmt::format("{:.2g}", 100.0 * bar.share) : "100");
   }
-  return out;
+  return bars.empty() ? out : out + "<p class=\"small\">bars on a logarithmic scale</p>\n";
 }
 
 }  // namespace
@@ -120,14 +135,14 @@ std::string render_html(const Page& page) {
       "<style>{}{}</style></head>\n<body><main>\n<h1>{}</h1>\n",
       escaped(page.title), panel_style(), kRules, escaped(page.title));
   out += fmt::format("<p class=\"headline{}\">{}</p>\n", page.good ? " good" : "",
-                     escaped(page.headline));
+                     prose(page.headline));
   for (const std::string& note : page.notes) {
-    out += "<p class=\"small\">" + escaped(note) + "</p>\n";
+    out += "<p class=\"small\">" + prose(note) + "</p>\n";
   }
   for (const PageSection& section : page.sections) {
     out += "<section><h2>" + escaped(section.title) + "</h2>\n";
     for (const std::string& paragraph : section.text) {
-      out += "<p>" + escaped(paragraph) + "</p>\n";
+      out += "<p>" + prose(paragraph) + "</p>\n";
     }
     for (const std::string& picture : section.pictures) {
       out += picture;

@@ -47,6 +47,7 @@ struct PageSection {
   std::vector<std::string> pictures{};  ///< <svg> elements, as they are
 };
 
+/// Prose may have commands between backquotes.
 struct Page {
   std::string title;
   std::string headline;            ///< what the page has to say, in a sentence

@@ -16,6 +16,7 @@
 #include "processing/base/error.hpp"
 #include "processing/criticism/experiment/next_experiment.hpp"
 #include "processing/criticism/impact/impact_diagnosis.hpp"
+#include "processing/criticism/search/confirmed_hum.hpp"
 #include "processing/criticism/verdict/examination.hpp"
 
 namespace kolsky {
@@ -202,7 +203,7 @@ void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::str
     captures.push_back(std::move(stored.capture));
   }
   if (const auto verdict = verdict_without_fit(shots)) {
-    file(model, *verdict, captures);
+    file(model, *verdict, {}, captures);
     return;
   }
   const Campaign campaign = read_campaign(shots);
@@ -217,17 +218,20 @@ void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::str
   options.progress = [this](const std::string& what) { step(what); };
   if (campaign.bench.kind == BenchKind::impact) {
     ImpactStudy study(campaign, judged_stretch(model.file.model), 0.0, std::move(one));
-    file(model, diagnose_impacts(study, model.file.model, options), captures);
+    const Diagnosis diagnosis = diagnose_impacts(study, model.file.model, options);
+    file(model, diagnosis, diagnosis.after, captures);
     return;
   }
   Study study(campaign, 0.0, std::move(one));
   Diagnosis diagnosis = diagnose(study, model.file.model, options);
   step("reckoning what would separate what is tied");
   diagnosis.next_experiment = next_experiments(study, diagnosis);
-  file(model, diagnosis, captures);
+  // As `compare` has it.
+  file(model, diagnosis,
+       diagnosis.model ? judged_as_it_is(study, *diagnosis.model).misfit : Misfit{}, captures);
 }
 
-void DiagnosisDesk::file(const ActiveModel& model, const Diagnosis& diagnosis,
+void DiagnosisDesk::file(const ActiveModel& model, const Diagnosis& diagnosis, const Misfit& left,
                          const std::vector<std::filesystem::path>& captures) {
   heed_cancel();
   v1::Diagnosis message;
@@ -241,7 +245,7 @@ void DiagnosisDesk::file(const ActiveModel& model, const Diagnosis& diagnosis,
   message.mutable_summary()->set_step("done");
   if (diagnosis.model && !diagnosis.effects.empty()) {
     ModelFile found = model.file;
-    add_diagnosis(found, diagnosis, captures, "live, shots of " + store_.root.string());
+    add_diagnosis(found, diagnosis, left, captures, "live, shots of " + store_.root.string());
     NewFile with(folder / (message.summary().id() + ".toml"));
     with.write(format_model(found));
     with.publish(kStoredMode);

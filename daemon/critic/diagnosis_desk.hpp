@@ -17,6 +17,7 @@
 namespace kolsky {
 
 struct Diagnosis;
+struct Misfit;
 
 /// Diagnoses stored shots when a client asks for it: one at a time, in a thread of its own at the
 /// lowest priority, on one processor. Publishes every step and the outcome, and files the outcome
@@ -47,7 +48,8 @@ class DiagnosisDesk {
  private:
   void work(const std::shared_ptr<const ActiveModel>& model, const std::vector<std::string>& ids);
   void examine(const ActiveModel& model, const std::vector<std::string>& ids);
-  void file(const ActiveModel& model, const Diagnosis& diagnosis,
+  /// @param left  by the model that the diagnosis ends with, as `compare` has it
+  void file(const ActiveModel& model, const Diagnosis& diagnosis, const Misfit& left,
             const std::vector<std::filesystem::path>& captures);
   /// Publishes the diagnosis at a step. @throws Cancelled where that was asked for
   void step(const std::string& what);

@@ -356,6 +356,35 @@ std::vector<double> draw_pulse(std::mt19937_64& random, double start_s, double k
   return c;
 }
 
+void draw_truth_anew(std::mt19937_64& random, Campaign& campaign) {
+  const auto draw = [&](const Measured& filed_as, double& truth) {
+    if (filed_as.sd > 0.0) {
+      truth = filed_as.value + normal(random, filed_as.sd);
+    }
+  };
+  BarWorld& world = campaign.world;
+  const Bench& bench = campaign.bench;
+  for (std::size_t g = 0; g < world.gauges.size(); ++g) {
+    draw(bench.gauges[g].position_m, world.gauges[g].position_m);
+    if (const auto& factor = bench.gauges[g].strain_per_V; factor && factor->sd > 0.0) {
+      world.gauges[g].gain = 1.0 / (1.0 + normal(random, factor->sd / factor->value));
+    }
+  }
+  draw(bench.input.density_kg_m3, world.material.density_kg_m3);
+  if (bench.input.youngs_modulus_Pa) {
+    draw(*bench.input.youngs_modulus_Pa, world.material.E1_Pa);
+  }
+  if (campaign.filed_bars) {
+    draw(campaign.filed_bars->E1_Pa(), world.material.E1_Pa);
+    draw(campaign.filed_bars->E2_Pa(), world.material.E2_Pa);
+    draw(campaign.filed_bars->eta2_Pa_s(), world.material.eta2_Pa_s);
+  }
+  if (campaign.split) {
+    draw(bench.specimen->length_m, campaign.split->specimen.length_m);
+    draw(bench.specimen->diameter_m, campaign.split->specimen.diameter_m);
+  }
+}
+
 ShpbWorld split_world(const Campaign& campaign) {
   return {campaign.world, campaign.split->output_length_m, campaign.split->specimen};
 }

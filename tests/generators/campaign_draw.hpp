@@ -56,6 +56,10 @@ struct Campaign {
 /// for filed tolerances, within which the true values are drawn.
 [[nodiscard]] Campaign draw_campaign(const CampaignWishes& wishes);
 
+/// The true numbers drawn once more within what is filed of them.
+/// @pre nothing is hidden
+void draw_truth_anew(std::mt19937_64& random, Campaign& campaign);
+
 /// The whole split bar. @pre campaign.split
 [[nodiscard]] ShpbWorld split_world(const Campaign& campaign);
 

@@ -74,9 +74,11 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
   return wishes;
 }
 
-// The same bench with other shots, noise and tolerances would need other sizes; only noise is new.
+// The same bench with other shots would need other sizes; only noise is new, and by how much what
+// is filed is off: one draw of that would be in all cases of a bench.
 Campaign anew(const Campaign& bench, Random& random) {
   Campaign campaign = bench;
+  testing::draw_truth_anew(random, campaign);
   campaign.wishes.seed = random() % 1000000000u;
   return campaign;
 }

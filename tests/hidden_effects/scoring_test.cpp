@@ -203,6 +203,30 @@ TEST(Campaign, TablesAndCapturesHoldTheSame) {
 }
 
 // Tables of the noncentral chi-square distribution, 5 % and 80 %.
+// One draw of what is filed would be in all cases of a bench, and its moduli's errors with it.
+TEST(Campaign, TruthIsDrawnAnewWithinWhatIsFiled) {
+  testing::Campaign campaign =
+      testing::draw_campaign({.seed = 4, .tolerances = testing::Tolerances::filed});
+  std::mt19937_64 random(8);
+  constexpr int kDraws = 400;
+  double positions = 0.0;
+  double densities = 0.0;
+  double gains = 0.0;
+  for (int n = 0; n < kDraws; ++n) {
+    testing::draw_truth_anew(random, campaign);
+    const Gauge& gauge = campaign.bench.gauges[1];
+    const auto square = [](double truth, const Measured& filed) {
+      return std::pow((truth - filed.value) / filed.sd, 2) / kDraws;
+    };
+    positions += square(campaign.world.gauges[1].position_m, gauge.position_m);
+    densities += square(campaign.world.material.density_kg_m3, campaign.bench.input.density_kg_m3);
+    gains += square(gauge.strain_per_V->value / campaign.world.gauges[1].gain, *gauge.strain_per_V);
+  }
+  for (const double mean_square : {positions, densities, gains}) {
+    EXPECT_NEAR(mean_square, 1.0, 0.3);
+  }
+}
+
 TEST(FailingPlaces, CountFromWhereATestFindsThem) {
   EXPECT_NEAR(findable_excess(1.0), 7.849, 2e-3);
   EXPECT_NEAR(findable_excess(2.0), 9.635, 2e-3);

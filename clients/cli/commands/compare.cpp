@@ -17,6 +17,7 @@
 #include "drivers/files/captures/new_file.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
+#include "processing/criticism/search/confirmed_hum.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -55,11 +56,27 @@ std::string how(const Settings& settings, const ModelFile& file) {
   if (file.history.back().data_sha256.empty()) {
     text += ", which was changed after its last fit: `kolsky fit`, or --fit here";
   }
+  const auto captures = files_of(settings.judged.captures);
+  if (std::ranges::none_of(file.history, [&](const ModelStep& step) {
+        return is_digest_of(step.data_sha256, captures);
+      })) {
+    text +=
+        "; it was fitted to other captures than just these: what it has of gauges and bars is theirs";
+  }
   if (const std::string own = own_strengths(file.model); !own.empty()) {
     text +=
         "; fitted to these captures, as a model keeps but their mean: each shot's or gauge's "
         "own strengths of " +
         own;
+  }
+  return text;
+}
+
+/// All but the first, a line each.
+std::string further_notes(const std::vector<std::string>& notes) {
+  std::string text;
+  for (std::size_t i = 1; i < notes.size(); ++i) {
+    text += "  note: " + notes[i] + "\n";
   }
   return text;
 }
@@ -111,10 +128,8 @@ int run_impacts(const Settings& settings, const ModelFile& file, const Campaign&
                       ? "  filed numbers are strained to that end beyond three deviations\n"
                       : "")
               << "\n"
-              << worst_plot(comparison, study.residuals().times_s(), context.terminal);
-  for (std::size_t i = 1; i < notes.size(); ++i) {
-    context.out << "  note: " << notes[i] << "\n";
-  }
+              << worst_plot(comparison, study.residuals().times_s(), context.terminal)
+              << further_notes(notes);
   return kDone;
 }
 
@@ -129,7 +144,7 @@ int run(const Settings& settings, Context& context) {
   Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
   const bool fit_first = settings.fit || !was_fitted(file);
   const Studied studied = naming_model(settings.model, [&] {
-    return fit_first ? study.beside_quiet(study.fit(file.model)) : study.as_it_is(file.model);
+    return fit_first ? judged(study, study.fit(file.model)) : judged_as_it_is(study, file.model);
   });
   Comparer comparer(study.residuals(), studied.composition, studied.fit.theta);
   const Comparison comparison = comparer.compare(studied.fit.residual, studied.misfit);
@@ -159,9 +174,8 @@ int run(const Settings& settings, Context& context) {
   }
   const std::string strengths = fails_anywhere(comparison) ? strengths_table(groups, campaign) : "";
   context.out << settings.model << ": " << notes.front() << "\n"
-              << (notes.size() > 1 ? "  note: " + notes.back() + "\n" : "")
-              << misfit_text(studied.misfit) << in_words(studied.misfit, campaign.shots.size())
-              << "\n"
+              << further_notes(notes) << misfit_text(studied.misfit)
+              << in_words(studied.misfit, campaign.shots.size()) << "\n"
               << strained_text(studied.model) << "\n"
               << (fails_anywhere(comparison)
                       ? places_table(comparison, campaign)
@@ -181,8 +195,10 @@ Command compare_command() {
   command.name = "compare";
   command.purpose =
       "shows where a model fails: gauge, arrival window, frequency band, shot\n"
-      "Residuals in units of the measured noise; what repeats from shot to shot is the model's "
-      "fault.\n"
+      "Residuals in units of the measured noise. What repeats from shot to shot is the model's "
+      "fault;\n"
+      "what does not is a shot's own, or follows what shots differ by, as amplitude or "
+      "temperature.\n"
       "A model that was never fitted is fitted first.";
   command.examples =
       "  kolsky compare shots/*.h5 --model m.toml\n"

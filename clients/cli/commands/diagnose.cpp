@@ -24,6 +24,7 @@
 #include "processing/base/error.hpp"
 #include "processing/criticism/experiment/next_experiment.hpp"
 #include "processing/criticism/impact/impact_diagnosis.hpp"
+#include "processing/criticism/search/confirmed_hum.hpp"
 #include "processing/criticism/verdict/diagnosis.hpp"
 #include "processing/criticism/verdict/examination.hpp"
 
@@ -94,8 +95,14 @@ JsonObject describe(const Diagnosis& diagnosis) {
       {"notes", diagnosis.notes}};
 }
 
-Diagnosis examine_impacts(const Settings& settings, const Model& model,
-                          const std::vector<Shot>& shots, const DiagnosisOptions& options) {
+/// A diagnosis, and what the model that it ends with leaves, as `compare` and `fit` have it.
+struct Examined {
+  Diagnosis diagnosis;
+  Misfit left;
+};
+
+Examined examine_impacts(const Settings& settings, const Model& model,
+                         const std::vector<Shot>& shots, const DiagnosisOptions& options) {
   const Campaign campaign = read_campaign(shots);
   require_kind(model, campaign);
   ImpactStudy study(campaign, judged_stretch(model), band_limit_of(settings.judged.band_limit_Hz),
@@ -108,7 +115,8 @@ Diagnosis examine_impacts(const Settings& settings, const Model& model,
                                        "What " + settings.model + " lacks",
                                        study.residuals().times_s(), model, diagnosis, seen)));
   }
-  return diagnosis;
+  const Misfit left = diagnosis.after;
+  return {std::move(diagnosis), left};
 }
 
 std::vector<std::string> safeguard_names() {
@@ -159,8 +167,8 @@ std::string without_help() {
   return text;
 }
 
-Diagnosis examine(const Settings& settings, const Model& model, const Safeguards& safeguards,
-                  bool progress) {
+Examined examine(const Settings& settings, const Model& model, const Safeguards& safeguards,
+                 bool progress) {
   const std::vector<Shot> shots = read_shots(settings.judged);
   if (!shots.empty()) {
     require_model_of(shots.front().bench, model, settings.model);
@@ -169,7 +177,7 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
     if (settings.report) {
       verdict->notes.push_back("nothing was fitted, so there is no report");
     }
-    return *std::move(verdict);
+    return {*std::move(verdict), {}};
   }
   DiagnosisOptions options;
   options.safeguards = safeguards;
@@ -192,7 +200,8 @@ Diagnosis examine(const Settings& settings, const Model& model, const Safeguards
     replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",
                                                               study, model, diagnosis)));
   }
-  return diagnosis;
+  const Misfit left = diagnosis.model ? judged_as_it_is(study, *diagnosis.model).misfit : Misfit{};
+  return {std::move(diagnosis), left};
 }
 
 /// The ledger, too, says what was left out.
@@ -209,18 +218,19 @@ std::string noted(const Settings& settings, const std::vector<std::string>& with
 }
 
 int run(const Settings& settings, Context& context) {
-  ModelFile file = read_model(settings.model);
+  ModelFile file = model_to_continue(settings.model);
   const Safeguards safeguards = safeguards_without(settings.without);
   require_model_output(settings.output);
   require_page_output(settings.report);
-  Diagnosis diagnosis = examine(settings, file.model, safeguards, !context.json);
+  auto [diagnosis, left] = examine(settings, file.model, safeguards, !context.json);
   const std::vector<std::string> without = left_out(safeguards);
   for (const std::string& name : without) {
     diagnosis.notes.push_back("without the safeguard " + name + ": nothing of this is certified");
   }
   std::string kept;
   if (settings.output && diagnosis.model) {
-    add_diagnosis(file, diagnosis, files_of(settings.judged.captures), noted(settings, without));
+    add_diagnosis(file, diagnosis, left, files_of(settings.judged.captures),
+                  noted(settings, without));
     kept = write_model(*settings.output, file);
   }
   if (!context.json) {

@@ -14,7 +14,7 @@
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/cli/threads.hpp"
 #include "drivers/files/models/diagnosis_step.hpp"
-#include "processing/criticism/fitting/study.hpp"
+#include "processing/criticism/search/confirmed_hum.hpp"
 
 namespace kolsky::cli {
 namespace {
@@ -35,11 +35,11 @@ Studied fit(const Settings& settings, const Model& model, const Campaign& campai
     return naming_model(settings.model, [&] { return study.settled(study.fit(model)); });
   }
   Study study(campaign, band_limit_Hz, executor);
-  return naming_model(settings.model, [&] { return study.beside_quiet(study.fit(model)); });
+  return naming_model(settings.model, [&] { return judged(study, study.fit(model)); });
 }
 
 int run(const Settings& settings, Context& context) {
-  ModelFile file = read_model(settings.model);
+  ModelFile file = model_to_continue(settings.model);
   require_model_output(settings.output);
   const Workers workers = all_cores();
   const Campaign campaign = read_campaign(read_shots(settings.judged));

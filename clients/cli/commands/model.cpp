@@ -278,7 +278,7 @@ EffectUse put_in(ModelFile& file, EffectUse use, const EditSettings& settings) {
 }
 
 int add(const EditSettings& settings, Context& context) {
-  ModelFile file = read_model(settings.model);
+  ModelFile file = model_to_continue(settings.model);
   EffectUse use = use_named(settings.effect, file.model);
   require_its_gauge(use, file);
   const auto& kinds = use.effect->about().kinds;
@@ -314,7 +314,7 @@ int add(const EditSettings& settings, Context& context) {
 }
 
 int remove(const EditSettings& settings, Context& context) {
-  ModelFile file = read_model(settings.model);
+  ModelFile file = model_to_continue(settings.model);
   const EffectUse* use = file.model.find(settings.effect);
   if (use == nullptr) {
     throw InputError(settings.model + ": effect " + settings.effect, "is not in the model",
@@ -388,7 +388,7 @@ std::string indented(const std::string& note) {
 }
 
 int history(const EditSettings& settings, Context& context) {
-  const ModelFile file = read_model(settings.model);
+  const ModelFile file = model_to_continue(settings.model);
   if (context.json) {
     JsonList steps;
     for (const ModelStep& step : file.history) {
@@ -433,7 +433,7 @@ std::size_t target_of(const EditSettings& settings, const ModelFile& file) {
 }
 
 int revert(const EditSettings& settings, Context& context) {
-  ModelFile file = read_model(settings.model);
+  ModelFile file = model_to_continue(settings.model);
   const std::size_t target = target_of(settings, file);
   const ModelFile before = naming_model(settings.model, [&] { return file.at(target); });
   begin_step(file, fmt::format("revert to step {}", target));

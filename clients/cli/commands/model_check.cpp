@@ -129,9 +129,9 @@ class Stopwatch {
 };
 
 /// Cosines beside a fit of the model without its expressions.
-void tell_apart(const Settings& settings, const Model& model, std::vector<Checked>& list) {
-  const Campaign campaign = read_campaign(read_shots(settings.judged));
-  require_model_of(campaign.bench, model, settings.model);
+void tell_apart(const Settings& settings, const Model& model, const std::vector<Shot>& shots,
+                std::vector<Checked>& list) {
+  const Campaign campaign = read_campaign(shots);
   Study study(campaign, band_limit_of(settings.judged.band_limit_Hz), all_cores());
   Model without = model;
   std::erase_if(without.effects, [&](const EffectUse& use) {
@@ -153,10 +153,9 @@ void tell_apart(const Settings& settings, const Model& model, std::vector<Checke
 }
 
 /// Of captures an expression is checked beside their bench too, not only one of ordinary size.
-void require_admitted_here(const Settings& settings, const Model& model) {
-  const std::vector<Shot> shots = read_shots(settings.judged);
+void require_admitted_here(const Settings& settings, const Model& model, const Bench& bench) {
   for (const auto& own : model.expressions) {
-    if (const auto problem = admission_problem(*own, model, shots.front().bench)) {
+    if (const auto problem = admission_problem(*own, model, bench)) {
       throw InputError(settings.model + ": expression " + own->about().id + " on this bench",
                        problem->check + ": " + problem->what, problem->mend);
     }
@@ -194,8 +193,8 @@ std::string seen_text(const Distinction& here) {
   if (!std::isfinite(here.detectable)) {
     return fmt::format("no {} within its bounds is seen here", here.parameter);
   }
-  const std::string seen = fmt::format("{} from {:.2g} {} on is seen here, ", here.parameter,
-                                       here.detectable, here.unit);
+  const std::string seen = fmt::format("{} from {:.2g}{} on is seen here, ", here.parameter,
+                                       here.detectable, here.unit == "-" ? "" : " " + here.unit);
   return seen + (std::isfinite(here.identifiable)
                      ? fmt::format("from {:.2g} told apart", here.identifiable)
                      : "and none within its bounds told apart from what is nearest");
@@ -235,7 +234,7 @@ std::string text_of(const Checked& own) {
 }
 
 int run(const Settings& settings, Context& context) {
-  const ModelFile file = read_model(settings.model);
+  const ModelFile file = model_named(settings.model);
   std::vector<Checked> list;
   const Stopwatch stopwatch(file.model);
   const double model_s = file.model.expressions.empty() ? 1.0 : stopwatch.model_s();
@@ -245,9 +244,13 @@ int run(const Settings& settings, Context& context) {
     const double own_s = stopwatch.expression_s(*own);
     list.push_back({own.get(), used, own_s, 1.0 + own_s / model_s, {}});
   }
-  if (!settings.judged.captures.empty() && !list.empty()) {
-    require_admitted_here(settings, file.model);
-    tell_apart(settings, file.model, list);
+  if (!settings.judged.captures.empty()) {
+    const std::vector<Shot> shots = read_shots(settings.judged);
+    require_model_of(shots.front().bench, file.model, settings.model);
+    if (!list.empty()) {
+      require_admitted_here(settings, file.model, shots.front().bench);
+      tell_apart(settings, file.model, shots, list);
+    }
   }
   if (context.json) {
     JsonList expressions;

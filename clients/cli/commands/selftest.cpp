@@ -74,7 +74,7 @@ class ProgressLine {
     const double seconds = std::chrono::duration<double>(Clock::now() - begun_).count();
     if (done == 1) {
       first_ = seconds;
-      say(fmt::format("kolsky: {} diagnoses to make", all - 1), all == 1);
+      say(fmt::format("kolsky: 1 of {} diagnoses made", all), all == 1);
     } else if (done == all || seconds - said_ > every_s()) {
       said_ = seconds;
       const double each = (seconds - first_) / static_cast<double>(done - 1);
@@ -184,11 +184,12 @@ std::string effects_text(const Selftest& result) {
                               kolsky::name_of(size.outcome));
     }
     const double smallest = effect.smallest_found();
-    text += fmt::format(
-        "  {:<28} {:>12} {:>12} {:<8}  {}\n", effect.id,
-        std::isfinite(effect.identifiable) ? fmt::format("{:.2g}", effect.identifiable)
-                                           : "at no size",
-        std::isfinite(smallest) ? fmt::format("{:.2g}", smallest) : "none", effect.unit, outcomes);
+    text +=
+        fmt::format("  {:<28} {:>12} {:>12} {:<8}  {}\n", effect.id,
+                    std::isfinite(effect.identifiable) ? fmt::format("{:.2g}", effect.identifiable)
+                                                       : "at no size",
+                    std::isfinite(smallest) ? fmt::format("{:.2g}", smallest) : "none",
+                    effect.unit == "-" ? "" : effect.unit, outcomes);
   }
   return text;
 }

@@ -307,8 +307,9 @@ class Tour {
     for (std::size_t p = 0; p < truth.size(); ++p) {
       const ModelValue& value = bar->values[p];
       const EffectParameter& parameter = bar->effect->about().parameters[p];
-      numbers += fmt::format("  {:<10} found {:.5g} ± {:.2g}, truth {:.5g} {}", parameter.name,
-                             value.value, value.sd, truth[p], parameter.unit);
+      numbers += fmt::format("  {:<10} found {}, truth {}", parameter.name,
+                             number_text(value.value, value.sd, parameter.unit),
+                             number_text(truth[p], 0.0, parameter.unit));
       numbers += value.sd > 0.0 ? fmt::format(": {:.1f} deviations off\n",
                                               std::abs(value.value - truth[p]) / value.sd)
                                 : "\n";

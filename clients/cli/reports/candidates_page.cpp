@@ -29,11 +29,10 @@ PageTable candidates_table(const Diagnosis& diagnosis, const std::string& held_o
                    "detectable", "told apart", "nearest rival"},
                   {}};
   for (const CandidateResult& c : ranked) {
-    const std::string strength =
-        c.verdict == CandidateVerdict::untestable ? "" : strength_text(c.strength, c.sd, c.unit);
+    const std::string strength = c.verdict == CandidateVerdict::untestable ? "" : strength_text(c);
     table.rows.push_back({c.effect, kolsky::name_of(c.verdict), strength, gain_text(c.log_p),
                           gain_text(c.gain), gain_text(c.held_out_gain),
-                          size_text(c.detectable, c.unit), number_text(c.identifiable),
+                          size_text(c.detectable, c.unit), size_text(c.identifiable, c.unit),
                           c.nearest_rival});
   }
   return table;

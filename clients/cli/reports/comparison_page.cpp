@@ -8,8 +8,10 @@
 
 #include "clients/cli/reports/candidates_page.hpp"
 #include "clients/cli/reports/comparison_text.hpp"
+#include "clients/cli/reports/diagnosis_text.hpp"
 #include "clients/cli/reports/model_text.hpp"
 #include "clients/figure/layout.hpp"
+#include "processing/criticism/search/confirmed_hum.hpp"
 
 namespace kolsky::cli {
 
@@ -179,14 +181,23 @@ std::vector<std::size_t> shots_by_misfit(const Comparison& comparison, std::size
   return order;
 }
 
+/// Of the signal's energy. Of one shot nobody knows what repeats.
+std::vector<ShareBar> shares_of(const Misfit& misfit, std::size_t shots) {
+  std::vector<ShareBar> shares{{"signal", 1.0},
+                               {"repeats, not explained", misfit.repeatable_share}};
+  if (shots > 1) {
+    shares.push_back({"differs from shot to shot", misfit.scatter_share});
+  }
+  shares.push_back({"noise", std::max(0.0, misfit.noise_floor_share - misfit.scatter_share)});
+  return shares;
+}
+
 PageSection misfit_section(const std::string& title, const Misfit& misfit, std::size_t shots) {
   return {title,
           {in_words(misfit, shots),
            fmt::format("Chi-square per degree of freedom: {:.4g} over {:.0f}; 1 is noise alone.",
                        misfit.chi2_reduced, misfit.degrees_of_freedom)},
-          {{"signal", 1.0},
-           {"repeats, not explained", misfit.repeatable_share},
-           {"noise", misfit.noise_floor_share}}};
+          shares_of(misfit, shots)};
 }
 
 /// @param hidden  what to say of what no single place shows
@@ -298,6 +309,10 @@ std::string hidden_words(const Diagnosis& diagnosis) {
              : "";
 }
 
+std::string percent(double share) {
+  return fmt::format("{:.2g} %", 100.0 * share);
+}
+
 PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
   const HeldOut& held_out = diagnosis.held_out;
   const std::string misfit =
@@ -306,17 +321,16 @@ PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
           : fmt::format("falls from {:.4g} to {:.4g}", held_out.before, held_out.after);
   PageSection section{
       "Before and after",
-      {fmt::format("On {} that the fit did not see, chi-square per residual {}; noise alone leaves "
-                   "{:.4g}.",
-                   shots > 1 ? "shots" : "parts of the one record", misfit, held_out.floor)}};
-  section.tables.push_back({{"", "chi-square per degree of freedom", "repeats, share of the signal",
-                             "noise, share of the signal"},
-                            {{"before", fmt::format("{:.4g}", diagnosis.before.chi2_reduced),
-                              fmt::format("{:.2e}", diagnosis.before.repeatable_share),
-                              fmt::format("{:.2e}", diagnosis.before.noise_floor_share)},
-                             {"after", fmt::format("{:.4g}", diagnosis.after.chi2_reduced),
-                              fmt::format("{:.2e}", diagnosis.after.repeatable_share),
-                              fmt::format("{:.2e}", diagnosis.after.noise_floor_share)}}});
+      {fmt::format("On {} that the fit did not see, chi-square per residual {}; {} leaves {:.4g}.",
+                   shots > 1 ? "shots" : "parts of the one record", misfit,
+                   floor_name(held_out.floor), held_out.floor)}};
+  section.tables.push_back(
+      {{"", "chi-square per degree of freedom", "repeats, share of the signal",
+        "noise, share of the signal"},
+       {{"before", fmt::format("{:.4g}", diagnosis.before.chi2_reduced),
+         percent(diagnosis.before.repeatable_share), percent(diagnosis.before.noise_floor_share)},
+        {"after", fmt::format("{:.4g}", diagnosis.after.chi2_reduced),
+         percent(diagnosis.after.repeatable_share), percent(diagnosis.after.noise_floor_share)}}});
   return section;
 }
 
@@ -363,7 +377,7 @@ Page diagnosis_page(const std::string& title, Study& study, const Model& before,
   }
   page.sections.push_back(held_out_section(diagnosis, campaign.shots.size()));
   // Beside the quiet, as `compare` has it: a fit counts as noise what differs from shot to shot.
-  const auto fitted = [&](const Model& model) { return study.beside_quiet(study.fit(model)); };
+  const auto fitted = [&](const Model& model) { return judged(study, study.fit(model)); };
   const Studied first = fitted(before);
   const Comparison failed = compare(study, first);
   page.sections.push_back(

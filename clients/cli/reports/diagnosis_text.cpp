@@ -56,8 +56,7 @@ std::string missing_text(const Diagnosis& diagnosis) {
 }
 
 std::string chance_text(double log_p) {
-  constexpr double kLeast = -27.6;
-  if (log_p < kLeast) {
+  if (log_p < kLeastTold) {
     return "< 1e-12";
   }
   return fmt::format("{:.2g}", std::exp(log_p));
@@ -81,16 +80,17 @@ std::string size_text(double size) {
 
 std::string row_text(const CandidateResult& c) {
   return fmt::format("  {:<27} {:>28} {:>9} {:>10} {:>10} {:>11} {:>10}  {}\n", c.effect,
-                     strength_text(c.strength, c.sd, c.unit), chance_text(c.log_p),
-                     gain_text(c.gain), gain_text(c.held_out_gain), size_text(c.detectable),
-                     size_text(c.identifiable), kolsky::name_of(c.verdict));
+                     strength_text(c), chance_text(c.log_p), gain_text(c.gain),
+                     gain_text(c.held_out_gain), size_text(c.detectable), size_text(c.identifiable),
+                     kolsky::name_of(c.verdict));
 }
 
 /// Only of the verdicts that are there.
 std::string legend_text(const std::vector<CandidateResult>& shown) {
   std::string text =
       "\n  by chance: how often noise alone does as well, the search over all effects counted;\n"
-      "  gain: of chi-square, and of that on shots which the strength was not found in;\n"
+      "  gain: of chi-square, over what noise and the shots' scatter leave of it, and the same on\n"
+      "  shots which the strength was not found in;\n"
       "  detectable: the smallest change that stands at 6 deviations here; told apart: and at 5\n"
       "  beside the effect that resembles it most; -: none does within its bounds.\n";
   constexpr std::array<std::pair<CandidateVerdict, const char*>, 3> kMeanings{
@@ -175,6 +175,14 @@ std::string strength_text(double value, double sd, const std::string& unit) {
   return unit == "-" ? scaled : scaled + " " + unit;
 }
 
+std::string strength_text(const CandidateResult& c) {
+  const std::string text = strength_text(c.strength, c.sd, c.unit);
+  const Effect* effect = find_effect(c.effect.substr(0, c.effect.find(':')));
+  const bool another = effect != nullptr && !effect->about().quadrature &&
+                       effect->about().parameters.front().name != c.parameter;
+  return another && !text.empty() ? c.parameter + " = " + text : text;
+}
+
 std::string gain_text(double gain) {
   constexpr double kFitsAColumn = 1e7;
   if (!std::isfinite(gain)) {
@@ -185,6 +193,11 @@ std::string gain_text(double gain) {
                                        : fmt::format("{:.1g}", gain);
 }
 
+std::string floor_name(double chi2) {
+  constexpr double kScattered = 1.25;
+  return chi2 > kScattered ? "noise and what differs from shot to shot" : "noise alone";
+}
+
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   std::string text =
       "verdict: " + kolsky::name_of(diagnosis.verdict) + "\n" + missing_text(diagnosis);
@@ -192,12 +205,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     return text + notes_text(diagnosis);
   }
   const HeldOut& held_out = diagnosis.held_out;
-  // What differs from shot to shot counts as noise, and makes more than 1 of it.
-  constexpr double kScattered = 1.25;
-  text += fmt::format(
-      "  held-out misfit {:.4f} -> {:.4f}, {} {:.4f}{}\n", held_out.before, held_out.after,
-      held_out.floor > kScattered ? "noise and what differs from shot to shot" : "noise alone",
-      held_out.floor, judged_text(diagnosis.before));
+  text += fmt::format("  held-out misfit {:.4f} -> {:.4f}, {} {:.4f}{}\n", held_out.before,
+                      held_out.after, floor_name(held_out.floor), held_out.floor,
+                      judged_text(diagnosis.before));
   text += notes_text(diagnosis) + candidates_text(diagnosis);
   for (const NextExperiment& next : diagnosis.next_experiment) {
     text += "\n  next: " + next.change + "\n" + separates_text(next);

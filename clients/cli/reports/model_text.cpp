@@ -122,7 +122,7 @@ std::string number_text(double value, double sd, const std::string& unit) {
   if (sd > 0.0) {
     return plain ? strength_text(value, sd, unit) : with_deviation(value, sd, unit);
   }
-  return with_unit(value, unit == "-" ? "" : unit);
+  return with_unit(value, unit);
 }
 
 std::string effect_text(const EffectUse& use) {

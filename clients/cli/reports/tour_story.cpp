@@ -93,8 +93,8 @@ std::string verdict_words(const ModelStep& step) {
 std::string truth_words(const Hidden& hidden) {
   std::string text = "The truth: " + hidden.words;
   if (!hidden.id.empty() && hidden.in_library) {
-    text += fmt::format(" ({}, {} = {:.4g} {})", hidden.id, hidden.parameter, hidden.strength,
-                        hidden.unit);
+    text += fmt::format(" ({}, {} = {:.4g}{})", hidden.id, hidden.parameter, hidden.strength,
+                        hidden.unit == "-" ? "" : " " + hidden.unit);
   }
   text += ".";
   if (!hidden.id.empty() && !hidden.in_library) {
@@ -124,8 +124,8 @@ std::string truth_words(const Hidden& hidden, const TourVerdict& verdict) {
       break;
   }
   if (verdict.strength && verdict.sd > 0.0) {
-    text += fmt::format(" Strength found: {:.4g} ± {:.2g} {}, {:.1f} deviations from the truth.",
-                        *verdict.strength, verdict.sd, hidden.unit,
+    text += fmt::format(" Strength found: {:.4g} ± {:.2g}{}, {:.1f} deviations from the truth.",
+                        *verdict.strength, verdict.sd, hidden.unit == "-" ? "" : " " + hidden.unit,
                         std::abs(*verdict.strength - hidden.strength) / verdict.sd);
   }
   return text;

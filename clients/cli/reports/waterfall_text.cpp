@@ -93,11 +93,22 @@ class Bars {
   bool colour_;
 };
 
+/// Whether shots differ by more than noise, which counts as noise in every level.
+bool scattered(const Waterfall& fall) {
+  constexpr double kScattered = 1.25;
+  return fall.last_beside_quiet > kScattered * std::max(1.0, fall.steps.back().held_out);
+}
+
+std::string noise_of(const Waterfall& fall) {
+  return scattered(fall) ? "noise and scatter" : "noise alone";
+}
+
 std::string bars_text(const Waterfall& fall, const Terminal& terminal) {
   std::size_t names = std::string("repeats unexplained").size();
   for (const WaterfallStep& step : fall.steps) {
     names = std::max(names, name_of(step).size());
   }
+  names = std::max(names, noise_of(fall).size());
   const std::size_t columns =
       std::min(kMostColumns, static_cast<std::size_t>(std::max(40, terminal.columns)));
   const std::size_t used = names + 14;
@@ -110,7 +121,7 @@ std::string bars_text(const Waterfall& fall, const Terminal& terminal) {
                         bars.bar(step.held_out, before, Ink::first));
     before = step.held_out;
   }
-  text += fmt::format("  {} {:>9.4g}  {}\n", padded_right("noise alone", names), fall.floor,
+  text += fmt::format("  {} {:>9.4g}  {}\n", padded_right(noise_of(fall), names), fall.floor,
                       bars.bar(fall.floor, fall.floor, Ink::good));
   return text;
 }
@@ -251,7 +262,7 @@ std::vector<std::vector<std::string>> speed_rows(const Waterfall& fall) {
     }
     rows.push_back(std::move(row));
   }
-  std::vector<std::string> noise{"noise alone"};
+  std::vector<std::string> noise{noise_of(fall)};
   for (const SpeedMisfit& speed : fall.steps.back().speeds) {
     noise.push_back(fmt::format("{:.2f}", speed.noise_percent));
     noise.emplace_back();
@@ -324,8 +335,9 @@ std::string far_words(const Waterfall& fall) {
 
 std::string left_words(const Waterfall& fall) {
   const Misfit& last = fall.steps.back().misfit;
-  const std::string noise =
-      fall.allowance.empty() ? "the noise" : "the noise and " + fall.allowance;
+  const std::string noise = !fall.allowance.empty() ? "the noise and " + fall.allowance
+                            : scattered(fall)       ? "the noise and what differs from shot to shot"
+                                                    : "the noise";
   std::string text =
       fmt::format("Of what stood over {}, {:.4g} % is gone.", noise, 100.0 * fall.closed());
   if (fall.closed() >= 1.0) {
@@ -340,8 +352,15 @@ std::string left_words(const Waterfall& fall) {
               : fmt::format("{:.3g} times the noise, {} {}",
                             last.repeatable_share / last.noise_floor_share,
                             fall.within_allowance ? "within" : "more than", fall.allowance);
-  return text + fmt::format(", and {:.2g} % of the signal's energy; noise is {:.2g} %.",
-                            100.0 * last.repeatable_share, 100.0 * last.noise_floor_share);
+  text += fmt::format(", and {:.2g} % of the signal's energy; noise is {:.2g} %.",
+                      100.0 * last.repeatable_share, 100.0 * last.noise_floor_share);
+  return scattered(fall) ? text + fmt::format(
+                                      " Beside the noise before the pulses alone the last model "
+                                      "leaves {:.4g} per degree of freedom: what differs from "
+                                      "shot to shot is more than noise, and what is missing may be "
+                                      "among it (`kolsky compare` shows where).",
+                                      fall.last_beside_quiet)
+                         : text;
 }
 
 }  // namespace
@@ -371,6 +390,7 @@ JsonValue describe(const Waterfall& fall) {
   }
   return JsonObject{{"steps", std::move(steps)},
                     {"floor", fall.floor},
+                    {"last_beside_quiet", fall.last_beside_quiet},
                     {"repeats", fall.repeats},
                     {"signal", fall.signal},
                     {"closed", fall.closed()},
@@ -412,7 +432,7 @@ std::string waterfall_text(const Waterfall& fall, const Terminal& terminal) {
 
 Cascade cascade_of(const Waterfall& fall, const std::string& title) {
   Cascade cascade{
-      title, "chi-square per residual, held-out " + fall.fold, "noise alone", {}, fall.floor};
+      title, "chi-square per residual, held-out " + fall.fold, noise_of(fall), {}, fall.floor};
   for (const WaterfallStep& step : fall.steps) {
     const std::string note = step.effect.empty() ? ""
                                                  : fmt::format("better in {} of {} {}", step.better,
@@ -427,7 +447,7 @@ Page waterfall_page(const Waterfall& fall, const std::string& title,
   Page page;
   page.title = title;
   page.headline = left_words(fall);
-  page.good = fall.steps.back().held_out < 1.1 * fall.floor;
+  page.good = fall.steps.back().held_out < 1.1 * fall.floor && !scattered(fall);
   page.notes = notes;
   PageSection picture{"From the first model to the noise", {}};
   picture.pictures = {cascade_svg(cascade_of(fall, "What each effect took off the misfit"))};

@@ -37,7 +37,7 @@ StepFit fit_of(const Misfit& misfit, std::size_t captures) {
           misfit.repeatable_share, misfit.noise_floor_share};
 }
 
-void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis,
+void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis, const Misfit& left,
                    const std::vector<std::filesystem::path>& captures, const std::string& note) {
   begin_step(file, action_of(diagnosis));
   ModelStep& step = file.history.back();
@@ -45,7 +45,7 @@ void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis,
   step.data_sha256 = digest_of_files(captures);
   step.verdict = name_of(diagnosis.verdict);
   step.added = diagnosis.effects;
-  step.fit = fit_of(diagnosis.after, captures.size());
+  step.fit = fit_of(left, captures.size());
   step.held_out = {diagnosis.held_out.before, diagnosis.held_out.after, diagnosis.held_out.floor};
   step.seeds = {static_cast<double>(kSearchSeed)};
   for (const CandidateResult& candidate : diagnosis.candidates) {

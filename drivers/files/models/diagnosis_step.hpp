@@ -13,8 +13,11 @@ namespace kolsky {
 /// Takes a diagnosis into a model, whoever made it: a step with its verdict, what was added, every
 /// test of an effect that was worth one, misfit, held-out misfit and seeds; and the model with what
 /// was found, but where the verdict is "unknown".
+/// @param left      by the model that it ends with, in the noise that `kolsky fit` states its
+/// misfit
+///                  in: steps of a history are compared
 /// @param captures  that it was made of
-void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis,
+void add_diagnosis(ModelFile& file, const Diagnosis& diagnosis, const Misfit& left,
                    const std::vector<std::filesystem::path>& captures, const std::string& note);
 
 }  // namespace kolsky

@@ -270,6 +270,10 @@ Bench read_all(const TomlTable& table) {
 }
 
 Bench read_checked(const TomlTable& table) {
+  if (table.has("kolsky_model")) {
+    throw table.error("kolsky_model", "makes this a model file, and a bench file is asked for",
+                      "give the bench file that the captures were imported with");
+  }
   Bench bench = read_all(table);
   table.finish();
   try {

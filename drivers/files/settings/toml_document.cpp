@@ -256,6 +256,10 @@ std::size_t line_in_message(std::string_view message, std::size_t otherwise) {
 }  // namespace
 
 TomlNode parse_toml(const std::string& text, const std::string& name) {
+  if (text.starts_with("\x89HDF")) {
+    throw InputError(name, "is an HDF5 file, as captures are, and no TOML",
+                     "give the bench, model or material file that is asked for here");
+  }
   require_moderate_size(text, name);
   require_text(text, name);
   DepthCheck(text, name).run();

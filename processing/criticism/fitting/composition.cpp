@@ -141,6 +141,29 @@ Composition::Composition(const Model& model, const Campaign& campaign)
   }
 }
 
+double scale_of(const ModelValue& value, const EffectParameter& parameter) {
+  return value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
+}
+
+void bound_strengths(EffectUse& use) {
+  const EffectAbout& about = use.effect->about();
+  if (!about.each_gauge) {
+    return;
+  }
+  constexpr double kLargest = 30.0;
+  double slower = 1.0;
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    if (about.parameters[p].unit == "Hz") {
+      slower = about.parameters[p].starts.back() / use.values[p].value;
+    }
+  }
+  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
+    if (!about.parameters[p].auxiliary()) {
+      use.values[p].prior_sd = kLargest * slower * about.parameters[p].typical;
+    }
+  }
+}
+
 bool has_own_strengths(const EffectUse& use) {
   return use.per_shot || (use.effect->about().each_gauge && !use.alike);
 }
@@ -200,7 +223,7 @@ void Composition::add(const EffectUse& use, const Campaign& campaign) {
       // What is chosen among a few has no neighbourhood to search.
       if (value.free && !parameter.chosen) {
         slot.number = static_cast<std::ptrdiff_t>(numbers_.size());
-        const double scale = value.prior_sd > 0.0 ? value.prior_sd : parameter.typical;
+        const double scale = scale_of(value, parameter);
         const auto [least, most] =
             value.bounds.value_or(std::array{parameter.lower, parameter.upper});
         numbers_.push_back(

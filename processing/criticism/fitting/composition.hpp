@@ -83,6 +83,15 @@ class Composition {
   bool changes_records_ = false;
 };
 
+/// What a number is counted in: its prior's deviation, or without one its typical size.
+[[nodiscard]] double scale_of(const ModelValue& value, const EffectParameter& parameter);
+
+/// What all gauges have alike is the source's: strengths of each gauge's own run away together
+/// unless a prior bounds them. In a record much shorter than a period only slopes show, so that the
+/// bound is one on them: with the same for all frequencies a strong hum would look more likely as
+/// its third harmonic. Does nothing to other effects.
+void bound_strengths(EffectUse& use);
+
 /// Whether an effect has strengths of each shot's or each gauge's own: a model keeps their mean.
 [[nodiscard]] bool has_own_strengths(const EffectUse& use);
 

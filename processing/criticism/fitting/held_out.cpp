@@ -97,7 +97,11 @@ Foretold foretold(const Studied& studied, const Fold& fold, Eigen::Index size) {
 /// A campaign's residuals with one shot left out: zeros in its place.
 class AllButOne : public ShotResiduals {
  public:
-  AllButOne(ShotResiduals& all, std::size_t left_out) : all_(all), left_out_(left_out) {}
+  /// @param shots  of the campaign
+  AllButOne(ShotResiduals& all, std::size_t left_out, std::size_t shots)
+      : all_(all),
+        left_out_(left_out),
+        kept_share_(static_cast<double>(shots - 1) / static_cast<double>(shots)) {}
 
   Eigen::VectorXd evaluate(const Composition& composition, const std::vector<double>& theta,
                            std::size_t worker) override {
@@ -115,11 +119,17 @@ class AllButOne : public ShotResiduals {
     return all_.evaluate_shot(composition, theta, shot, worker);
   }
 
+  double taken_by_noise(const Composition& composition, const std::vector<double>& theta,
+                        std::size_t worker) override {
+    return kept_share_ * all_.taken_by_noise(composition, theta, worker);
+  }
+
   [[nodiscard]] std::size_t per_shot() const override { return all_.per_shot(); }
 
  private:
   ShotResiduals& all_;
   std::size_t left_out_;
+  double kept_share_;
 };
 
 /// A shot under numbers that other shots have foretold.
@@ -221,7 +231,7 @@ double held_out_square(const Studied& studied, ShotResiduals& residuals, std::si
   if (doubt <= kNothing + kShare * (first_order.square - seen)) {
     return square;
   }
-  AllButOne others(residuals, shot);
+  AllButOne others(residuals, shot, static_cast<std::size_t>(studied.fit.residual.size() / size));
   Eigen::MatrixXd chord = studied.fit.jacobian;
   chord.middleRows(at * size, size).setZero();
   const ModelFit fit =

@@ -5,7 +5,6 @@
 
 #include "processing/criticism/fitting/astray.hpp"
 #include "processing/criticism/fitting/branch_order.hpp"
-#include "processing/criticism/fitting/common_hum.hpp"
 #include "processing/criticism/fitting/effect_starts.hpp"
 #include "processing/criticism/fitting/moduli_starts.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
@@ -102,7 +101,7 @@ Studied Study::refit(const Studied& studied) {
   return {std::move(after), studied.composition, std::move(fit), misfit};
 }
 
-Studied Study::as_it_is(const Model& model) {
+Studied Study::with_own_strengths(const Model& model) {
   Composition composition(all_but_own_held(model, campaign_.bench), campaign_);
   ModelFit fit;
   fit.theta = composition.start();
@@ -112,30 +111,19 @@ Studied Study::as_it_is(const Model& model) {
     residuals_.freeze(composition, fit.theta);
     fit = fit_model(composition, residuals_, executor_);
   }
-  return beside_quiet({model, std::move(composition), std::move(fit), {}});
+  return {model, std::move(composition), std::move(fit), {}};
 }
 
-void Study::learn_noise(const Studied& studied) {
-  const std::optional<Model> humming = beside_common_hum(studied.model, campaign_);
-  if (!humming) {
-    residuals_.calibrate(studied.composition, studied.fit.theta, NoiseShown::what_quiet_hides);
-    return;
-  }
-  const Composition composition(*humming, campaign_);
-  const ModelFit fit = fit_model(composition, residuals_, executor_);
-  residuals_.calibrate(composition, fit.theta, NoiseShown::what_quiet_hides);
-  residuals_.freeze(studied.composition, studied.fit.theta);
-}
-
-Studied Study::beside_quiet(Studied studied) {
+Studied Study::beside_quiet(Studied studied, const Studied* humming) {
   const Composition& composition = studied.composition;
   ModelFit& fit = studied.fit;
   residuals_.believe_quiet();
   residuals_.freeze(composition, fit.theta);
   if (campaign_.shots.size() > 1) {
-    learn_noise(studied);
+    const Studied& shows = humming != nullptr ? *humming : studied;
+    residuals_.calibrate(shows.composition, shows.fit.theta, NoiseShown::what_quiet_hides);
   }
-  if (residuals_.know_steps()) {
+  if (residuals_.know_steps() || humming != nullptr) {
     residuals_.freeze(composition, fit.theta);
   }
   fit.residual = residuals_.evaluate(composition, fit.theta);

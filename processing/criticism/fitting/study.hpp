@@ -35,14 +35,19 @@ class Study {
   [[nodiscard]] Studied fit(const Model& model, LearnNoise learn = LearnNoise::yes);
   /// The same from where it is, with the noise as known by now.
   [[nodiscard]] Studied refit(const Studied& studied);
-  /// The model as it is, its misfit as `beside_quiet` has it. Nothing moves but strengths of each
-  /// shot's or each gauge's own: a model keeps their mean, these shots have their own.
-  [[nodiscard]] Studied as_it_is(const Model& model);
+  /// The model as it is, its misfit not yet reckoned. Nothing moves but strengths of each shot's or
+  /// each gauge's own: a model keeps their mean, these shots have their own.
+  [[nodiscard]] Studied with_own_strengths(const Model& model);
+  /// The same, its misfit as `beside_quiet` has it.
+  [[nodiscard]] Studied as_it_is(const Model& model) {
+    return beside_quiet(with_own_strengths(model));
+  }
   /// What was fitted, its misfit beside the noise that the quiet parts show, slow noise corrected
   /// as far as they are too short for it. A fit counts as noise what does not repeat from shot to
   /// shot, a pulse that the record cuts among it: by that measure a model that lacks an end's
   /// reflection fitted as well as one that has it.
-  [[nodiscard]] Studied beside_quiet(Studied studied);
+  /// @param humming  the same beside a hum that is no noise: noise is learned from what that leaves
+  [[nodiscard]] Studied beside_quiet(Studied studied, const Studied* humming = nullptr);
 
   [[nodiscard]] WhiteResiduals& residuals() { return residuals_; }
   [[nodiscard]] const Campaign& campaign() const { return campaign_; }
@@ -62,9 +67,6 @@ class Study {
   /// The same from where nobody has fitted the moduli, where those of an earlier fit lead astray
   /// and that is better.
   [[nodiscard]] Attempt best_attempt(const Model& model);
-  /// What the quiet parts are too short to show of the noise, from what is left, but for what
-  /// hums.
-  void learn_noise(const Studied& studied);
 
   const Campaign& campaign_;
   Workers executor_;

@@ -51,7 +51,7 @@ void add_notes(Diagnosis& diagnosis, std::vector<std::string> lines) {
 
 void settle(Diagnosis& diagnosis, ImpactStudy& study, const Studied& current,
             const ImpactDisbelief& disbelief) {
-  settle_claims(diagnosis,
+  settle_claims(diagnosis, current.model,
                 [&](CandidateResult& result) { set_strength(current, result.effect, result); });
   add_notes(diagnosis, left_notes(study, current, diagnosis.held_out));
   add_notes(diagnosis, disbelief.reasons);

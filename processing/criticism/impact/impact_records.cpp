@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "processing/base/error.hpp"
-#include "processing/criticism/fitting/quiet_slopes.hpp"
 #include "processing/criticism/impact/fine_grid.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/impact/filter.hpp"
 
 namespace kolsky {

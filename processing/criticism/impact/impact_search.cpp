@@ -32,8 +32,7 @@ bool beyond_reach(const Candidate& candidate, const Direction& direction) {
     return true;
   }
   const EffectParameter& p = candidate.use.effect->about().parameters.front();
-  const double scale =
-      candidate.use.values[0].prior_sd > 0.0 ? candidate.use.values[0].prior_sd : p.typical;
+  const double scale = scale_of(candidate.use.values.front(), p);
   const double information = direction.information.diagonal().maxCoeff();
   return !(information > 0.0) || scale / std::sqrt(information) > p.upper - p.lower;
 }

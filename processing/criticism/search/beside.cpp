@@ -8,14 +8,9 @@ namespace kolsky {
 
 namespace {
 
-/// What a prior adds to the information on strengths, in scales; every parameter's come in a row.
-Eigen::VectorXd prior_information(const Candidate& candidate, Eigen::Index count) {
-  Eigen::VectorXd information = Eigen::VectorXd::Zero(count);
-  const EffectParameter& first = candidate.use.effect->about().parameters.front();
-  if (const double sd = candidate.use.values.front().prior_sd; sd > 0.0) {
-    information.setConstant(first.typical * first.typical / (sd * sd));
-  }
-  return information;
+/// What a prior adds to the information on strengths, in scales: those of its deviations.
+double prior_information(const Candidate& candidate) {
+  return candidate.use.values.front().prior_sd > 0.0 ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -30,7 +25,7 @@ double share_beside(const Direction& own, const Candidate& other, const Directio
   Eigen::MatrixXd taken = of_other.information;
   constexpr double kRounding = 1e-9;
   taken.diagonal() +=
-      prior_information(other, taken.rows()) + kRounding * of_other.unprojected.diagonal();
+      (prior_information(other) + kRounding * of_other.unprojected.diagonal().array()).matrix();
   const Eigen::MatrixXd inverse = symmetric_inverse(taken);
   const Eigen::VectorXd pull = own.pull - shared * (inverse * of_other.pull);
   const Eigen::MatrixXd information = own.information - shared * inverse * shared.transpose();

@@ -20,12 +20,25 @@ namespace {
 
 constexpr double kToldApart = 5.0;  ///< sigma beside a rival
 
+/// Which number an effect is told by: its strength, or where only others are free, as where a
+/// specimen's diameter alone is filed with a deviation, the first of these.
+std::size_t told_by(const EffectUse& use) {
+  const EffectAbout& about = use.effect->about();
+  std::size_t at = about.strength;
+  for (std::size_t p = 0; p < use.values.size() && !use.values[at].free; ++p) {
+    at = use.values[p].free && !about.parameters[p].auxiliary() ? p : at;
+  }
+  return at;
+}
+
+const EffectParameter& told(const Candidate& candidate) {
+  return candidate.use.effect->about().parameters[told_by(candidate.use)];
+}
+
 /// What a step of one is in a strength's unit. Of an amplitude, cosine and sine.
-double scale_of(const Candidate& candidate) {
+double step_of(const Candidate& candidate) {
   const EffectAbout& about = candidate.use.effect->about();
-  const double filed_sd = candidate.use.values[0].prior_sd;
-  const double scale =
-      candidate.frees_prior && filed_sd > 0.0 ? filed_sd : about.parameters.front().typical;
+  const double scale = scale_of(candidate.use.values[told_by(candidate.use)], told(candidate));
   return about.quadrature ? scale * std::numbers::sqrt2 : scale;
 }
 
@@ -74,11 +87,12 @@ struct Place {
 
 /// How far a step of several strengths may go until one of them is at its bound. Where the model
 /// takes up nearly all that they do together, the best of first order is beyond all measure.
-double share_in_bounds(const EffectAbout& about, const Eigen::VectorXd& step) {
-  std::vector<const EffectParameter*> strengths;
-  for (const EffectParameter& parameter : about.parameters) {
-    if (!parameter.auxiliary()) {
-      strengths.push_back(&parameter);
+double share_in_bounds(const EffectUse& use, const Eigen::VectorXd& step) {
+  const std::vector<EffectParameter>& parameters = use.effect->about().parameters;
+  std::vector<std::size_t> strengths;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (!parameters[p].auxiliary()) {
+      strengths.push_back(p);
     }
   }
   if (static_cast<Eigen::Index>(strengths.size()) != step.size()) {
@@ -86,8 +100,8 @@ double share_in_bounds(const EffectAbout& about, const Eigen::VectorXd& step) {
   }
   double share = 1.0;
   for (std::size_t k = 0; k < strengths.size(); ++k) {
-    const EffectParameter& own = *strengths[k];
-    const double off = own.typical * step[static_cast<Eigen::Index>(k)];
+    const EffectParameter& own = parameters[strengths[k]];
+    const double off = scale_of(use.values[strengths[k]], own) * step[static_cast<Eigen::Index>(k)];
     const double room = off > 0.0 ? own.upper - own.null_value : own.null_value - own.lower;
     share = std::abs(off) > room ? std::min(share, room / std::abs(off)) : share;
   }
@@ -99,12 +113,11 @@ double share_in_bounds(const EffectAbout& about, const Eigen::VectorXd& step) {
 Place place_of(const Tried& tried, std::size_t i) {
   const Candidate& candidate = tried.candidates[i];
   const Direction& direction = tried.directions[i];
-  const EffectAbout& about = candidate.use.effect->about();
-  const EffectParameter& parameter = about.parameters.front();
-  const double scale = scale_of(candidate);
+  const EffectParameter& parameter = told(candidate);
+  const double scale = step_of(candidate);
   const auto numbers = direction.step.size();
   if (numbers > 1) {
-    const double share = share_in_bounds(about, direction.step);
+    const double share = share_in_bounds(candidate.use, direction.step);
     const double step = share * direction.step.norm() / std::sqrt(static_cast<double>(numbers));
     return {parameter.null_value + scale * root(step, parameter.power),
             direction.gain * share * (2.0 - share)};
@@ -263,7 +276,7 @@ void set_over_shots(const Studied& studied, const std::string& id, CandidateResu
 }  // namespace
 
 double within_reach(const Candidate& candidate, double size) {
-  const EffectParameter& own = candidate.use.effect->about().parameters.front();
+  const EffectParameter& own = told(candidate);
   const double reach = std::max(own.upper - own.null_value, own.null_value - own.lower);
   return candidate.frees_prior || size <= reach ? size : INFINITY;
 }
@@ -276,7 +289,7 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
   const Candidate& candidate = tried.candidates[i];
   const Direction& direction = tried.directions[i];
   const EffectAbout& about = candidate.use.effect->about();
-  const EffectParameter& parameter = about.parameters.front();
+  const EffectParameter& parameter = told(candidate);
   CandidateResult result;
   result.effect = candidate.id();
   result.parameter = about.quadrature ? "A" : parameter.name;
@@ -290,7 +303,7 @@ CandidateResult first_order_result(const Tried& tried, std::size_t i) {
     result.verdict = CandidateVerdict::untestable;
     return result;
   }
-  const double scale = scale_of(candidate);
+  const double scale = step_of(candidate);
   const Place place = place_of(tried, i);
   const double sd = 1.0 / std::sqrt(direction.information.trace());
   result.gain = place.gain;
@@ -362,7 +375,7 @@ void set_strength(const Studied& studied, const std::string& id, CandidateResult
     return;
   }
   const auto& parameters = use->effect->about().parameters;
-  const std::size_t at = use->effect->about().strength;
+  const std::size_t at = told_by(*use);
   result.parameter = parameters[at].name;
   result.unit = parameters[at].unit;
   result.strength = use->values[at].value;

@@ -55,28 +55,6 @@ void hold_auxiliaries(EffectUse& use) {
   }
 }
 
-/// What all gauges have alike is the source's: without a bound such strengths run away together.
-/// In a record much shorter than a period only slopes show, so the bound is one on them: with the
-/// same for all frequencies a strong hum would look more likely as its third harmonic.
-void bound_strengths(EffectUse& use) {
-  const EffectAbout& about = use.effect->about();
-  if (!about.each_gauge) {
-    return;
-  }
-  constexpr double kLargest = 30.0;
-  double slower = 1.0;
-  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
-    if (about.parameters[p].unit == "Hz") {
-      slower = about.parameters[p].starts.back() / use.values[p].value;
-    }
-  }
-  for (std::size_t p = 0; p < about.parameters.size(); ++p) {
-    if (!about.parameters[p].auxiliary()) {
-      use.values[p].prior_sd = kLargest * slower * about.parameters[p].typical;
-    }
-  }
-}
-
 void add_variants(const Effect& effect, const std::string& gauge, const Campaign& campaign,
                   std::vector<Candidate>& list) {
   const EffectAbout& about = effect.about();
@@ -206,58 +184,63 @@ double doubt_of_gain(const Candidate& candidate, const Direction& direction, dou
   return filed + scale * (1.0 - filed);
 }
 
+namespace {
+
+/// Numbers of one effect.
+std::vector<std::size_t> numbers_of(const Composition& composition, const std::string& id) {
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < composition.numbers().size(); ++i) {
+    if (composition.uses()[composition.numbers()[i].use].id() == id) {
+      own.push_back(i);
+    }
+  }
+  return own;
+}
+
+/// The records' own view of filed numbers: their columns are the model's, their prior goes.
+Direction freed_of_prior(const Candidate& candidate, const Studied& studied) {
+  const ModelFit& fit = studied.fit;
+  std::vector<std::size_t> own = numbers_of(studied.composition, candidate.id());
+  std::erase_if(own,
+                [&](std::size_t i) { return !(studied.composition.numbers()[i].prior_sd > 0.0); });
+  const std::vector<Eigen::Index> places(own.begin(), own.end());
+  const Eigen::MatrixXd prior = studied.composition.prior_precision()(places, places);
+  Eigen::VectorXd off(prior.rows());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const FreeNumber& number = studied.composition.numbers()[own[i]];
+    off[static_cast<Eigen::Index>(i)] = fit.theta[own[i]] - number.theta_of(number.prior_mean);
+  }
+  Direction direction;
+  // Adding a number x with columns C beside the same column under a prior equals dropping it.
+  direction.columns = fit.jacobian(Eigen::all, places);
+  // Against the prior's pull, with which the data are in balance.
+  direction.pull = prior * off;
+  return direction;
+}
+
+Direction added(const Candidate& candidate, const Studied& studied, const Campaign& campaign,
+                ShotResiduals& residuals, std::size_t worker) {
+  const Composition composition(with(studied.model, candidate, Auxiliaries::held), campaign);
+  const std::vector<double> theta = carry(studied.composition, studied.fit.theta, composition);
+  Direction direction;
+  direction.columns = derivatives(composition, residuals, theta, studied.fit.residual,
+                                  numbers_of(composition, candidate.id()), serial_on(worker));
+  direction.pull = -direction.columns.transpose() * studied.fit.residual;
+  return direction;
+}
+
+}  // namespace
+
 Direction direction_of(const Candidate& candidate, const Studied& studied, const Campaign& campaign,
                        ShotResiduals& residuals, std::size_t worker) {
-  Direction direction;
   const ModelFit& fit = studied.fit;
-  if (candidate.frees_prior) {
-    // The data's own view of a filed number: its columns are the model's, its prior goes.
-    std::vector<std::size_t> own;
-    for (std::size_t i = 0; i < fit.theta.size(); ++i) {
-      const FreeNumber& number = studied.composition.numbers()[i];
-      if (studied.composition.uses()[number.use].id() == candidate.id()) {
-        own.push_back(i);
-      }
-    }
-    const auto count = static_cast<Eigen::Index>(own.size());
-    const auto all = static_cast<Eigen::Index>(fit.theta.size());
-    direction.columns.resize(fit.residual.size(), count);
-    Eigen::MatrixXd pick = Eigen::MatrixXd::Zero(all, count);
-    Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(count, count);
-    Eigen::VectorXd pulled(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto at = own[static_cast<std::size_t>(i)];
-      const FreeNumber& number = studied.composition.numbers()[at];
-      direction.columns.col(i) = fit.jacobian.col(static_cast<Eigen::Index>(at));
-      pick(static_cast<Eigen::Index>(at), i) = 1.0;
-      prior(i, i) = number.scale * number.scale / (number.prior_sd * number.prior_sd);
-      // Against the prior's pull, with which the data are in balance.
-      pulled[i] = prior(i, i) * (fit.theta[at] - number.prior_mean / number.scale);
-    }
-    // Adding a number x with columns C beside the same column under a prior equals dropping it.
-    direction.model_share = fit.jacobian.transpose() * direction.columns;
-    direction.unprojected = direction.columns.transpose() * direction.columns;
-    direction.pull = pulled;
-    direction.information = direction.unprojected - direction.model_share.transpose() *
-                                                        fit.covariance * direction.model_share;
-  } else {
-    const Model extended = with(studied.model, candidate, Auxiliaries::held);
-    const Composition composition(extended, campaign);
-    const std::vector<double> theta = carry(studied.composition, fit.theta, composition);
-    std::vector<std::size_t> own;
-    for (std::size_t i = 0; i < theta.size(); ++i) {
-      if (composition.uses()[composition.numbers()[i].use].id() == candidate.id()) {
-        own.push_back(i);
-      }
-    }
-    direction.columns =
-        derivatives(composition, residuals, theta, fit.residual, own, serial_on(worker));
-    direction.model_share = fit.jacobian.transpose() * direction.columns;
-    direction.unprojected = direction.columns.transpose() * direction.columns;
-    direction.pull = -direction.columns.transpose() * fit.residual;
-    direction.information = direction.unprojected - direction.model_share.transpose() *
-                                                        fit.covariance * direction.model_share;
-  }
+  Direction direction = candidate.frees_prior
+                            ? freed_of_prior(candidate, studied)
+                            : added(candidate, studied, campaign, residuals, worker);
+  direction.model_share = fit.jacobian.transpose() * direction.columns;
+  direction.unprojected = direction.columns.transpose() * direction.columns;
+  direction.information = direction.unprojected - direction.model_share.transpose() *
+                                                      fit.covariance * direction.model_share;
   const auto count = direction.information.rows();
   direction.freedom = static_cast<double>(count);
   // What the model takes up to rounding is not there to be tested.

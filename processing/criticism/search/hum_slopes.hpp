@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "processing/criticism/fitting/quiet_slopes.hpp"
 #include "processing/criticism/fitting/study.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 
 namespace kolsky {
 

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "processing/algebra/algebra.hpp"
-#include "processing/criticism/fitting/quiet_slopes.hpp"
 #include "processing/criticism/search/amplitude_over_shots.hpp"
 #include "processing/criticism/search/hum_slopes.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 #include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/search_trials.hpp"
 

@@ -60,6 +60,7 @@ class Run {
   Run(const std::vector<Shot>& shots, const Model& model, const SelftestOptions& options,
       const Workers& workers)
       : last_gauge_(shots.empty() ? "" : shots.front().bench.gauges.back().name),
+        model_(model),
         options_(options),
         workers_(workers),
         ground_(ground_of(shots, model, options.band_limit_Hz, options.meshes, workers)) {}
@@ -107,7 +108,7 @@ class Run {
     std::map<std::string, std::pair<double, double>> limits;  ///< detectable, identifiable
     for (const CandidateResult& candidate : untouched.candidates) {
       limits[candidate.effect] = {candidate.detectable, candidate.identifiable};
-      const EffectUse use = use_named(candidate.effect);
+      const EffectUse use = use_named(candidate.effect, model_);
       if (options_.effects.empty() && std::isfinite(candidate.detectable) &&
           (use.gauge.empty() || use.gauge == last_gauge_)) {
         ids.push_back(candidate.effect);
@@ -123,7 +124,7 @@ class Run {
   }
 
   void add_effect(const std::string& id, double detectable, double identifiable) {
-    EffectUse use = use_named(id);
+    EffectUse use = use_named(id, model_);
     const EffectParameter& parameter = use.effect->about().parameters.front();
     PlantedEffect planted{id, parameter.name, parameter.unit, identifiable, detectable, {}, {}};
     const double bound = std::max(std::abs(parameter.upper - parameter.null_value),
@@ -193,6 +194,7 @@ class Run {
   }
 
   std::string last_gauge_;
+  const Model& model_;
   const SelftestOptions& options_;
   const Workers& workers_;
   std::unique_ptr<SelftestGround> ground_;
@@ -293,7 +295,7 @@ Selftest selftest(const std::vector<Shot>& shots, const Model& model,
                      [](const ModelValue& value) { return value.prior_sd > 0.0; })) {
       throw InputError("effect " + id, "is in the model already", "plant one that it lacks");
     }
-    require_size_in_bounds(use_named(id), options.sizes);
+    require_size_in_bounds(use_named(id, model), options.sizes);
   }
   return Run(shots, model, options, workers)();
 }

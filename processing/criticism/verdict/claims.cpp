@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace kolsky {
@@ -50,7 +51,27 @@ void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, cons
   diagnosis.held_out.floor = floor;
 }
 
-void settle_claims(Diagnosis& diagnosis,
+namespace {
+
+/// How far a claimed strength is off where it is not there yet; infinite where what is told is
+/// another number, as the return of an end that was not there.
+double size_of(const CandidateResult& result, const Model& found) {
+  const EffectUse* use = found.find(result.effect);
+  if (use == nullptr) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const EffectAbout& about = use->effect->about();
+  if (about.quadrature) {
+    return result.strength;
+  }
+  return result.parameter == about.parameters.front().name
+             ? std::abs(result.strength - about.parameters.front().null_value)
+             : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void settle_claims(Diagnosis& diagnosis, const Model& found,
                    const std::function<void(CandidateResult&)>& set_strength) {
   diagnosis.verdict =
       diagnosis.effects.empty() ? DiagnosisVerdict::adequate : DiagnosisVerdict::named;
@@ -69,7 +90,7 @@ void settle_claims(Diagnosis& diagnosis,
     if (std::ranges::count(diagnosis.effects, result.effect) > 0) {
       set_strength(result);
       // First order about null does not see all that some effects do; the refits did, at this size.
-      const double size = std::abs(result.strength);
+      const double size = size_of(result, found);
       result.detectable = std::min(result.detectable, size);
       if (result.verdict == CandidateVerdict::named) {
         result.identifiable = std::min(result.identifiable, size);

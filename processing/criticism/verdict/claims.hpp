@@ -24,7 +24,9 @@ void give_up(Diagnosis& diagnosis, const std::vector<std::string>& reasons, cons
 
 /// The verdict that the claims make (adequate without any), and the candidates' by it. What is
 /// claimed itself is no rival of what is claimed beside it.
+/// @param found         the model with them
 /// @param set_strength  of what is claimed
-void settle_claims(Diagnosis& diagnosis, const std::function<void(CandidateResult&)>& set_strength);
+void settle_claims(Diagnosis& diagnosis, const Model& found,
+                   const std::function<void(CandidateResult&)>& set_strength);
 
 }  // namespace kolsky

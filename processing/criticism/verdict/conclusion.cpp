@@ -9,6 +9,7 @@
 #include "processing/criticism/fitting/branch_order.hpp"
 #include "processing/criticism/fitting/held_out.hpp"
 #include "processing/criticism/records/arrival_order.hpp"
+#include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 #include "processing/criticism/verdict/claims.hpp"
@@ -118,7 +119,7 @@ void note_strengths(const Findings& found, const std::optional<SmallRest>& own,
 
 void settle(Study& study, const std::optional<SmallRest>& own, Findings& found) {
   Diagnosis& diagnosis = found.diagnosis;
-  settle_claims(diagnosis, [&](CandidateResult& result) {
+  settle_claims(diagnosis, found.current.model, [&](CandidateResult& result) {
     set_strength(found.current, result.effect, study.residuals().per_shot(), result);
     result.sd = std::hypot(result.sd, found.variants_differ[result.effect],
                            share_moved(own, result.effect) * result.strength);

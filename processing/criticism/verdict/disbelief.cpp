@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/verdict/cancelling.hpp"
 #include "processing/criticism/verdict/strength_notes.hpp"
 #include "processing/models/formula_strength.hpp"
@@ -19,9 +20,8 @@ namespace {
 constexpr std::array kOfTimes = {"gauge-position:", "channel-delay:", "amplifier-bandwidth:"};
 
 std::string chance_text(double log_p) {
-  constexpr double kLeast = -27.6;  // 1e-12: below, normal noise is no longer what one knows it as
-  return log_p < kLeast ? "less than once in 10^12 campaigns"
-                        : fmt::format("once in {:.2g} campaigns", std::exp(-log_p));
+  return log_p < kLeastTold ? "less than once in 10^12 campaigns"
+                            : fmt::format("once in {:.2g} campaigns", std::exp(-log_p));
 }
 
 std::string repeats_text(double log_p) {
@@ -132,7 +132,6 @@ double most_explained(const Diagnosis& diagnosis, double explained) {
 /// there, and it is not that.
 /// @param explained  by what is claimed, of chi2
 const CandidateResult* surest_rejected(const Diagnosis& diagnosis, double explained) {
-  constexpr double kSure = -11.5;  // 1e-5, the search counted
   // What is there leaves no more than noise does to gain, and what is as good is its own limit.
   constexpr double kAhead = 16.0;
   constexpr double kShare = 0.05;

@@ -67,12 +67,13 @@ std::vector<Distinction> distinctions(Study& study, const Studied& studied,
   for (const auto& [id, i] : best) {
     const Direction& own = directions[i];
     const EffectParameter& parameter = candidates[i].use.effect->about().parameters.front();
+    const double scale = scale_of(candidates[i].use.values.front(), parameter);
     Distinction distinction{id, parameter.name, parameter.unit, 1.0, 0.0, 0.0, {}};
     distinction.detectable = distinction.identifiable = std::numeric_limits<double>::infinity();
     if (there(own)) {
       distinction.absorbed_share = 1.0 - own.information(0, 0) / own.unprojected(0, 0);
       const double sd = 1.0 / std::sqrt(own.information(0, 0));
-      distinction.detectable = parameter.typical * root(kDetected * sd, parameter.power);
+      distinction.detectable = scale * root(kDetected * sd, parameter.power);
       std::map<std::string, double> nearest;
       for (std::size_t k = 0; k < candidates.size(); ++k) {
         if (candidates[k].id() != id && there(directions[k])) {
@@ -86,11 +87,10 @@ std::vector<Distinction> distinctions(Study& study, const Studied& studied,
       std::stable_sort(distinction.rivals.begin(), distinction.rivals.end(),
                        [](const auto& a, const auto& b) { return a.cosine > b.cosine; });
       const double closest = distinction.rivals.empty() ? 0.0 : distinction.rivals.front().cosine;
-      distinction.identifiable =
-          std::max(distinction.detectable,
-                   parameter.typical *
-                       root(kToldApart * sd / std::sqrt(std::max(1e-12, 1.0 - closest * closest)),
-                            parameter.power));
+      distinction.identifiable = std::max(
+          distinction.detectable,
+          scale * root(kToldApart * sd / std::sqrt(std::max(1e-12, 1.0 - closest * closest)),
+                       parameter.power));
       distinction.detectable = within_reach(candidates[i], distinction.detectable);
       distinction.identifiable = within_reach(candidates[i], distinction.identifiable);
     }

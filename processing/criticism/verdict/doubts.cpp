@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/filed_bars.hpp"

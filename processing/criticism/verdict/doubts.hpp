@@ -11,9 +11,6 @@
 
 namespace kolsky {
 
-/// ln of a chance that needs no search to be counted: 1e-5.
-inline constexpr double kSure = -11.5;
-
 /// What one certified effect may leave, of a misfit that it explains.
 inline constexpr double kAllowedRest = 0.01;
 /// The same of so many: together they fit what is not in the library better than one does, so less

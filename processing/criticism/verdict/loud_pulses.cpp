@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "processing/criticism/fitting/statistics.hpp"
+#include "processing/criticism/search/safeguards.hpp"
 
 namespace kolsky {
 
@@ -61,7 +62,6 @@ std::vector<LoudPulses> loudness_of_pulses(Study& study, const Studied& studied)
 }
 
 bool beyond_noise(const LoudPulses& pulses) {
-  constexpr double kSure = -11.5;  // 1e-5
   constexpr double kMuch = 1.2;
   return pulses.power > kMuch && pulses.log_p < kSure;
 }

@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "processing/criticism/fitting/quiet_slopes.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/candidates.hpp"
 #include "processing/criticism/search/common_amplitude.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
+#include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/refits.hpp"
@@ -70,9 +71,9 @@ bool others_drift(Study& study, const Studied& current) {
 
 /// Before the pulses, which noise does once in 1e5 campaigns.
 bool others_slope(const Campaign& campaign, const std::string& gauge) {
-  constexpr double kSure = -11.5;
-  for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-    if (campaign.bench.gauges[j].name != gauge && log_chance_of_slopes(campaign, j) < kSure) {
+  const std::vector<double> chances = log_chances_of_slopes(campaign);
+  for (std::size_t j = 0; j < chances.size(); ++j) {
+    if (campaign.bench.gauges[j].name != gauge && chances[j] < kSure) {
       return true;
     }
   }

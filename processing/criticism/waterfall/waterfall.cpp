@@ -8,6 +8,7 @@
 #include "processing/criticism/fitting/record_parts.hpp"
 #include "processing/criticism/search/candidate_table.hpp"
 #include "processing/criticism/search/candidates.hpp"
+#include "processing/criticism/search/confirmed_hum.hpp"
 #include "processing/criticism/search/safeguards.hpp"
 
 namespace kolsky {
@@ -211,6 +212,7 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
       made.strengths = strengths_of(last, *use);
     }
   }
+  fall.last_beside_quiet = judged(study, last).misfit.chi2_reduced;
   return fall;
 }
 

@@ -77,6 +77,27 @@ TEST(ShareBeside, IsWhatALeastSquaresFitOfBothStillGains) {
   }
 }
 
+/// Columns are in deviations of the prior, so that it weighs one each.
+TEST(ShareBeside, OfBoundedStrengthsIsWhatAFitUnderTheirPriorStillGains) {
+  EffectUse hum = use_named("mains-hum");
+  hum.values.front().prior_sd = 30.0 * hum.effect->about().parameters.front().typical;
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    Linear made(seed);
+    made.other *= 0.1;
+    const Direction own = made.direction_of(made.own);
+    Eigen::MatrixXd with = Eigen::MatrixXd::Zero(kResiduals + 3, 6);
+    with.topRows(kResiduals) << made.model, made.other, made.own;
+    with.bottomRows(3).middleCols(2, 3).setIdentity();
+    Eigen::VectorXd records = Eigen::VectorXd::Zero(kResiduals + 3);
+    records.head(kResiduals) = made.residual;
+    const double gained = Linear::rest(with.leftCols(5), records).squaredNorm() -
+                          Linear::rest(with, records).squaredNorm();
+    EXPECT_NEAR(share_beside(own, {.use = hum}, made.direction_of(made.other), made.covariance),
+                std::min(1.0, gained / own.gain), 1e-6)
+        << seed;
+  }
+}
+
 TEST(ShareBeside, IsNothingOfWhatAnotherExplainsAlone) {
   Linear made(3);
   made.residual = Linear::rest(made.model, made.other.col(0));

@@ -163,14 +163,38 @@ TEST(Claims, AreDetectableAtTheSizeThatTheyWereFoundAt) {
     }
     CandidateResult found;
     found.effect = "bending";
+    found.parameter = "chi";
     found.strength = -1.0;
     found.detectable = 2.0;
     found.identifiable = 3.0;
     diagnosis.candidates = {found};
-    settle_claims(diagnosis, [](CandidateResult&) {});
+    Model model = paper_model(BenchKind::bar, false);
+    model.effects.push_back(use_named("bending"));
+    settle_claims(diagnosis, model, [](CandidateResult&) {});
     EXPECT_EQ(diagnosis.candidates[0].detectable, 1.0);
     EXPECT_EQ(diagnosis.candidates[0].identifiable, tied ? 3.0 : 1.0);
   }
+}
+
+// Where nothing is hidden a fractional order is 1, and of an end's return what is told is how much
+// of a wave comes back of one that was not there.
+TEST(Claims, AreAsLargeAsTheyAreOffWhereNothingIsHidden) {
+  const auto settled = [](const std::string& id, const std::string& parameter, double strength) {
+    CandidateResult found;
+    found.effect = id;
+    found.parameter = parameter;
+    found.strength = strength;
+    found.detectable = found.identifiable = 0.5;
+    Diagnosis diagnosis;
+    diagnosis.effects = {id};
+    diagnosis.candidates = {found};
+    Model model = paper_model(BenchKind::bar, false);
+    model.effects.push_back(use_named(id));
+    settle_claims(diagnosis, model, [](CandidateResult&) {});
+    return diagnosis.candidates[0].detectable;
+  };
+  EXPECT_NEAR(settled("fractional-damping", "beta", 0.98), 0.02, 1e-12);
+  EXPECT_EQ(settled("end-reflection", "r", 0.0), 0.5);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "processing/criticism/fitting/quiet_slopes.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 
 #include <gtest/gtest.h>
 

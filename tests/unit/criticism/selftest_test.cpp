@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "processing/base/error.hpp"
 #include "processing/criticism/selftest/planting.hpp"
+#include "processing/models/expression_effect.hpp"
 #include "tests/generators/campaign.hpp"
 
 namespace kolsky {
@@ -201,6 +203,44 @@ TEST(Selftest, FindsWhatWasPlantedLargeAndNothingFarBelowTheNoise) {
   EXPECT_EQ(effect.smallest_found(), 5e-3);
   EXPECT_GT(effect.identifiable, 2e-5);
   EXPECT_LT(effect.identifiable, 5e-3);
+}
+
+/// First order gave a hum's sizes in its prior's deviation and called them typical ones: a
+/// hundredth of what can be found was planted.
+TEST(Selftest, PlantsHumsOfSizesThatCanBeFound) {
+  SelftestOptions options;
+  options.effects = {"mains-hum"};
+  options.multiples = {6.0};
+  options.nulls = 0;
+  const Selftest result =
+      selftest(measured(92), paper_model(BenchKind::bar, false), options, Workers{});
+  ASSERT_EQ(result.effects.size(), 1U);
+  ASSERT_EQ(result.effects.front().sizes.size(), 1U);
+  const PlantedSize& planted = result.effects.front().sizes.front();
+  EXPECT_TRUE(planted.found()) << name_of(planted.outcome) << " of " << planted.size;
+}
+
+TEST(Selftest, PlantsBesideAnExpressionOfTheModelsOwn) {
+  ExpressionText text{.id = "own-creep", .stage = Stage::sensor, .formula = "1 + c/(1 + s*tau)"};
+  text.parameters = {{.name = "c", .unit = "-", .lower = -0.5, .upper = 0.5, .typical = 0.01},
+                     {.name = "tau",
+                      .unit = "s",
+                      .lower = 1e-5,
+                      .upper = 1e-1,
+                      .typical = 1e-3,
+                      .starts = {1e-3}}};
+  Model model = paper_model(BenchKind::bar, false);
+  model.expressions.push_back(std::make_shared<const ExpressionEffect>(text));
+  SelftestOptions options;
+  options.effects = {"gauge-position:g2", "own-creep:g2"};
+  options.multiples = {6.0};
+  options.nulls = 0;
+  const Selftest result = selftest(measured(92), model, options, Workers{});
+  ASSERT_EQ(result.effects.size(), 2U);
+  for (const PlantedEffect& effect : result.effects) {
+    ASSERT_EQ(effect.sizes.size(), 1U) << effect.id << effect.skipped;
+    EXPECT_NE(effect.sizes.front().outcome, PlantOutcome::unseen) << effect.id;
+  }
 }
 
 TEST(Selftest, RefusesWhatItCannotPlant) {

@@ -111,6 +111,18 @@ TEST(Waterfall, FallsToTheNoiseByWhatWasHiddenAndTheModuliComeRight) {
   EXPECT_NEAR(fall.steps[2].strengths.at(0).value, 0.003, 2e-4);
 }
 
+/// What a model lacks that depends on the shots differs between them, and passes for noise in the
+/// levels.
+TEST(Waterfall, TellsWhatThereIsBesideTheQuietOfAModelThatShotsFailDifferently) {
+  const Made made = make(79, {"amplitude-dependence=6"});
+  Study study(made.campaign, 0.0, Workers{});
+  const Waterfall without = waterfall(study, lineage(paper_with({}), paper_with({}), {}));
+  EXPECT_GT(without.last_beside_quiet, 1.5 * without.steps.back().held_out);
+  const Waterfall with =
+      waterfall(study, lineage(paper_with({}), paper_with({"amplitude-dependence"}), {}));
+  EXPECT_LT(with.last_beside_quiet, 1.1 * with.steps.back().held_out);
+}
+
 TEST(Waterfall, CreditsAnEffectThatIsNotThereWithNothing) {
   const Made made = make(201, {});
   Study study(made.campaign, 0.0, Workers{});

@@ -39,7 +39,7 @@ Diagnosis found(DiagnosisVerdict verdict) {
 TEST(AddDiagnosis, KeepsAllThatALedgerTellsOfIt) {
   ModelFile file;
   file.model = paper_model(BenchKind::bar, false);
-  add_diagnosis(file, found(DiagnosisVerdict::tied), {}, "live, shots of store");
+  add_diagnosis(file, found(DiagnosisVerdict::tied), {}, {}, "live, shots of store");
   const ModelFile again = parse_model(format_model(file), "m.toml");
   EXPECT_NE(again.model.find("temperature"), nullptr);
   ASSERT_EQ(again.history.size(), 1U);
@@ -64,7 +64,7 @@ TEST(AddDiagnosis, KeepsTheFitWhereNothingExplainsTheMisfit) {
   Diagnosis diagnosis = found(DiagnosisVerdict::unknown);
   diagnosis.model = file.model;
   diagnosis.model->effects.front().values.front().value = 5.7e9;
-  add_diagnosis(file, diagnosis, {}, "");
+  add_diagnosis(file, diagnosis, {}, {}, "");
   EXPECT_EQ(file.model.effects.front().values.front().value, 5.7e9);
   EXPECT_EQ(file.history.front().verdict, "unknown");
 }

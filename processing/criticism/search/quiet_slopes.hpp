@@ -33,7 +33,7 @@ using SlopesByShot = std::vector<std::vector<double>>;  ///< by shot and gauge, 
 [[nodiscard]] bool wanders_in_common(const Campaign& campaign);
 
 /// ln of the chance that a gauge's own noise, as its quiet samples about their slopes have it,
-/// slopes as much before the pulses. @return 0 as above
-[[nodiscard]] double log_chance_of_slopes(const Campaign& campaign, std::size_t gauge);
+/// slopes as much before the pulses. @return by gauge; 0 as above
+[[nodiscard]] std::vector<double> log_chances_of_slopes(const Campaign& campaign);
 
 }  // namespace kolsky

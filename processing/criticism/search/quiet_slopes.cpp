@@ -1,4 +1,4 @@
-#include "processing/criticism/fitting/quiet_slopes.hpp"
+#include "processing/criticism/search/quiet_slopes.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -130,15 +130,20 @@ struct Wander {
   }
 };
 
-/// Mean of products of two gauges' samples of one shot, a thirtieth to a fifteenth of them apart.
+/// Mean of products of two gauges' samples of one shot, a thirtieth to a fifteenth of them apart:
+/// at some of these lags where there are many, for what is slow tells the same at the next.
 double slow_product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  constexpr Eigen::Index kLags = 32;
   const Eigen::Index first = std::max<Eigen::Index>(1, a.size() / 30);
   const Eigen::Index last = std::max(first, a.size() / 15);
+  const Eigen::Index step = (last - first) / kLags + 1;
   double sum = 0.0;
-  for (Eigen::Index lag = first; lag <= last; ++lag) {
+  double count = 0.0;
+  for (Eigen::Index lag = first; lag <= last; lag += step) {
     sum += (product(a, b, lag) + product(b, a, lag)) / static_cast<double>(2 * (a.size() - lag));
+    count += 1.0;
   }
-  return sum / static_cast<double>(last - first + 1);
+  return sum / count;
 }
 
 /// Variance of such a mean of so many samples where the two have nothing in common, or a little
@@ -232,6 +237,24 @@ bool long_enough(const Campaign& campaign) {
          });
 }
 
+double log_chance_of(const Campaign& campaign, const QuietParts& parts, std::size_t gauge) {
+  if (!(parts.covariance[gauge].front() > 0.0)) {
+    return 0.0;
+  }
+  const auto shots = static_cast<double>(campaign.shots.size());
+  const std::vector<double>& covariance = parts.covariance[gauge];
+  double square = 0.0;
+  double white_share = 0.0;
+  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
+    const double slope = slope_before(campaign.shots[n], campaign.shots[n].strain[gauge]);
+    const double variance = slope_variance(covariance, parts.weights[n]);
+    square += slope * slope / variance;
+    white_share += covariance.front() * parts.weights[n].squaredNorm() / variance / shots;
+  }
+  const double belief = belief_in_spectrum(white_share, 0.0, 1.0);
+  return belief > 0.0 ? log_f_tail(square / shots, shots, belief) : 0.0;
+}
+
 }  // namespace
 
 double slope_before(const CampaignShot& shot, const std::vector<double>& record) {
@@ -278,26 +301,15 @@ bool wanders_in_common(const Campaign& campaign) {
   return long_enough(campaign) && wander_of(quiet_parts(campaign)).is_seen();
 }
 
-double log_chance_of_slopes(const Campaign& campaign, std::size_t gauge) {
-  if (!long_enough(campaign)) {
-    return 0.0;
+std::vector<double> log_chances_of_slopes(const Campaign& campaign) {
+  std::vector<double> chances(campaign.gauges(), 0.0);
+  if (long_enough(campaign)) {
+    const QuietParts parts = quiet_parts(campaign);
+    for (std::size_t gauge = 0; gauge < chances.size(); ++gauge) {
+      chances[gauge] = log_chance_of(campaign, parts, gauge);
+    }
   }
-  const QuietParts parts = quiet_parts(campaign);
-  if (!(parts.covariance[gauge].front() > 0.0)) {
-    return 0.0;
-  }
-  const auto shots = static_cast<double>(campaign.shots.size());
-  const std::vector<double>& covariance = parts.covariance[gauge];
-  double square = 0.0;
-  double white_share = 0.0;
-  for (std::size_t n = 0; n < campaign.shots.size(); ++n) {
-    const double slope = slope_before(campaign.shots[n], campaign.shots[n].strain[gauge]);
-    const double variance = slope_variance(covariance, parts.weights[n]);
-    square += slope * slope / variance;
-    white_share += covariance.front() * parts.weights[n].squaredNorm() / variance / shots;
-  }
-  const double belief = belief_in_spectrum(white_share, 0.0, 1.0);
-  return belief > 0.0 ? log_f_tail(square / shots, shots, belief) : 0.0;
+  return chances;
 }
 
 }  // namespace kolsky
