@@ -61,7 +61,8 @@ std::string how(const Settings& settings, const ModelFile& file) {
         return is_digest_of(step.data_sha256, captures);
       })) {
     text +=
-        "; it was fitted to other captures than just these: what it has of gauges and bars is theirs";
+        "; it was fitted to other captures than just these: what it has of gauges and bars is "
+        "theirs";
   }
   if (const std::string own = own_strengths(file.model); !own.empty()) {
     text +=
