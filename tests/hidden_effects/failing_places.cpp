@@ -51,6 +51,18 @@ std::vector<double> weights_of(const Stretch& stretch, double period_s, std::siz
   return weights;
 }
 
+/// Whether there may be such a bar: a long step of a fit may lead to moduli below nothing.
+bool could_be(const Campaign& campaign) {
+  constexpr double kSlowest_m_per_s = 100.0;
+  constexpr double kQuickest_m_per_s = 30e3;
+  const testing::TrueMaterial& material = campaign.world.material;
+  const double speed_m_per_s = std::sqrt(material.E1_Pa / material.density_kg_m3);
+  return speed_m_per_s > kSlowest_m_per_s && speed_m_per_s < kQuickest_m_per_s &&
+         (material.elastic || (material.E2_Pa > 0.0 && material.eta2_Pa_s > 0.0)) &&
+         std::ranges::all_of(campaign.world.gauges,
+                             [](const auto& gauge) { return gauge.position_m > 0.0; });
+}
+
 double square_of(const std::vector<double>& record) {
   double sum = 0.0;
   for (const double value : record) {
@@ -274,8 +286,9 @@ double FailingPlaces::approach(FirstOrder& about, const Campaign& hidden, Fit& f
       break;
     }
     const Eigen::VectorXd next = fit.places + move;
-    Readings there = left_at(next);
-    const double found = about.objective(there, next);
+    const bool possible = could_be(bare_at(next));
+    Readings there = possible ? left_at(next) : Readings{};
+    const double found = possible ? about.objective(there, next) : INFINITY;
     if (!(found < least)) {
       damping = std::max(kLeastDamping, 10.0 * damping);
       continue;
