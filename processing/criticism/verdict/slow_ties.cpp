@@ -69,6 +69,13 @@ bool others_drift(Study& study, const Studied& current) {
   });
 }
 
+/// Where records do not tell which gauge drifts, for only what differs between them shows, both may:
+/// as a hum does that they pick up the other way.
+bool at_either(const std::vector<std::string>& ties) {
+  return std::ranges::any_of(
+      ties, [](const std::string& id) { return id.starts_with(std::string(kDrift) + ":"); });
+}
+
 /// Before the pulses, which noise does once in 1e5 campaigns.
 bool others_slope(const Campaign& campaign, const std::string& gauge) {
   const std::vector<double> chances = log_chances_of_slopes(campaign);
@@ -159,7 +166,7 @@ void tie_with_hum(Study& study, const Studied& current, Diagnosis& diagnosis) {
     const bool may_be_hum = drift->per_shot
                                 ? others_slope(study.campaign(), drift->gauge) ||
                                       hum_does_as_well(study, without(study, current, id), *drift)
-                                : drifts > 1 || others_drift(study, current);
+                                : drifts > 1 || at_either(ties) || others_drift(study, current);
     if (may_be_hum) {
       ties.emplace_back(kHum);
     }

@@ -432,6 +432,24 @@ TEST(Drifts, OfOneHumAreTiedWithIt) {
   EXPECT_GT(drifts, 0) << "nothing to try it on";
 }
 
+// Of two gauges only their difference shows: either may drift, and a hum be in both.
+TEST(Drifts, OfAHumInTwoGaugesAreTiedWithIt) {
+  int drifts = 0;
+  for (const std::uint64_t seed : {31U, 32U, 33U}) {
+    testing::Campaign campaign = testing::draw_campaign(
+        {.seed = seed, .shots = 6, .gauges = 2, .colour = testing::NoiseColour::white});
+    testing::hide(campaign, testing::parse_effect("mains-hum=8e-6,phase=4,others=-0.8"));
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(campaign));
+    for (const std::string& id : diagnosis.effects) {
+      drifts += id != "mains-hum" ? 1 : 0;
+      EXPECT_TRUE(id == "mains-hum" ||
+                  std::ranges::count(diagnosis.tied_with.at(id), "mains-hum") == 1)
+          << seed << " " << id;
+    }
+  }
+  EXPECT_GT(drifts, 0) << "nothing to try it on";
+}
+
 // But a drift of one gauge stays one.
 TEST(Drifts, OfOneGaugeAreNoHum) {
   int named = 0;
