@@ -159,6 +159,22 @@ class Shortlist {
     });
   }
 
+  /// The same of a gauge that comes into question: a filter is a delay at first order, which moduli
+  /// take up between two gauges, and what it does to amplitudes grows by the square of its time.
+  void add_bounded_sensors() {
+    constexpr double kAsGood = 0.5;
+    const auto leads = [&](const Ranked& own) {
+      return own.first > kWorthRefitting && own.first > kAsGood * ranked_.front().first;
+    };
+    add_where([&](std::size_t i) {
+      const Candidate& own = ground_.candidates[i];
+      return own.signs == Signs::one && !own.use.per_shot &&
+             std::ranges::any_of(ranked_, [&](const Ranked& leader) {
+               return leads(leader) && at_one_gauge(own, ground_.candidates[leader.second]);
+             });
+    });
+  }
+
   [[nodiscard]] const std::vector<std::size_t>& chosen() const { return chosen_; }
 
  private:
@@ -196,6 +212,7 @@ std::vector<std::size_t> worth_refitting(const SearchGround& ground, SlowChances
   list.add_other_variants_of_leaders();
   list.add_formulas();
   list.add_bounded_materials();
+  list.add_bounded_sensors();
   return list.chosen();
 }
 

@@ -431,6 +431,26 @@ TEST(Surprises, OfABarAreTwoBesideItsThickness) {
   }
 }
 
+// Between two gauges a filter is a delay at first order, which moduli take up, so that it was not
+// tried: what it does to amplitudes was named a gauge's length.
+TEST(Diagnosis, TriesAFilterOfWhichFirstOrderLeavesNothing) {
+  for (const std::uint64_t seed : {41U, 42U, 43U}) {
+    testing::Campaign truth = testing::draw_campaign({.seed = seed,
+                                                      .shots = 6,
+                                                      .gauges = 2,
+                                                      .noise_strain = 2e-6,
+                                                      .colour = testing::NoiseColour::white,
+                                                      .bits = 16});
+    testing::hide(truth, testing::parse_effect("amplifier-bandwidth:g2=8e-7"));
+    const Diagnosis diagnosis = diagnosed(testing::shots_of(truth), BenchKind::bar);
+    const CandidateResult& filter = result_of(diagnosis, "amplifier-bandwidth:g2");
+    EXPECT_TRUE(filter.verdict == CandidateVerdict::tied ||
+                filter.verdict == CandidateVerdict::named)
+        << seed << " " << name_of(filter.verdict);
+    EXPECT_LT(std::abs(filter.strength - 8e-7), 4.0 * filter.sd) << seed;
+  }
+}
+
 // A hum that gauges pick up by different shares is nearly a drift of its own at each of them. That
 // its phases are common makes it claimable; what it explains weighs against the drifts all the
 // same.
