@@ -69,8 +69,8 @@ bool others_drift(Study& study, const Studied& current) {
   });
 }
 
-/// Where records do not tell which gauge drifts, for only what differs between them shows, both may:
-/// as a hum does that they pick up the other way.
+/// Where records do not tell which gauge drifts, for only what differs between them shows, both
+/// may: as a hum does that they pick up the other way.
 bool at_either(const std::vector<std::string>& ties) {
   return std::ranges::any_of(
       ties, [](const std::string& id) { return id.starts_with(std::string(kDrift) + ":"); });

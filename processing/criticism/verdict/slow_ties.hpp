@@ -20,8 +20,8 @@ void tie_with_drifts(Study& study, const Studied& current, Diagnosis& diagnosis)
 /// A drift of each shot's own is a hum of another phase in every shot, picked up by one gauge or
 /// by several in unequal shares of which the source takes up the rest: where a hum at that gauge
 /// does as well, or other gauges slope before the pulses, too, nothing tells the two apart. One
-/// that all shots have alike is a hum of one phase, where another gauge drifts beside it, or records
-/// do not tell which of them drifts.
+/// that all shots have alike is a hum of one phase, where another gauge drifts beside it, or
+/// records do not tell which of them drifts.
 /// @param current  with what the diagnosis claims; drifts among it have the hum added to their ties
 void tie_with_hum(Study& study, const Studied& current, Diagnosis& diagnosis);
 
