@@ -76,9 +76,11 @@ CampaignWishes draw_wishes(Random& random, const Plan& plan) {
 
 // The same bench with other shots would need other sizes; only noise is new, and by how much what
 // is filed is off: one draw of that would be in all cases of a bench.
-Campaign anew(const Campaign& bench, Random& random) {
+Campaign anew(const Campaign& bench, const Plan& plan, Random& random) {
   Campaign campaign = bench;
-  testing::draw_truth_anew(random, campaign);
+  if (plan.truth_anew) {
+    testing::draw_truth_anew(random, campaign);
+  }
   campaign.wishes.seed = random() % 1000000000u;
   return campaign;
 }
@@ -199,7 +201,7 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
     return fmt::format("b{:04}-{:02}-{}", bench, cases.size(), name_of(kind));
   };
   for (int i = 0; i < plan.nulls_per_bench; ++i) {
-    cases.push_back(with(id(CaseKind::null), CaseKind::null, anew(campaign, random), {}));
+    cases.push_back(with(id(CaseKind::null), CaseKind::null, anew(campaign, plan, random), {}));
   }
   if (plan.singles_per_bench + plan.tied_per_bench + plan.doubles_per_bench +
           plan.absorbed_per_bench + plan.withheld_per_bench ==
@@ -211,7 +213,7 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
   for (std::size_t i = 0;
        i < singles.size() && i < static_cast<std::size_t>(plan.singles_per_bench); ++i) {
     const double multiple = std::max(plan.least_multiple, kMultiples[random() % kMultiples.size()]);
-    cases.push_back(with(id(CaseKind::single), CaseKind::single, anew(campaign, random),
+    cases.push_back(with(id(CaseKind::single), CaseKind::single, anew(campaign, plan, random),
                          {sized(*singles[i], multiple, random)}));
   }
   for (int i = 0; i < plan.doubles_per_bench && singles.size() >= 2; ++i) {
@@ -223,25 +225,26 @@ std::vector<Case> draw_cases(const Plan& plan, int bench) {
       continue;
     }
     const double multiple = kMultiples[1 + random() % 2];
-    cases.push_back(with(id(CaseKind::two), CaseKind::two, anew(campaign, random),
+    cases.push_back(with(id(CaseKind::two), CaseKind::two, anew(campaign, plan, random),
                          {sized(*drawn[0], multiple, random), sized(**beside, multiple, random)}));
   }
   const auto unclear = tied(found.effects(), random);
   for (std::size_t i = 0; i < unclear.size() && i < static_cast<std::size_t>(plan.tied_per_bench);
        ++i) {
-    cases.push_back(with(id(CaseKind::tied), CaseKind::tied, anew(campaign, random), {unclear[i]}));
+    cases.push_back(
+        with(id(CaseKind::tied), CaseKind::tied, anew(campaign, plan, random), {unclear[i]}));
   }
   const auto unseen = absorbed(found.effects(), random);
   for (std::size_t i = 0;
        i < unseen.size() && i < static_cast<std::size_t>(plan.absorbed_per_bench); ++i) {
-    cases.push_back(
-        with(id(CaseKind::absorbed), CaseKind::absorbed, anew(campaign, random), {unseen[i]}));
+    cases.push_back(with(id(CaseKind::absorbed), CaseKind::absorbed, anew(campaign, plan, random),
+                         {unseen[i]}));
   }
   const auto strange = withheld(found, random);
   for (std::size_t i = 0;
        i < strange.size() && i < static_cast<std::size_t>(plan.withheld_per_bench); ++i) {
-    cases.push_back(
-        with(id(CaseKind::withheld), CaseKind::withheld, anew(campaign, random), {strange[i]}));
+    cases.push_back(with(id(CaseKind::withheld), CaseKind::withheld, anew(campaign, plan, random),
+                         {strange[i]}));
   }
   return cases;
 }

@@ -19,6 +19,7 @@ struct Plan {
   bool soft = false;            ///< with rubbers between them
   bool quick = false;           ///< short records on few gauges, white noise
   double least_multiple = 1.0;  ///< of its smallest identifiable size, that a single is planted at
+  bool truth_anew = true;       ///< every case its own draw of what is off within what is filed
   std::vector<double> measured_noise{};
 };
 

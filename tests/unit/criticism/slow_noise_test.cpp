@@ -23,6 +23,7 @@ TEST(GaugeLength, IsNotNamedForNoiseThatIsForetoldTooStrong) {
   scoring::Plan plan;
   plan.seed = 52002;
   plan.split = true;
+  plan.truth_anew = false;
   plan.singles_per_bench = plan.tied_per_bench = plan.doubles_per_bench = 0;
   plan.absorbed_per_bench = plan.withheld_per_bench = 0;
   const testing::Campaign truth = scoring::draw_cases(plan, kBench).at(0).campaign;
@@ -51,6 +52,7 @@ TEST(SoftSpecimens, AreNotLeftWhereAFitHasGoneAstray) {
   scoring::Plan plan;
   plan.seed = 143143;
   plan.split = plan.soft = true;
+  plan.truth_anew = false;
   plan.singles_per_bench = plan.tied_per_bench = plan.doubles_per_bench = 0;
   plan.absorbed_per_bench = plan.withheld_per_bench = 0;
   for (const int bench : {8, 42}) {
