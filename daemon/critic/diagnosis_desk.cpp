@@ -226,9 +226,10 @@ void DiagnosisDesk::examine(const ActiveModel& model, const std::vector<std::str
   Diagnosis diagnosis = diagnose(study, model.file.model, options);
   step("reckoning what would separate what is tied");
   diagnosis.next_experiment = next_experiments(study, diagnosis);
-  // As `compare` has it.
-  file(model, diagnosis,
-       diagnosis.model ? judged_as_it_is(study, *diagnosis.model).misfit : Misfit{}, captures);
+  // As `compare` has it; only what was found is kept with a model.
+  const bool kept = diagnosis.model && !diagnosis.effects.empty();
+  file(model, diagnosis, kept ? judged_as_it_is(study, *diagnosis.model).misfit : Misfit{},
+       captures);
 }
 
 void DiagnosisDesk::file(const ActiveModel& model, const Diagnosis& diagnosis, const Misfit& left,

@@ -57,9 +57,9 @@ std::string how(const Settings& settings, const ModelFile& file) {
     text += ", which was changed after its last fit: `kolsky fit`, or --fit here";
   }
   const auto captures = files_of(settings.judged.captures);
-  if (std::ranges::none_of(file.history, [&](const ModelStep& step) {
-        return is_digest_of(step.data_sha256, captures);
-      })) {
+  const auto fitted = std::find_if(file.history.rbegin(), file.history.rend(),
+                                   [](const ModelStep& step) { return !step.data_sha256.empty(); });
+  if (!is_digest_of(fitted->data_sha256, captures)) {
     text +=
         "; it was fitted to other captures than just these: what it has of gauges and bars is "
         "theirs";

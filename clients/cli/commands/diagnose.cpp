@@ -200,7 +200,12 @@ Examined examine(const Settings& settings, const Model& model, const Safeguards&
     replace_file(*settings.report, render_html(diagnosis_page("What " + settings.model + " lacks",
                                                               study, model, diagnosis)));
   }
-  const Misfit left = diagnosis.model ? judged_as_it_is(study, *diagnosis.model).misfit : Misfit{};
+  Misfit left;
+  if (settings.output && diagnosis.model) {
+    left = naming_model(settings.model, [&] {
+             return judged_as_it_is(study, *diagnosis.model);
+           }).misfit;
+  }
   return {std::move(diagnosis), left};
 }
 

@@ -96,7 +96,8 @@ class Bars {
 /// Whether shots differ by more than noise, which counts as noise in every level.
 bool scattered(const Waterfall& fall) {
   constexpr double kScattered = 1.25;
-  return fall.last_beside_quiet > kScattered * std::max(1.0, fall.steps.back().held_out);
+  return fall.shots > 1 && fall.last_beside_quiet.value_or(1.0) >
+                               kScattered * std::max(1.0, fall.steps.back().held_out);
 }
 
 std::string noise_of(const Waterfall& fall) {
@@ -359,7 +360,7 @@ std::string left_words(const Waterfall& fall) {
                                       "leaves {:.4g} per degree of freedom: what differs from "
                                       "shot to shot is more than noise, and what is missing may be "
                                       "among it (`kolsky compare` shows where).",
-                                      fall.last_beside_quiet)
+                                      *fall.last_beside_quiet)
                          : text;
 }
 
@@ -388,16 +389,19 @@ JsonValue describe(const Waterfall& fall) {
     }
     steps.push_back(std::move(own));
   }
-  return JsonObject{{"steps", std::move(steps)},
-                    {"floor", fall.floor},
-                    {"last_beside_quiet", fall.last_beside_quiet},
-                    {"repeats", fall.repeats},
-                    {"signal", fall.signal},
-                    {"closed", fall.closed()},
-                    {"strain_rate_per_s", fall.strain_rate_per_s},
-                    {"shots", static_cast<std::int64_t>(fall.shots)},
-                    {"held_out_by", fall.fold},
-                    {"held_out_parts", static_cast<std::int64_t>(fall.folds)}};
+  JsonObject told{{"steps", std::move(steps)},
+                  {"floor", fall.floor},
+                  {"repeats", fall.repeats},
+                  {"signal", fall.signal},
+                  {"closed", fall.closed()},
+                  {"strain_rate_per_s", fall.strain_rate_per_s},
+                  {"shots", static_cast<std::int64_t>(fall.shots)},
+                  {"held_out_by", fall.fold},
+                  {"held_out_parts", static_cast<std::int64_t>(fall.folds)}};
+  if (fall.last_beside_quiet) {
+    told.push_back({"last_beside_quiet", *fall.last_beside_quiet});
+  }
+  return told;
 }
 
 std::string waterfall_text(const Waterfall& fall, const Terminal& terminal) {

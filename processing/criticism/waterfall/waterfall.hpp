@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,8 @@ struct Waterfall {
   double repeats = 0.0;  ///< chi2 per residual that still repeats from shot to shot
   double signal = 0.0;   ///< chi2 per residual of the records themselves
   /// chi2 per degree of freedom that the last model leaves beside the noise before the pulses
-  /// (`judged`): what differs from shot to shot counts as noise in all the levels.
-  double last_beside_quiet = 1.0;
+  /// (`judged`): what differs from shot to shot counts as noise in all the levels. Not of impacts.
+  std::optional<double> last_beside_quiet;
   /// What else the model may be off by that held_out and floor count as they do noise; repeats and
   /// signal are by the noise alone.
   std::string allowance;

@@ -117,10 +117,10 @@ TEST(Waterfall, TellsWhatThereIsBesideTheQuietOfAModelThatShotsFailDifferently) 
   const Made made = make(79, {"amplitude-dependence=6"});
   Study study(made.campaign, 0.0, Workers{});
   const Waterfall without = waterfall(study, lineage(paper_with({}), paper_with({}), {}));
-  EXPECT_GT(without.last_beside_quiet, 1.5 * without.steps.back().held_out);
+  EXPECT_GT(without.last_beside_quiet.value(), 1.5 * without.steps.back().held_out);
   const Waterfall with =
       waterfall(study, lineage(paper_with({}), paper_with({"amplitude-dependence"}), {}));
-  EXPECT_LT(with.last_beside_quiet, 1.1 * with.steps.back().held_out);
+  EXPECT_LT(with.last_beside_quiet.value(), 1.1 * with.steps.back().held_out);
 }
 
 TEST(Waterfall, CreditsAnEffectThatIsNotThereWithNothing) {
