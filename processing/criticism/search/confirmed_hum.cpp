@@ -72,12 +72,15 @@ std::optional<Studied> confirmed_hum(Study& study, const Studied& studied) {
 
 bool may_hum(Study& study, const Studied& studied) {
   const Campaign& campaign = study.campaign();
+  if (campaign.shots.size() < 2 || studied.model.find(kHum) != nullptr) {
+    return false;
+  }
   for (std::size_t gauge = 0; gauge < campaign.gauges(); ++gauge) {
     if (study.residuals().noise().is_coarse(gauge)) {
       return false;
     }
   }
-  return campaign.shots.size() > 1 && studied.model.find(kHum) == nullptr;
+  return true;
 }
 
 }  // namespace
