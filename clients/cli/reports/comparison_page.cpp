@@ -181,14 +181,15 @@ std::vector<std::size_t> shots_by_misfit(const Comparison& comparison, std::size
   return order;
 }
 
-/// Of the signal's energy. Of one shot nobody knows what repeats.
+/// Of the signal's energy, as `in_words` tells them.
 std::vector<ShareBar> shares_of(const Misfit& misfit, std::size_t shots) {
   std::vector<ShareBar> shares{{"signal", 1.0},
                                {"repeats, not explained", misfit.repeatable_share}};
-  if (shots > 1) {
-    shares.push_back({"differs from shot to shot", misfit.scatter_share});
+  const double scatter = shots > 1 && scatters(misfit) ? misfit.scatter_share : 0.0;
+  if (scatter > 0.0) {
+    shares.push_back({"differs from shot to shot", scatter});
   }
-  shares.push_back({"noise", std::max(0.0, misfit.noise_floor_share - misfit.scatter_share)});
+  shares.push_back({"noise", misfit.noise_floor_share - scatter});
   return shares;
 }
 

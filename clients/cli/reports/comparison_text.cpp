@@ -52,6 +52,11 @@ std::string band_text(const ComparedBand& band) {
                      unit.name);
 }
 
+bool scatters(const Misfit& misfit) {
+  constexpr double kOfFloor = 0.25;
+  return misfit.scatter_share > kOfFloor * misfit.noise_floor_share;
+}
+
 std::string in_words(const Misfit& misfit, std::size_t shots) {
   const double floor = misfit.noise_floor_share;
   if (shots == 1) {
@@ -60,7 +65,7 @@ std::string in_words(const Misfit& misfit, std::size_t shots) {
         "whether it would come again one shot cannot say.",
         100.0 * floor, 100.0 * misfit.repeatable_share);
   }
-  if (misfit.scatter_share > floor / 2.0) {
+  if (scatters(misfit)) {
     return fmt::format(
         "Of the signal's energy {:.2g} % is noise; the model does not explain {:.2g} % that "
         "differs "

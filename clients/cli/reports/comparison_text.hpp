@@ -15,6 +15,9 @@ namespace kolsky::cli {
 /// What a misfit's numbers mean, in a sentence or two.
 [[nodiscard]] std::string in_words(const Misfit& misfit, std::size_t shots);
 
+/// Whether a good part of what counts as noise is that shots differ, so that it is told apart.
+[[nodiscard]] bool scatters(const Misfit& misfit);
+
 /// Members `where` (significant tiles, largest share first) and `regions` (all places, shots taken
 /// together) of what `kolsky compare --json` prints.
 [[nodiscard]] JsonValue describe_tiles(const Comparison& comparison, const Campaign& campaign);

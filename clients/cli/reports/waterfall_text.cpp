@@ -302,6 +302,9 @@ Panel curves_panel(const Waterfall& fall) {
 
 /// How far the curve went between the first and the last model, where it went furthest.
 std::string curve_words(const Waterfall& fall) {
+  if (fall.steps.size() < 2) {
+    return "The specimen's stress at a constant strain rate; there is no second model to compare.";
+  }
   const SpecimenCurve& a = fall.steps.front().curve;
   const SpecimenCurve& b = fall.steps.back().curve;
   std::size_t at = 0;
