@@ -23,6 +23,10 @@ void WhiteResiduals::freeze(const Composition& composition, const std::vector<do
   // With the noise of the freeze before: what it straightens is known no better yet.
   Eigen::VectorXd white = evaluate(composition, theta);
   shares_.take(work.whitener, band_.bins_judged);
+  jumps_ = work.jumps;
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    jumps_.put_in({white.data() + n * per_shot(), per_shot()});
+  }
   frozen_ = std::move(white);
   know_source_noise(work);
 }
@@ -119,6 +123,13 @@ std::span<const double> WhiteResiduals::white_of(std::size_t shot,
   return {white.data() + shot * per_shot(), per_shot()};
 }
 
+/// One shot's whitened residuals as they are bin by bin, with what bins have in common.
+std::vector<double> WhiteResiduals::by_bin(std::span<const double> white) const {
+  std::vector<double> joined(white.begin(), white.end());
+  jumps_.put_in(joined);
+  return joined;
+}
+
 /// A gauge's noise over the judged window at the records' rate, as much of it as residuals show;
 /// until that worker's next transform.
 /// @param shares  of them by bin that count; empty: all
@@ -179,7 +190,7 @@ void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white, NoiseShown sh
   std::vector<std::vector<Spectrum>> noise;
   for (std::size_t n = 0; n < shots; ++n) {
     sources.push_back(source_spectrum(n, white));
-    noise.push_back(deviation_spectra(white_of(n, white)));
+    noise.push_back(deviation_spectra(by_bin(white_of(n, white))));
   }
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     std::vector<double> power(bins);
@@ -188,7 +199,20 @@ void WhiteResiduals::share_out_noise(const Eigen::VectorXd& white, NoiseShown sh
     }
     noise_.learn(j, power, shown);
   }
+  noise_.keep_times_jumps(times_jumps(white));
   forget_whitener();
+}
+
+/// Over what the quiet parts foretell, as whitened residuals show it.
+double WhiteResiduals::times_jumps(const Eigen::VectorXd& white) const {
+  Eigen::VectorXd sizes(static_cast<Eigen::Index>(campaign_.shots.size()));
+  for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
+    sizes[static_cast<Eigen::Index>(n)] = campaign_.shots[n].facts.peak_strain;
+  }
+  constexpr double kLeast = 0.01;
+  constexpr double kMost = 4.0;  // as of all that quiet parts are too short to show
+  const double known = noise_.times_jumps();
+  return std::max(kLeast, known * jumps_.times_seen({white.data(), size()}, sizes, kMost / known));
 }
 
 void WhiteResiduals::forget_whitener() {
@@ -221,14 +245,14 @@ double WhiteResiduals::power_over_known(std::size_t gauge, std::size_t bin,
   return (shown + std::max(0.0, open)) / known;
 }
 
-/// From frequency zero on, by gauge. @param white  of one shot
+/// From frequency zero on, by gauge. @param by_bin  of one shot
 std::vector<WhiteResiduals::Spectrum> WhiteResiduals::deviation_spectra(
-    std::span<const double> white) const {
+    std::span<const double> by_bin) const {
   const std::size_t bins = work_.front()->transforms.window_bins();
   std::vector<Spectrum> spectra(campaign_.gauges(), Spectrum(bins, 0.0));
   for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
     for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-      spectra[j][k + 1] = shares_.at(j, k, white);
+      spectra[j][k + 1] = shares_.at(j, k, by_bin);
     }
   }
   return spectra;
@@ -236,7 +260,7 @@ std::vector<WhiteResiduals::Spectrum> WhiteResiduals::deviation_spectra(
 
 std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const double> white) const {
   std::vector<std::vector<double>> list;
-  for (const Spectrum& spectrum : deviation_spectra(white)) {
+  for (const Spectrum& spectrum : deviation_spectra(by_bin(white))) {
     list.push_back(work_.front()->transforms.window_with(spectrum));
   }
   return list;
@@ -261,10 +285,11 @@ void WhiteResiduals::measure_signal() {
 
 std::vector<Complex> WhiteResiduals::source_spectrum(std::size_t shot, const Eigen::VectorXd& white,
                                                      std::size_t worker) {
+  const std::vector<double> joined = by_bin(white_of(shot, white));
   Spectrum source;
   work_[worker]->transforms.judge(spectra_[shot][campaign_.reference], source);
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
-    source[k] -= shares_.at(campaign_.reference, k, white_of(shot, white));
+    source[k] -= shares_.at(campaign_.reference, k, joined);
   }
   return source;
 }

@@ -9,6 +9,7 @@
 #include "processing/criticism/fitting/known_departures.hpp"
 #include "processing/criticism/fitting/residuals.hpp"
 #include "processing/criticism/noise/whitener.hpp"
+#include "processing/criticism/noise/window_jumps.hpp"
 
 namespace kolsky {
 
@@ -47,11 +48,13 @@ struct WhiteResiduals::Workspace {
   CarriedNoise::Memory carried_noise;                  ///< through these responses
   std::vector<CarriedBin> bins;                        ///< the same
   Whitener whitener;
+  WindowJumps jumps;
 
   Workspace(const Campaign& campaign, const JudgedBand& band, const GaugeNoise& noise)
       : transforms(band, campaign.period_s),
         departures(campaign.shots.size()),
-        whitener(noise, campaign.gauges(), campaign.reference) {}
+        whitener(noise, campaign.gauges(), campaign.reference),
+        jumps(campaign.reference) {}
 };
 
 }  // namespace kolsky

@@ -43,7 +43,8 @@ WhiteResiduals::WhiteResiduals(const Campaign& campaign, double band_limit_Hz, s
     : campaign_(campaign),
       band_(judged_band(campaign, band_limit_Hz)),
       noise_(campaign, band_),
-      usual_(mean_of(campaign.shots)) {
+      usual_(mean_of(campaign.shots)),
+      jumps_(campaign.reference) {
   for (std::size_t j = 0; j < campaign.gauges(); ++j) {
     if (j != campaign.reference) {
       others_.push_back(j);
@@ -159,6 +160,7 @@ void WhiteResiduals::know_noise(Workspace& work, const Composition& composition,
   }
   carry_noise(work, usual_ratios(work, composition, effects));
   work.whitener.know(work.bins);
+  work.jumps.know(noise_, work.whitener, work.bins);
   work.on_noise = effects;
 }
 
@@ -219,6 +221,7 @@ void WhiteResiduals::whiten_shots(const Composition& composition, const std::vec
 
 /// What is in `work.residuals`, with the noise as known there.
 void WhiteResiduals::whiten_shot(Workspace& work, double*& next) const {
+  const std::span<double> shot{next, per_shot()};
   const auto rows = static_cast<Eigen::Index>(others_.size());
   Eigen::VectorXcd r(rows);
   Eigen::VectorXcd white(rows);
@@ -236,6 +239,7 @@ void WhiteResiduals::whiten_shot(Workspace& work, double*& next) const {
       *next++ = white[i].imag();
     }
   }
+  work.jumps.take_out(shot);
 }
 
 double WhiteResiduals::taken_by_noise(const Composition& composition,

@@ -9,6 +9,7 @@
 #include "processing/criticism/fitting/shot_residuals.hpp"
 #include "processing/criticism/fitting/specimen_response.hpp"
 #include "processing/criticism/noise/gauge_noise.hpp"
+#include "processing/criticism/noise/window_jumps.hpp"
 #include "processing/criticism/records/campaign.hpp"
 #include "processing/criticism/records/judged_band.hpp"
 #include "processing/models/transfers.hpp"
@@ -199,13 +200,15 @@ class WhiteResiduals : public ShotResiduals {
   void measure_signal();
   [[nodiscard]] std::span<const double> white_of(std::size_t shot,
                                                  const Eigen::VectorXd& white) const;
-  [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> white) const;
+  [[nodiscard]] std::vector<double> by_bin(std::span<const double> white) const;
+  [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> by_bin) const;
   [[nodiscard]] std::span<const double> own_noise(Workspace& work, std::size_t shot,
                                                   std::size_t gauge,
                                                   std::span<const double> shares = {}) const;
   void know_source_noise(Workspace& work);
   [[nodiscard]] std::vector<double> shares_of_noise() const;
   void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
+  [[nodiscard]] double times_jumps(const Eigen::VectorXd& white) const;
   void forget_whitener();
   [[nodiscard]] double power_over_known(std::size_t gauge, std::size_t bin,
                                         const std::vector<std::vector<Spectrum>>& noise,
@@ -229,7 +232,8 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<std::vector<Spectrum>> spectra_;  ///< at the carried bins, by shot and gauge
   ShotFacts usual_;  ///< the shots' mean: how noise is carried differs too little between them
   GaugeShares shares_;
-  Eigen::VectorXd frozen_;              ///< whitened residuals as frozen; none before
+  WindowJumps jumps_;                   ///< as frozen
+  Eigen::VectorXd frozen_;              ///< residuals as frozen, white by bin; none before
   std::vector<Spectrum> source_noise_;  ///< by shot, as frozen, at the carried bins
   std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;

@@ -184,6 +184,8 @@ void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
   // Sums over the decimated window: its samples are the noise's, its power d times less of them.
   const double window = static_cast<double>(band_.judged) / static_cast<double>(band_.decimation);
   const auto samples_judged = static_cast<double>(band_.judged * band_.decimation);
+  correlation_ = correlation;
+  leaked_.assign(spectra.size(), std::vector<double>(band_.bins_judged, 0.0));
   for (std::size_t k = 0; k < band_.bins_judged; ++k) {
     const double cycles = band_.frequency_Hz(k) * campaign_.period_s;
     Eigen::VectorXd amplitude(static_cast<Eigen::Index>(spectra.size()));
@@ -191,6 +193,9 @@ void GaugeNoise::measure(const std::vector<NoiseSpectrum>& spectra,
       amplitude[static_cast<Eigen::Index>(j)] =
           std::sqrt(window * std::max(spectra[j].power_within(cycles, samples_judged),
                                       least_power(campaign_, j)));
+      leaked_[j][k] = window * std::max(0.0, spectra[j].power_within(cycles, samples_judged) -
+                                                 spectra[j].power(cycles));
+      jumps_ = jumps_ || leaked_[j][k] > 0.0;
     }
     quiet_.emplace_back(amplitude.asDiagonal() * correlation * amplitude.asDiagonal());
   }
@@ -241,6 +246,7 @@ void GaugeNoise::carry(std::span<const std::vector<double>> responses, CarriedNo
 
 void GaugeNoise::forget() {
   but_steps_.clear();
+  times_jumps_ = 1.0;
   scale_.assign(campaign_.gauges(), std::vector<double>(band_.bins_judged, 1.0));
 }
 

@@ -40,6 +40,19 @@ class GaugeNoise {
   }
   /// Whether any other has a part of this gauge's noise.
   [[nodiscard]] bool shared_with(std::size_t gauge) const;
+  [[nodiscard]] std::size_t gauges() const { return scale_.size(); }
+  /// How far gauges share their noise.
+  [[nodiscard]] const Eigen::MatrixXd& correlation() const { return correlation_; }
+  /// Of a gauge's power at a bin what slow noise leaks for differing between the window's ends.
+  [[nodiscard]] double leaked(std::size_t gauge, std::size_t bin) const {
+    const Scales& scale = knows_steps() ? but_steps_ : scale_;
+    return times_jumps_ * scale[gauge][bin] * leaked_[gauge][bin];
+  }
+  /// Whether any gauge's does.
+  [[nodiscard]] bool jumps() const { return jumps_; }
+  /// How many times as much of that residuals show as the quiet parts foretell: 1 before they do.
+  [[nodiscard]] double times_jumps() const { return times_jumps_; }
+  void keep_times_jumps(double times) { times_jumps_ = times; }
   /// That of one gauge.
   [[nodiscard]] double power(std::size_t gauge, std::size_t bin) const;
   /// That over what the quiet parts say.
@@ -106,7 +119,11 @@ class GaugeNoise {
 
   const Campaign& campaign_;
   JudgedBand band_;
-  std::vector<Eigen::MatrixXd> quiet_;      ///< by bin
+  std::vector<Eigen::MatrixXd> quiet_;  ///< by bin
+  Eigen::MatrixXd correlation_;
+  std::vector<std::vector<double>> leaked_;  ///< by gauge and bin, of quiet_
+  bool jumps_ = false;
+  double times_jumps_ = 1.0;
   std::vector<std::vector<double>> scale_;  ///< by gauge and bin
   Scales but_steps_;                        ///< the same before steps were added; empty: none were
   std::unique_ptr<CarriedNoise> carried_;
