@@ -28,6 +28,7 @@ void WhiteResiduals::freeze(const Composition& composition, const std::vector<do
     jumps_.put_in({white.data() + n * per_shot(), per_shot()});
   }
   frozen_ = std::move(white);
+  know_gauge_noise(work, composition, theta);
   know_source_noise(work);
 }
 
@@ -41,7 +42,7 @@ void WhiteResiduals::know_source_noise(Workspace& work) {
   const std::vector<double> shares = shares_of_noise();
   std::vector<double> record(campaign_.shots.front().strain[campaign_.reference].size());
   for (std::size_t n = 0; n < campaign_.shots.size(); ++n) {
-    std::ranges::copy(own_noise(work, n, campaign_.reference, shares),
+    std::ranges::copy(shared_out(work, n, campaign_.reference, shares),
                       record.begin() + static_cast<std::ptrdiff_t>(band_.begin));
     work.transforms.carry(record, source_noise_.emplace_back());
   }
@@ -94,7 +95,7 @@ bool WhiteResiduals::know_steps() {
 
 std::vector<double> WhiteResiduals::signal(std::size_t shot, std::size_t gauge) {
   Workspace& work = *work_.front();
-  const std::span<const double> noise = own_noise(work, shot, gauge);
+  const std::span<const double> noise = shared_out(work, shot, gauge);
   std::vector<double> record = campaign_.shots[shot].strain[gauge];
   for (std::size_t n = 0; n < noise.size(); ++n) {
     record[band_.begin + n] -= noise[n];
@@ -130,12 +131,12 @@ std::vector<double> WhiteResiduals::by_bin(std::span<const double> white) const 
   return joined;
 }
 
-/// A gauge's noise over the judged window at the records' rate, as much of it as residuals show;
-/// until that worker's next transform.
+/// A gauge's noise over the judged window at the records' rate, as residuals are shared out bin by
+/// bin; until that worker's next transform.
 /// @param shares  of them by bin that count; empty: all
-std::span<const double> WhiteResiduals::own_noise(Workspace& work, std::size_t shot,
-                                                  std::size_t gauge,
-                                                  std::span<const double> shares) const {
+std::span<const double> WhiteResiduals::shared_out(Workspace& work, std::size_t shot,
+                                                   std::size_t gauge,
+                                                   std::span<const double> shares) const {
   Spectrum spectrum(band_.bins_judged + 1, 0.0);
   const auto rate = static_cast<double>(band_.decimation);
   for (std::size_t k = 0; k < band_.bins_judged && shares_.known(); ++k) {
@@ -143,6 +144,47 @@ std::span<const double> WhiteResiduals::own_noise(Workspace& work, std::size_t s
         shares_.at(gauge, k, white_of(shot, frozen_)) * rate * (shares.empty() ? 1.0 : shares[k]);
   }
   return work.transforms.fine_window_with(spectrum);
+}
+
+/// What frozen residuals say of each gauge's noise: of the reference's their share, of any other
+/// what its record has beside the reference's without that, carried to it. Shared out bin by bin to
+/// all alike, a part of the noise would stay in the readings, and what bends these would find it in
+/// the residuals.
+void WhiteResiduals::know_gauge_noise(Workspace& work, const Composition& composition,
+                                      const std::vector<double>& theta) {
+  std::vector<std::vector<std::vector<double>>> noise(campaign_.shots.size());
+  const auto rate = static_cast<double>(band_.decimation);
+  std::vector<double> record(campaign_.shots.front().strain[campaign_.reference].size());
+  Spectrum of_reference;
+  Spectrum judged;
+  for (std::size_t n = 0; n < noise.size(); ++n) {
+    noise[n].resize(campaign_.gauges());
+    const std::span<const double> own = shared_out(work, n, campaign_.reference);
+    noise[n][campaign_.reference].assign(own.begin(), own.end());
+    std::ranges::copy(own, record.begin() + static_cast<std::ptrdiff_t>(band_.begin));
+    work.transforms.carry(record, of_reference);
+    find_residuals(work, composition, theta, n);
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      const std::size_t j = others_[i];
+      Spectrum& residual = work.residuals[i];
+      for (std::size_t k = 0; k < residual.size(); ++k) {
+        residual[k] = (residual[k] + work.ratios.reading[j][k] * of_reference[k]) *
+                      invertible(work.ratios.mean_at(k));
+      }
+      work.transforms.judge(residual, judged);
+      Spectrum spectrum(band_.bins_judged + 1, 0.0);
+      std::ranges::transform(judged, spectrum.begin() + 1,
+                             [&](Complex value) { return rate * value; });
+      const std::span<const double> other = work.transforms.fine_window_with(spectrum);
+      noise[n][j].assign(other.begin(), other.end());
+    }
+  }
+  gauge_noise_ = std::move(noise);
+}
+
+/// Over the judged window at the records' rate; nothing before `freeze`.
+std::span<const double> WhiteResiduals::own_noise(std::size_t shot, std::size_t gauge) const {
+  return gauge_noise_.empty() ? std::span<const double>{} : gauge_noise_[shot][gauge];
 }
 
 void WhiteResiduals::believe_quiet() {
@@ -210,7 +252,8 @@ double WhiteResiduals::times_jumps(const Eigen::VectorXd& white) const {
     sizes[static_cast<Eigen::Index>(n)] = campaign_.shots[n].facts.peak_strain;
   }
   constexpr double kLeast = 0.01;
-  constexpr double kMost = 4.0;  // as of all that quiet parts are too short to show
+  // More would be a hum's or a drift's, which jump, too.
+  constexpr double kMost = 1.0;
   const double known = noise_.times_jumps();
   return std::max(kLeast, known * jumps_.times_seen({white.data(), size()}, sizes, kMost / known));
 }

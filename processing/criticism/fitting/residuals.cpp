@@ -282,7 +282,7 @@ void WhiteResiduals::shape_records(Workspace& work, const std::vector<AppliedEff
       // What was bent follows from the reading without its noise: bent straight with the signal,
       // noise would shrink under every b > 0, and any record would ask for some.
       std::vector<double> read = work.shaped;
-      const std::span<const double> noise = own_noise(work, of_shot, j);
+      const std::span<const double> noise = own_noise(of_shot, j);
       for (std::size_t n = 0; n < noise.size(); ++n) {
         read[band_.begin + n] -= noise[n];
       }

@@ -202,9 +202,12 @@ class WhiteResiduals : public ShotResiduals {
                                                  const Eigen::VectorXd& white) const;
   [[nodiscard]] std::vector<double> by_bin(std::span<const double> white) const;
   [[nodiscard]] std::vector<Spectrum> deviation_spectra(std::span<const double> by_bin) const;
-  [[nodiscard]] std::span<const double> own_noise(Workspace& work, std::size_t shot,
-                                                  std::size_t gauge,
-                                                  std::span<const double> shares = {}) const;
+  [[nodiscard]] std::span<const double> shared_out(Workspace& work, std::size_t shot,
+                                                   std::size_t gauge,
+                                                   std::span<const double> shares = {}) const;
+  void know_gauge_noise(Workspace& work, const Composition& composition,
+                        const std::vector<double>& theta);
+  [[nodiscard]] std::span<const double> own_noise(std::size_t shot, std::size_t gauge) const;
   void know_source_noise(Workspace& work);
   [[nodiscard]] std::vector<double> shares_of_noise() const;
   void share_out_noise(const Eigen::VectorXd& white, NoiseShown shown);
@@ -235,6 +238,7 @@ class WhiteResiduals : public ShotResiduals {
   WindowJumps jumps_;                   ///< as frozen
   Eigen::VectorXd frozen_;              ///< residuals as frozen, white by bin; none before
   std::vector<Spectrum> source_noise_;  ///< by shot, as frozen, at the carried bins
+  std::vector<std::vector<std::vector<double>>> gauge_noise_;     ///< by shot and gauge, as frozen
   std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;

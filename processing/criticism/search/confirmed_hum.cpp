@@ -62,6 +62,9 @@ std::optional<Studied> confirmed_hum(Study& study, const Studied& studied) {
         best = std::move(own);
       }
     }
+    // The quiet holds it, too, and foretells as much noise that jumps.
+    study.residuals().calibrate(best->composition, best->fit.theta, NoiseShown::what_quiet_hides);
+    best = study.refit(*best);
     if (best->fit.converged && std::isfinite(best->fit.objective()) &&
         own_strengths_confirmed(*best, kHum, campaign, Claim::fresh)) {
       return best;

@@ -196,7 +196,11 @@ void Chooser::prefer_library(const Found& found, Places& places) const {
 bool Chooser::sound(const Found& found, std::size_t i) const {
   const Refit& refit = found.refits[i];
   const Certification& own = found.held_out[i];
-  const bool foretells_most = confirmed_otherwise(refit) || (own.gain > 0.0 && own.share > 0.5);
+  // What each shot has its own of, few have much of, and the rest say nothing of.
+  constexpr double kMost = 0.5;
+  const bool of_shots_own = fitted_use(found.search, refit).per_shot;
+  const bool foretells_most =
+      confirmed_otherwise(refit) || (own.gain > 0.0 && (of_shots_own || own.share > kMost));
   constexpr double kSlack = 1.5;
   return (!options_.safeguards.held_out || foretells_most) &&
          !beyond_belief(refit.studied, id_of(found.search, refit), study_.campaign(), kSlack);

@@ -274,8 +274,11 @@ std::vector<std::string> why_unknown(const Diagnosis& diagnosis, const Studied& 
       reasons.push_back(repeats_text(remains->common_log_p));
     }
     if (apart) {
-      const bool surer = remains->apart.log_p < remains->common_log_p;
-      reasons.insert(surer ? reasons.begin() : reasons.end(), apart_text(remains->apart, campaign));
+      // It says where to look: about as sure, it comes first.
+      constexpr double kAbout = 0.9;
+      const bool as_sure = remains->apart.log_p < kAbout * remains->common_log_p;
+      reasons.insert(as_sure ? reasons.begin() : reasons.end(),
+                     apart_text(remains->apart, campaign));
     }
   }
   if (const CandidateResult* own = surest_rejected(diagnosis, explained)) {

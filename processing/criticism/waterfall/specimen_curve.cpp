@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "processing/criticism/waterfall/waterfall.hpp"
 #include "processing/waves/transform.hpp"
@@ -9,9 +10,12 @@ namespace kolsky {
 namespace {
 
 constexpr double kLoading_s = 100e-6;
-constexpr std::size_t kLoaded = 512;           ///< steps of the loading
-constexpr std::size_t kSamples = 2 * kLoaded;  ///< what is cut off at the end rings at the cut
-constexpr std::size_t kShownSteps = 64;        ///< of these, equal ones
+constexpr std::size_t kLoaded = 1024;  ///< steps of the loading
+/// Until then it goes on, and as slowly back, for a strain that ended at once would ring in all of
+/// it; then the specimen rests.
+constexpr std::size_t kTurns = kLoaded + kLoaded / 4;
+constexpr std::size_t kSamples = 8 * kLoaded;
+constexpr std::size_t kShownSteps = 64;  ///< of these, equal ones
 constexpr std::size_t kShown = kShownSteps + 1;
 static_assert(kLoaded % kShownSteps == 0);
 constexpr int kRounds = 30;
@@ -37,9 +41,9 @@ class RampTest {
     for (std::size_t k = 0; k < path_.size(); ++k) {
       path_[k] = transform_.s(k);
     }
-    for (std::size_t n = 0; n < kSamples; ++n) {
-      strain_[n] =
-          strain_rate_per_s * kLoading_s * static_cast<double>(n) / static_cast<double>(kLoaded);
+    for (std::size_t n = 0; n < 2 * kTurns; ++n) {
+      strain_[n] = strain_rate_per_s * kLoading_s *
+                   static_cast<double>(std::min(n, 2 * kTurns - n)) / static_cast<double>(kLoaded);
     }
   }
 
@@ -51,7 +55,7 @@ class RampTest {
     shape(studied.composition.applied(theta, 0), scene);
     const SpecimenScene& specimen = *scene.specimen;
     for (std::size_t k = 0; k < path_.size(); ++k) {
-      ratio_[k] = 1.0 / specimen.solid.compliance(path_[k], k);
+      ratio_[k] = soften(k) / specimen.solid.compliance(path_[k], k);
     }
     std::vector<double> stress = answer(strain_);
     for (int round = 0; specimen.stiffening != 0.0 && round < kRounds; ++round) {
@@ -74,6 +78,13 @@ class RampTest {
   }
 
  private:
+  /// Lanczos' factor: a dashpot's stress steps where the loading begins, and would ring there.
+  [[nodiscard]] double soften(std::size_t k) const {
+    const double x =
+        std::numbers::pi * static_cast<double>(k) / static_cast<double>(transform_.bins());
+    return k == 0 ? 1.0 : std::sin(x) / x;
+  }
+
   std::vector<double> answer(const std::vector<double>& strain) {
     std::vector<Complex> spectrum(transform_.bins());
     transform_.forward(strain, spectrum);

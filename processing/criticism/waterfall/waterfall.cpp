@@ -196,6 +196,9 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
     step.removed = lineage[i].removed;
     step.misfit = studied.misfit;
     step.numbers = material_of(own[i]);
+    if (const EffectUse* use = step.removed ? nullptr : own[i].model.find(step.effect)) {
+      step.strengths = strengths_of(own[i], *use);
+    }
     take_drop(step, left, i == 0 ? nullptr : &before, all);
     step.curve = specimen_curve(own[i], study.campaign(), fall.strain_rate_per_s);
     fall.steps.push_back(std::move(step));
@@ -206,12 +209,6 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
       floor_of(last, rest.repeatable_log_p < kFalseClaim ? Left::more : Left::noise, fall.shots);
   fall.signal = study.residuals().signal_energy() / all;
   fall.repeats = rest.repeatable_share * fall.signal;
-  for (WaterfallStep& made : fall.steps) {
-    const EffectUse* use = made.removed ? nullptr : last.model.find(made.effect);
-    if (use != nullptr) {
-      made.strengths = strengths_of(last, *use);
-    }
-  }
   fall.last_beside_quiet = judged(study, last).misfit.chi2_reduced;
   return fall;
 }

@@ -57,7 +57,7 @@ struct WaterfallStep {
   Misfit misfit;           ///< of all shots, all of them fitted
   /// As the model's own fit has them, deviations widened by what it leaves.
   std::vector<MovedNumber> numbers;
-  std::vector<MovedNumber> strengths;  ///< of the effect put in, as the last model has them
+  std::vector<MovedNumber> strengths;  ///< of the effect put in, as this model has them
   SpecimenCurve curve;                 ///< empty where there is no specimen
   std::vector<SpeedMisfit> speeds;     ///< empty where no ball strikes
 };

@@ -252,5 +252,25 @@ TEST(SpecimenCurve, IsThatOfTheLawSteppedThroughTime) {
   }
 }
 
+// A fit may end where the spring in series is rigid: then stress is that of the other two from the
+// first moment on.
+TEST(SpecimenCurve, BeginsAtOnceWhereTheSpringInSeriesIsRigid) {
+  const Made made = make(31, {}, true);
+  Study study(made.campaign, 0.0, Workers{});
+  constexpr double kRate = 2400.0;
+  constexpr double kE2_Pa = 4e8;
+  constexpr double kEta2_Pa_s = 3e5;
+  Model model = paper_with({}, BenchKind::shpb);
+  auto& law = model.find("three-element-specimen")->values;
+  law[0].value = 1e13;
+  law[1].value = kE2_Pa;
+  law[2].value = kEta2_Pa_s;
+  const SpecimenCurve curve = specimen_curve(study.as_it_is(model), made.campaign, kRate);
+  for (std::size_t i = 1; i < curve.strain.size(); ++i) {
+    const double truth = kE2_Pa * curve.strain[i] + kEta2_Pa_s * kRate;
+    EXPECT_NEAR(curve.stress_Pa[i], truth, 2e-3 * truth) << i;
+  }
+}
+
 }  // namespace
 }  // namespace kolsky
