@@ -82,9 +82,16 @@ int run(const Settings& settings, Context& context) {
     context.out << fmt::format("left out, for no gauge is called so: {}\n", columns);
   }
   if (const auto off = shot.meta.find(kInterpolatedFrom); off != shot.meta.end()) {
+    const double samples = std::stod(off->second);
+    const bool rate_is_another = samples > 1.0;
     context.out << fmt::format(
-        "the table's times are up to {:.2g} of a sample off even ones: values are interpolated\n",
-        std::stod(off->second));
+        "the table's times are up to {:.2f} samples off even ones{}: values are interpolated\n",
+        samples,
+        rate_is_another ? fmt::format(" at {} (by {:.2g} % at the end; is the bench's "
+                                      "sampling_frequency_Hz that of this table?)",
+                                      with_unit(shot.rate.Hz(), "Hz"),
+                                      100.0 * samples / static_cast<double>(shot.samples()))
+                        : "");
   }
   return kDone;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "clients/cli/reports/criticism_text.hpp"
+#include "clients/cli/reports/model_text.hpp"
 
 namespace kolsky::cli {
 
@@ -208,7 +209,12 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += fmt::format("  held-out misfit {:.4f} -> {:.4f}, {} {:.4f}{}\n", held_out.before,
                       held_out.after, floor_name(held_out.floor), held_out.floor,
                       judged_text(diagnosis.before));
-  text += notes_text(diagnosis) + candidates_text(diagnosis);
+  text += notes_text(diagnosis);
+  if (const std::string strained = strained_list(*diagnosis.model); !strained.empty()) {
+    text += "  strained, in filed deviations: " + strained +
+            ": not as filed, or in place of what is missing\n";
+  }
+  text += candidates_text(diagnosis);
   for (const NextExperiment& next : diagnosis.next_experiment) {
     text += "\n  next: " + next.change + "\n" + separates_text(next);
   }

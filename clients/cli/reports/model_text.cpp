@@ -201,13 +201,18 @@ JsonValue describe_strained(const Model& model) {
   return list;
 }
 
-std::string strained_text(const Model& model) {
+std::string strained_list(const Model& model) {
   std::string text;
   for (const Strained& number : strained_numbers(model)) {
     text += fmt::format("{}{} {:+.1f}", text.empty() ? "" : ", ", number.name, number.deviations);
   }
-  return text.empty() ? ""
-                      : "strained, in filed deviations: " + text +
+  return text;
+}
+
+std::string strained_text(const Model& model) {
+  const std::string list = strained_list(model);
+  return list.empty() ? ""
+                      : "strained, in filed deviations: " + list +
                             "\nthey are not as filed, or stand in for what the model lacks; "
                             "`kolsky diagnose` tells which\n";
 }

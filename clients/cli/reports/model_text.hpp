@@ -49,7 +49,9 @@ struct Declared {
 /// Whether there are any.
 [[nodiscard]] bool is_strained(const Model& model);
 
-/// The same in a line for people; empty where there are none.
+/// The same for people, one after the other; empty where there are none.
+[[nodiscard]] std::string strained_list(const Model& model);
+/// With what it means, in lines of their own.
 [[nodiscard]] std::string strained_text(const Model& model);
 
 /// Numbers that a fit moved to the end of what they may be.

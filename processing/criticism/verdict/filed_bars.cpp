@@ -62,26 +62,33 @@ std::optional<Model> with_bars_of_any_moduli(const Model& model, const Bench& be
 
 std::string other_bars_text(const Model& model, const Model& fitted, OtherBars bars) {
   std::string moduli;
-  const auto add = [&](const std::string& text) { moduli += (moduli.empty() ? "" : ", ") + text; };
+  // A number that is less than two of its deviations says nothing of a bar.
+  const auto add = [&](const std::string& name, double change, double sd) {
+    constexpr double kKnown = 2.0;
+    if (std::abs(change) > kKnown * sd) {
+      moduli += (moduli.empty() ? "" : ", ") + change_text(name, change, sd);
+    }
+  };
   for (const std::string id : kViscoelastic) {
     const EffectUse* filed = model.find(id);
     const EffectUse* found = fitted.find(id);
     for (std::size_t p = 0; filed != nullptr && p < filed->values.size(); ++p) {
       const ModelValue& own = filed->values[p];
       const double value = own.prior_sd > 0.0 ? own.prior_mean : own.value;
-      add(change_text(filed->effect->about().parameters[p].name,
-                      found->values[p].value / value - 1.0, found->values[p].sd / value));
+      add(filed->effect->about().parameters[p].name, found->values[p].value / value - 1.0,
+          found->values[p].sd / value);
     }
   }
   for (const std::string id : kElastic) {
     if (const EffectUse* found = fitted.find(id)) {
-      add(change_text(id, found->values[0].value, found->values[0].sd));
+      add(id, found->values[0].value, found->values[0].sd);
     }
   }
   const bool identified = std::ranges::any_of(
       kViscoelastic, [&](const std::string& id) { return model.find(id) != nullptr; });
   return std::string("bars of other moduli than filed explain ") +
-         (bars == OtherBars::explain_more ? "more of it (" : "nearly as much (") + moduli + "): " +
+         (bars == OtherBars::explain_more ? "more of it (" : "nearly as much (") +
+         (moduli.empty() ? "these records do not tell which" : moduli) + "): " +
          (identified ? "identify the bars again, at the shots' temperature"
                      : "measure their wave speed (`kolsky calibrate`); a modulus or density that "
                        "is filed without a deviation counts as exact");
