@@ -9,12 +9,10 @@
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/beside_rounding.hpp"
 #include "processing/criticism/search/candidates.hpp"
-#include "processing/criticism/search/safeguards.hpp"
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/search/slow_weights.hpp"
 #include "processing/criticism/verdict/departure.hpp"
 #include "processing/criticism/verdict/distortion.hpp"
-#include "processing/criticism/verdict/refits.hpp"
 #include "processing/criticism/verdict/single_shots.hpp"
 #include "processing/criticism/verdict/wander.hpp"
 
@@ -248,11 +246,6 @@ Unexplained in_distortions(const Extended& extended, std::size_t per_shot, std::
   return {combined(log_p, by_kind), 0.0, std::max(0.0, found / noise.power - freedom)};
 }
 
-double with_own_readings(const Unexplained& left) {
-  return combined_log_p(std::array{left.common_log_p, left.apart.log_p},
-                        std::array{kInCommon, kOfOwnReadings});
-}
-
 Unexplained unexplained_by(Study& study, const Studied& studied, const Distortions& unit) {
   const Extended extended = clear_columns(studied, unit);
   const std::size_t per_shot = study.residuals().per_shot();
@@ -269,7 +262,8 @@ Unexplained unexplained_by(Study& study, const Studied& studied, const Distortio
   constexpr std::array weights{kOfDistortions / kInCommon, kOfRepeats / kInCommon,
                                kOfOwnNumbers / kInCommon, kOfAll / kInCommon};
   left.common_log_p = combined_log_p(log_ps, weights);
-  left.log_p = with_own_readings(left);
+  left.log_p = combined_log_p(std::array{left.common_log_p, left.apart.log_p},
+                              std::array{kInCommon, kOfOwnReadings});
   return left;
 }
 
@@ -325,57 +319,6 @@ Unexplained unexplained_by_noise(Study& study, const Studied& studied, const Dis
   return left;
 }
 
-/// Each shot's waves as the model has them, with what another shot's records hold beside them. What
-/// shots have in common goes, for every second comes with its sign turned.
-Campaign in_noise_of_others(Study& study, std::size_t further) {
-  Campaign campaign = study.campaign();
-  const std::size_t shots = campaign.shots.size();
-  for (std::size_t n = 0; n < shots; ++n) {
-    const std::size_t other = (n + further) % shots;
-    const double sign = n % 2 == 0 ? 1.0 : -1.0;
-    for (std::size_t j = 0; j < campaign.gauges(); ++j) {
-      const std::vector<double>& read = study.campaign().shots[other].strain[j];
-      const std::vector<double> clean = study.residuals().signal(other, j);
-      std::vector<double>& record = campaign.shots[n].strain[j];
-      record = study.residuals().signal(n, j);
-      for (std::size_t i = 0; i < std::min(record.size(), read.size()); ++i) {
-        record[i] += sign * (read[i] - clean[i]);
-      }
-    }
-  }
-  return campaign;
-}
-
-/// The same of records that lack nothing, their noise learned as theirs is.
-Unexplained left_by_chance(Study& study, const Studied& studied, std::size_t further) {
-  const Campaign campaign = in_noise_of_others(study, further);
-  Study drawn(campaign, study.residuals().band().limit_Hz, study.executor());
-  Composition composition(studied.model, campaign);
-  const std::vector<double> theta = carry(studied.composition, studied.fit.theta, composition);
-  drawn.residuals().freeze(composition, theta);
-  drawn.residuals().calibrate(composition, theta);
-  const Studied fitted = begun_at(drawn, studied.model, theta);
-  return unexplained_by_noise(drawn, fitted, unit_columns(drawn, fitted));
-}
-
-/// Distortions which the source or the model takes up but for next to nothing are made of the noise
-/// in the records (a factor with s^2 at every gauge but a reference whose length is fitted), and
-/// find it in the residuals whether anything is missing or not. What sets shots apart stays in
-/// these draws, and is not judged by them.
-void allow_for_chance(Study& study, const Studied& studied, Unexplained& left) {
-  constexpr std::size_t kDraws = 3;
-  constexpr double kClear = 3.0;  // a mean of three that chance exceeds in 0.6 %
-  const std::size_t shots = study.campaign().shots.size();
-  Exaggerated common;
-  for (std::size_t further = 1; further <= std::min(kDraws, shots - 1); ++further) {
-    common.add(left_by_chance(study, studied, further).common_log_p);
-  }
-  if (common.times() > kClear) {
-    left.common_log_p /= common.times();
-    left.log_p = with_own_readings(left);
-  }
-}
-
 }  // namespace
 
 Unexplained unexplained(Study& study, const Studied& studied) {
@@ -383,9 +326,6 @@ Unexplained unexplained(Study& study, const Studied& studied) {
   Unexplained left = unexplained_by_noise(study, studied, unit);
   if (left.log_p < kOrdinary) {
     allow_for_rounding(study, studied, unit, left);
-  }
-  if (left.common_log_p < kFalseClaim && study.campaign().shots.size() > 2) {
-    allow_for_chance(study, studied, left);
   }
   return left;
 }
