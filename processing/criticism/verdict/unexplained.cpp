@@ -30,7 +30,6 @@ constexpr double kOfRepeats = 0.2;
 constexpr double kOfOwnNumbers = 0.1;
 constexpr double kOfOwnReadings = 0.1;
 constexpr double kOfAll = 0.1;
-constexpr double kInCommon = 1.0 - kOfOwnReadings;
 
 /// Chances (ln) that need no second look.
 constexpr double kOrdinary = -3.0;
@@ -259,6 +258,7 @@ Unexplained unexplained_by(Study& study, const Studied& studied, const Distortio
   const std::array log_ps{left.log_p, studied.misfit.repeatable_log_p,
                           log_p_of_own_numbers(studied, shots, per_shot, known),
                           log_p_of_all(studied.misfit, shots)};
+  constexpr double kInCommon = 1.0 - kOfOwnReadings;
   constexpr std::array weights{kOfDistortions / kInCommon, kOfRepeats / kInCommon,
                                kOfOwnNumbers / kInCommon, kOfAll / kInCommon};
   left.common_log_p = combined_log_p(log_ps, weights);

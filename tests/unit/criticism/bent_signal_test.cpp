@@ -58,7 +58,7 @@ Campaign passing_pulses(std::uint64_t seed) {
 }
 
 // Of e^2 at every gauge the source leaves nothing there but what is made of the gauges' noise,
-// which found itself in the residuals: 8 of 8 such campaigns were unknown.
+// which found itself in the residuals: each of these was unknown.
 TEST(BentSignals, AreNotMadeOfTheGaugesNoise) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Campaign campaign = passing_pulses(seed);
