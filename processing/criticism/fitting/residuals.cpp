@@ -417,6 +417,16 @@ Eigen::VectorXd WhiteResiduals::whiten_pulses(const Composition& composition,
   return white;
 }
 
+bool WhiteResiduals::only_carries(const Composition& composition,
+                                  const std::vector<double>& theta) const {
+  if (composition.changes_records() || composition.differs_by_shot()) {
+    return false;
+  }
+  Scene scene(campaign_.bench, campaign_.shots.front().facts, path());
+  shape(composition.applied(theta, 0), scene);
+  return !scene.specimen || !scene.specimen->nonlinear();
+}
+
 PlainResiduals WhiteResiduals::plain(const Composition& composition,
                                      const std::vector<double>& theta) {
   Workspace& work = *work_.front();

@@ -119,6 +119,10 @@ class WhiteResiduals : public ShotResiduals {
   /// reference gauge.
   [[nodiscard]] Eigen::VectorXd whiten_pulses(const Composition& composition,
                                               const std::vector<double>& theta, std::size_t worker);
+  /// Whether that is all they make of them: nothing is added to records, and the specimen carries
+  /// waves as linear ones do, alike in all shots.
+  [[nodiscard]] bool only_carries(const Composition& composition,
+                                  const std::vector<double>& theta) const;
   /// The residuals themselves. @param theta  as frozen
   [[nodiscard]] PlainResiduals plain(const Composition& composition,
                                      const std::vector<double>& theta);

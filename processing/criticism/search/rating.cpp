@@ -169,6 +169,28 @@ void Rating::weigh_beside_rounding(std::vector<Refit>& list) const {
   }
 }
 
+void Rating::weigh_by_pulses(std::vector<Refit>& list) const {
+  WhiteResiduals& residuals = ground_.study.residuals();
+  const auto pulses_of = [&](const Studied& own) {
+    return residuals.only_carries(own.composition, own.fit.theta)
+               ? residuals.whiten_pulses(own.composition, own.fit.theta, 0)
+               : Eigen::VectorXd();
+  };
+  const auto weighed = [&](const Refit& refit) { return with_search(refit.log_p) <= kOrdinary; };
+  if (ground_.far_off() || std::ranges::none_of(list, weighed)) {
+    return;
+  }
+  const Eigen::VectorXd without = pulses_of(ground_.base);
+  for (Refit& refit : list) {
+    if (weighed(refit)) {
+      refit.pulses = pulses_of(refit.studied);
+      const double share =
+          share_of_pulses(ground_.base.fit, without, refit.studied.fit, refit.pulses);
+      refit.log_p = std::max(refit.log_p, chance_of(refit, share * refit.gain));
+    }
+  }
+}
+
 void Rating::weigh_beside_slow_noise(std::vector<Refit>& list) const {
   const auto weighed = [&](const Refit& refit) {
     return with_search(refit.log_p) <= kOrdinary && !is_addition(*candidate_of(refit).use.effect);

@@ -32,6 +32,9 @@ class Rating {
   /// are judged by that noise already.
   void weigh_beside_slow_noise(std::vector<Refit>& list) const;
 
+  /// And as much by what it makes of the pulses: what it makes of the reference gauge's noise gains
+  /// by chance.
+  void weigh_by_pulses(std::vector<Refit>& list) const;
   /// Nor may what coarse converters leave gain as much.
   void weigh_beside_rounding(std::vector<Refit>& list) const;
   /// ln of the chance of a refit's gain on noise, as it is where coarse converters leave more in

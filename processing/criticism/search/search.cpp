@@ -49,6 +49,7 @@ std::vector<Refit> Search::refit_rivals() {
   if (safeguards_.slow_noise) {
     rating_.weigh_beside_slow_noise(list);
   }
+  rating_.weigh_by_pulses(list);
   rating_.weigh_beside_rounding(list);
   return list;
 }
