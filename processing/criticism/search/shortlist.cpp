@@ -1,6 +1,7 @@
 #include "processing/criticism/search/shortlist.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "processing/criticism/search/candidate_kinds.hpp"
 #include "processing/criticism/search/own_strengths.hpp"
+#include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/models/formula_strength.hpp"
 
 namespace kolsky {
@@ -55,16 +57,25 @@ class Shortlist {
   /// First-order ties can separate at finite size, the more so the larger the misfit.
   void add_near_the_best() {
     constexpr std::size_t kMostRefits = 14;
-    constexpr std::size_t kAlwaysRefits = 8;  // however far behind the first at first order
+    // However far behind the first at first order; additions to records, which can follow nearly
+    // anything slow there, stand in nobody's way.
+    constexpr std::size_t kAlwaysRefits = 8;
+    constexpr double kAlike = 0.99;  // two that first order does not tell apart go together
+    std::size_t others = 0;
+    double last = HUGE_VAL;
     for (const auto& [evidence, i] : ranked_) {
       const double best = ranked_.front().first;
       const double margin = std::max(25.0, 0.6 * best);
       // Far from the records, first order says little of what fits best.
       const bool near =
           evidence > best - margin ||
-          ((ground_.far_off() || chosen_.size() < kAlwaysRefits) && evidence > kWorthRefitting);
-      if (chosen_.size() < kMostRefits && near) {
+          ((ground_.far_off() || others < kAlwaysRefits) && evidence > kWorthRefitting);
+      if (evidence > kAlike * last) {
         add(i);
+      } else if (chosen_.size() < kMostRefits && near) {
+        add(i);
+        last = evidence;
+        others += is_addition(*ground_.candidates[i].use.effect) ? 0 : 1;
       }
     }
   }

@@ -64,6 +64,16 @@ TEST(EndReflection, IsFittedFarFromTheRecordsWhateverItsRank) {
   EXPECT_TRUE(fitted || search.dismissed().contains("end-reflection"));
 }
 
+// At first order a gauge nearer to the end and a longer bar are the same, and the one that came as
+// the ninth was not fitted: the other was named alone.
+TEST(GaugePosition, IsFittedBesideTheLengthThatIsTheSameAtFirstOrder) {
+  testing::Campaign truth = testing::draw_campaign(
+      {.seed = 10, .shots = 3, .gauges = 2, .noise_strain = 3e-6, .bits = 0, .split = true});
+  testing::hide(truth, testing::parse_effect("gauge-position:g1=-0.033"));
+  const std::vector<std::string> said = said_of(truth, filed_split_bar(truth));
+  EXPECT_NE(std::ranges::find(said, "gauge-position:g1"), said.end());
+}
+
 // What a relaxation has made of the moduli is not where they are with a dashpot beside it: begun
 // from there alone the dashpot stayed behind a fractional damping, which was named.
 TEST(SeriesDashpot, IsSoughtBesideARelaxationFromWhereTheModelBegan) {
