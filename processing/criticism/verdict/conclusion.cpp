@@ -13,6 +13,7 @@
 #include "processing/criticism/search/shot_strengths.hpp"
 #include "processing/criticism/verdict/at_bounds.hpp"
 #include "processing/criticism/verdict/claims.hpp"
+#include "processing/criticism/verdict/complement.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/doubts.hpp"
 #include "processing/criticism/verdict/loud_pulses.hpp"
@@ -119,6 +120,7 @@ void note_strengths(const Findings& found, const std::optional<SmallRest>& own,
 
 void settle(Study& study, const std::optional<SmallRest>& own, Findings& found) {
   Diagnosis& diagnosis = found.diagnosis;
+  tie_with_complement(study, found);
   settle_claims(diagnosis, found.current.model, [&](CandidateResult& result) {
     set_strength(found.current, result.effect, study.residuals().per_shot(), result);
     result.sd = std::hypot(result.sd, found.variants_differ[result.effect],

@@ -6,6 +6,7 @@
 #include "processing/criticism/search/search.hpp"
 #include "processing/criticism/verdict/choice.hpp"
 #include "processing/criticism/verdict/claims.hpp"
+#include "processing/criticism/verdict/complement.hpp"
 #include "processing/criticism/verdict/disbelief.hpp"
 #include "processing/criticism/verdict/going_back.hpp"
 #include "processing/criticism/verdict/parting.hpp"
@@ -52,6 +53,7 @@ class Seeker {
   bool seek() {
     bool gone_back = false;
     while (surprises(claims(), found_.current.model).size() < options_.most_effects) {
+      prefer_complement();
       const bool two = two_beside_the_bar();
       if (two && !gone_back && options_.safeguards.backward) {
         go_back(study_, options_, found_);
@@ -67,6 +69,15 @@ class Seeker {
       }
     }
     return false;
+  }
+
+  /// One by one, what was found at half of the gauges does not come to be at the others.
+  void prefer_complement() {
+    std::optional<Complement> complement =
+        options_.safeguards.backward ? complement_of(study_, found_) : std::nullopt;
+    if (complement && complement->ahead()) {
+      take_place(study_, options_, *std::move(complement), found_);
+    }
   }
 
   [[nodiscard]] Trail::Pair pair_here() const {
