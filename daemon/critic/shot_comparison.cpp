@@ -78,7 +78,7 @@ void compare_impact(const Campaign& campaign, const Model& model, v1::Comparison
 }
 
 void put_light(const Misfit& misfit, const LightRule& rule, v1::Comparison& message) {
-  const double excess = std::max(0.0, misfit.chi2_reduced - 1.0) * misfit.noise_floor_share;
+  const double excess = misfit.repeatable_share;
   message.set_excess_share(excess);
   message.set_rule(
       fmt::format("green: chi2/N up to {:g}; else amber up to {:g} of the signal's energy beyond "

@@ -7,6 +7,56 @@
 
 namespace kolsky {
 
+namespace {
+
+/// How much a spectrum's power is by itself, and how much of it follows the shots' sources.
+struct Followed {
+  double all = 0.0;
+  double followed = 0.0;
+};
+
+/// @param of_shot  the spectrum in a shot, at a bin
+template <typename OfShot>
+void add_followed(const std::vector<std::vector<Complex>>& sources, std::size_t bin,
+                  const OfShot& of_shot, Followed& sum) {
+  double power = 0.0;
+  Complex followed = 0.0;
+  for (std::size_t n = 0; n < sources.size(); ++n) {
+    const Complex own = of_shot(n);
+    power += std::norm(sources[n][bin]);
+    followed += own * std::conj(sources[n][bin]);
+    sum.all += std::norm(own);
+  }
+  sum.followed += std::norm(followed) / power;
+}
+
+/// Shares of the records' energy: of what shots leave, how much is noise that comes back in one of
+/// N shots, and how much more does.
+void set_shares(WhiteResiduals& residuals, const Eigen::VectorXd& white,
+                const std::vector<std::vector<Complex>>& sources, Misfit& misfit) {
+  const std::size_t shots = residuals.campaign().shots.size();
+  std::vector<std::vector<std::vector<Complex>>> deviations;
+  for (std::size_t n = 0; n < shots; ++n) {
+    deviations.push_back(residuals.deviation_bins(n, white));
+  }
+  Followed energy;
+  for (std::size_t k = 0; k < residuals.band().bins_judged; ++k) {
+    for (std::size_t j = 0; j < residuals.campaign().gauges(); ++j) {
+      add_followed(
+          sources, k, [&](std::size_t n) { return deviations[n][j][k]; }, energy);
+    }
+  }
+  const double of_records = residuals.energy_of_records();
+  const double quiet = residuals.energy_of_noise();
+  const auto count = static_cast<double>(shots);
+  const double noise = shots > 1 ? (energy.all - energy.followed) * count / (count - 1.0) : quiet;
+  misfit.noise_floor_share = noise / of_records;
+  misfit.scatter_share = std::max(0.0, noise - quiet) / of_records;
+  misfit.repeatable_share = std::max(0.0, energy.followed - noise / count) / of_records;
+}
+
+}  // namespace
+
 Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double degrees_of_freedom,
                  std::size_t worker) {
   Misfit misfit;
@@ -17,40 +67,31 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double
   const std::size_t shots = residuals.campaign().shots.size();
   const std::size_t others = residuals.others().size();
   const std::size_t bins = residuals.band().bins_judged;
-  const double energy = residuals.signal_energy();
-  misfit.noise_floor_share = degrees_of_freedom / energy;
-  if (shots < 2) {
-    misfit.noise_scale = misfit.chi2_reduced;
-    misfit.repeatable_share = std::max(0.0, chi2 - degrees_of_freedom) / energy;
-    return misfit;
-  }
   std::vector<std::vector<Complex>> sources;
   for (std::size_t n = 0; n < shots; ++n) {
     sources.push_back(residuals.source_spectrum(n, white, worker));
   }
-  const std::size_t per_shot = residuals.per_shot();
-  double repeated = 0.0;
+  set_shares(residuals, white, sources, misfit);
+  if (shots < 2) {
+    misfit.noise_scale = misfit.chi2_reduced;
+    misfit.repeats = std::max(0.0, chi2 - degrees_of_freedom);
+    return misfit;
+  }
+  Followed in_noise;
   for (std::size_t k = 0; k < bins; ++k) {
-    double power = 0.0;
-    for (std::size_t n = 0; n < shots; ++n) {
-      power += std::norm(sources[n][k]);
-    }
     for (std::size_t i = 0; i < others; ++i) {
-      Complex sum = 0.0;
-      for (std::size_t n = 0; n < shots; ++n) {
-        const auto at = static_cast<Eigen::Index>(n * per_shot + residuals.index(k, i));
-        sum += Complex(white[at], white[at + 1]) * std::conj(sources[n][k]);
-      }
-      repeated += std::norm(sum) / power;
+      const auto of_shot = [&](std::size_t n) {
+        const auto at = static_cast<Eigen::Index>(n * residuals.per_shot() + residuals.index(k, i));
+        return Complex(white[at], white[at + 1]);
+      };
+      add_followed(sources, k, of_shot, in_noise);
     }
   }
   const double repeated_freedom = 2.0 * static_cast<double>(bins * others);
   const double rest_freedom = std::max(1.0, degrees_of_freedom - repeated_freedom);
+  const double repeated = in_noise.followed;
   misfit.noise_scale = (chi2 - repeated) / rest_freedom;
-  misfit.scatter_share = std::max(0.0, misfit.noise_scale - 1.0) * misfit.noise_floor_share;
-  misfit.noise_floor_share *= misfit.noise_scale;
-  misfit.repeatable_share =
-      std::max(0.0, repeated - repeated_freedom * misfit.noise_scale) / energy;
+  misfit.repeats = std::max(0.0, repeated - repeated_freedom * misfit.noise_scale);
   misfit.repeatable_log_p =
       log_f_tail(repeated / repeated_freedom / misfit.noise_scale, repeated_freedom, rest_freedom);
   return misfit;

@@ -309,8 +309,30 @@ std::vector<std::vector<double>> WhiteResiduals::deviations(std::span<const doub
   return list;
 }
 
+std::vector<WhiteResiduals::Spectrum> WhiteResiduals::deviation_bins(
+    std::size_t shot, const Eigen::VectorXd& white) const {
+  const std::vector<double> joined = by_bin(white_of(shot, white));
+  std::vector<Spectrum> spectra(campaign_.gauges());
+  for (std::size_t j = 0; j < spectra.size(); ++j) {
+    for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+      spectra[j].push_back(shares_.at(j, k, joined));
+    }
+  }
+  return spectra;
+}
+
+double WhiteResiduals::energy_of_noise() const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < band_.bins_judged; ++k) {
+    // Real and imaginary parts of unit variance each.
+    sum += 2.0 * shares_.spread(k).squaredNorm();
+  }
+  return sum * static_cast<double>(campaign_.shots.size());
+}
+
 void WhiteResiduals::measure_signal() {
   double sum = 0.0;
+  double squares = 0.0;
   for (const std::vector<Spectrum>& of_shot : spectra_) {
     judged_records_.emplace_back();
     for (std::size_t j = 0; j < campaign_.gauges(); ++j) {
@@ -319,11 +341,14 @@ void WhiteResiduals::measure_signal() {
       const Eigen::Map<const Eigen::VectorXd> values(record.data(),
                                                      static_cast<Eigen::Index>(record.size()));
       sum += values.squaredNorm() / noise_.quiet_power(j);
+      squares += values.squaredNorm();
     }
   }
   // Noise of unit power has as many whitened residuals as its band has bins, twice.
   signal_energy_ =
       sum * 2.0 * static_cast<double>(band_.bins_judged) / static_cast<double>(band_.judged);
+  // Each bin stands for its negative frequency, too.
+  energy_of_records_ = squares * static_cast<double>(band_.judged) / 2.0;
 }
 
 std::vector<Complex> WhiteResiduals::source_spectrum(std::size_t shot, const Eigen::VectorXd& white,

@@ -154,6 +154,13 @@ class WhiteResiduals : public ShotResiduals {
                                                          std::size_t gauge) const {
     return judged_records_[shot][gauge];
   }
+  /// The same as spectra over the judged bins.
+  [[nodiscard]] std::vector<std::vector<Complex>> deviation_bins(
+      std::size_t shot, const Eigen::VectorXd& white) const;
+  /// Of all gauges and shots over the judged window and band, as squares of a spectrum's bins: the
+  /// records', and what noise as it is known leaves in the deviations.
+  [[nodiscard]] double energy_of_records() const { return energy_of_records_; }
+  [[nodiscard]] double energy_of_noise() const;
   /// Energy of all records over that of their noise, in the units of whitened residuals.
   [[nodiscard]] double signal_energy() const { return signal_energy_; }
   [[nodiscard]] double judged_period_s() const;
@@ -245,6 +252,7 @@ class WhiteResiduals : public ShotResiduals {
   std::vector<std::vector<std::vector<double>>> gauge_noise_;     ///< by shot and gauge, as frozen
   std::vector<std::vector<std::vector<double>>> judged_records_;  ///< by shot and gauge
   double signal_energy_ = 0.0;
+  double energy_of_records_ = 0.0;
   std::vector<std::unique_ptr<Workspace>> work_;
 };
 

@@ -208,7 +208,7 @@ Waterfall waterfall(Study& study, const std::vector<LineageStep>& lineage) {
   fall.floor =
       floor_of(last, rest.repeatable_log_p < kFalseClaim ? Left::more : Left::noise, fall.shots);
   fall.signal = study.residuals().signal_energy() / all;
-  fall.repeats = rest.repeatable_share * fall.signal;
+  fall.repeats = rest.repeats / all;
   fall.last_beside_quiet = judged(study, last).misfit.chi2_reduced;
   return fall;
 }

@@ -127,8 +127,7 @@ TEST_F(LiveModel, SaysOfAShotWhatCompareSaysOfItsCaptureToTheBit) {
     EXPECT_EQ(live["trend"].get<std::vector<double>>(), trend);
     // The rule, worked out anew.
     const double chi2 = live["misfit"]["chi2_reduced"];
-    const double excess =
-        std::max(0.0, chi2 - 1.0) * live["misfit"]["noise_floor_share"].get<double>();
+    const double excess = live["misfit"]["repeatable_share"];
     EXPECT_EQ(live["light"], chi2 <= 1.5 ? "green" : excess <= 1e-3 ? "amber" : "red");
     EXPECT_GT(live["duration_s"], 0.0);
   }
