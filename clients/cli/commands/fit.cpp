@@ -54,6 +54,11 @@ int run(const Settings& settings, Context& context) {
   file.model = studied.model;
   file.gauges = gauges_of(campaign.bench);
   const std::string kept = write_model(settings.output, file);
+  // What an impact leaves a calculation may leave, too.
+  const std::optional<std::string> doubtful =
+      file.model.kind == BenchKind::impact
+          ? std::nullopt
+          : doubtful_numbers_text(studied.misfit, campaign.shots.size());
   if (context.json) {
     JsonObject answer{{"model", settings.output},
                       {"parameters", describe_parameters(file.model)},
@@ -62,6 +67,7 @@ int run(const Settings& settings, Context& context) {
                       {"strained", describe_strained(file.model)},
                       {"at_bounds", describe_bounds(file.model)},
                       {"converged", studied.fit.converged},
+                      {"notes", doubtful ? JsonList{*doubtful} : JsonList{}},
                       {"parent", file.parent()}};
     add_kept(kept, answer);
     context.out << to_text(answer) << "\n";
@@ -70,7 +76,8 @@ int run(const Settings& settings, Context& context) {
   context.out << kept_text(settings.output, kept) << settings.output << "\n"
               << model_table(file.model) << misfit_text(studied.misfit)
               << in_words(studied.misfit, campaign.shots.size()) << "\n"
-              << strained_text(file.model) << bounds_text(file.model);
+              << strained_text(file.model) << bounds_text(file.model)
+              << (doubtful ? "note: " + *doubtful + "\n" : "");
   return kDone;
 }
 

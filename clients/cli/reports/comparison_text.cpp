@@ -85,6 +85,18 @@ std::string in_words(const Misfit& misfit, std::size_t shots) {
                                : ": next to nothing.");
 }
 
+std::optional<std::string> doubtful_numbers_text(const Misfit& misfit, std::size_t shots) {
+  constexpr double kChance = 1e-4;
+  constexpr double kOfOneShot = 2.0;  // how well its noise is known
+  const bool fits =
+      shots > 1 ? misfit.repeatable_log_p > std::log(kChance) : misfit.chi2_reduced < kOfOneShot;
+  if (fits) {
+    return std::nullopt;
+  }
+  return "the records hold more than this model: its numbers may stand in for what is missing, and "
+         "their deviations are by noise alone; `kolsky diagnose` looks for what that is";
+}
+
 JsonValue describe_tiles(const Comparison& comparison, const Campaign& campaign) {
   JsonList list;
   for (const Tile& tile : comparison.tiles) {

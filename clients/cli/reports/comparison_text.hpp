@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "clients/cli/reports/json_value.hpp"
@@ -14,6 +15,10 @@ namespace kolsky::cli {
 
 /// What a misfit's numbers mean, in a sentence or two.
 [[nodiscard]] std::string in_words(const Misfit& misfit, std::size_t shots);
+/// That a fit's numbers are less well known than their deviations say, where it leaves more than
+/// noise does; nothing where it does not.
+[[nodiscard]] std::optional<std::string> doubtful_numbers_text(const Misfit& misfit,
+                                                               std::size_t shots);
 
 /// Whether a good part of what counts as noise is that shots differ, so that it is told apart.
 [[nodiscard]] bool scatters(const Misfit& misfit);

@@ -230,6 +230,20 @@ TEST_F(SimulatedBar, KeepsAModelWithAHistoryWhoseNameANewOneTakes) {
   }
 }
 
+TEST_F(SimulatedBar, FitsNumbersThatMayStandInForWhatIsMissing) {
+  const auto notes = [&](const char* model) {
+    const std::string out = file("fitted.toml");
+    return json_of(kolsky({"fit", file("shots"), "--model", file(model), "-o", out, "--json"}))
+        .at("notes");
+  };
+  ASSERT_EQ(
+      kolsky({"model", "add", file("m.toml"), "channel-delay:g3", "-o", file("whole.toml")}).code,
+      0);
+  ASSERT_EQ(notes("m.toml").size(), 1U);
+  EXPECT_NE(notes("m.toml")[0].get<std::string>().find("by noise alone"), std::string::npos);
+  EXPECT_EQ(notes("whole.toml").size(), 0U);
+}
+
 TEST_F(SimulatedBar, KeepsAModelWithAHistoryThatAFitOfAnotherWouldReplace) {
   const std::string model = file("own.toml");
   const std::vector<std::string> fit{"fit", file("shots"), "--model", file("m.toml"), "-o", model};
