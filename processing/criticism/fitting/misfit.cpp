@@ -30,6 +30,34 @@ void add_followed(const std::vector<std::vector<Complex>>& sources, std::size_t 
   sum.followed += std::norm(followed) / power;
 }
 
+/// Chance (ln) that noise comes back so much, bin by bin: whatever noise each of them has.
+double log_p_by_bin(const std::vector<Followed>& bins, double freedom, double rest_freedom) {
+  double sum = 0.0;
+  for (const Followed& bin : bins) {
+    const double rest = (bin.all - bin.followed) / rest_freedom;
+    sum -= 2.0 * log_f_tail(bin.followed / freedom / rest, freedom, rest_freedom);
+  }
+  return log_chi2_tail(sum, 2.0 * static_cast<double>(bins.size()));
+}
+
+/// Whether what does not come back is not alike at all frequencies, as lines and lumps are that the
+/// quiet is too short to show: by the variance of its powers over what chance makes of it.
+bool is_uneven(const std::vector<Followed>& bins, double rest_freedom) {
+  constexpr double kDeviations = 6.0;
+  const auto count = static_cast<double>(bins.size());
+  double mean = 0.0;
+  for (const Followed& bin : bins) {
+    mean += (bin.all - bin.followed) / count;
+  }
+  double squares = 0.0;
+  for (const Followed& bin : bins) {
+    squares += std::pow((bin.all - bin.followed) / mean - 1.0, 2) * rest_freedom / 2.0;
+  }
+  // Of a chi-square over its mean q, (q - 1)^2 n/2 is 1 on average and 3 + 12/n squared.
+  const double variance = count * (2.0 + 12.0 / rest_freedom);
+  return squares > count + kDeviations * std::sqrt(variance);
+}
+
 /// Shares of the records' energy: of what shots leave, how much is noise that comes back in one of
 /// N shots, and how much more does.
 void set_shares(WhiteResiduals& residuals, const Eigen::VectorXd& white,
@@ -77,23 +105,32 @@ Misfit misfit_of(WhiteResiduals& residuals, const Eigen::VectorXd& white, double
     misfit.repeats = std::max(0.0, chi2 - degrees_of_freedom);
     return misfit;
   }
-  Followed in_noise;
+  std::vector<Followed> by_bin(bins);
   for (std::size_t k = 0; k < bins; ++k) {
     for (std::size_t i = 0; i < others; ++i) {
       const auto of_shot = [&](std::size_t n) {
         const auto at = static_cast<Eigen::Index>(n * residuals.per_shot() + residuals.index(k, i));
         return Complex(white[at], white[at + 1]);
       };
-      add_followed(sources, k, of_shot, in_noise);
+      add_followed(sources, k, of_shot, by_bin[k]);
     }
   }
   const double repeated_freedom = 2.0 * static_cast<double>(bins * others);
   const double rest_freedom = std::max(1.0, degrees_of_freedom - repeated_freedom);
-  const double repeated = in_noise.followed;
+  double repeated = 0.0;
+  for (const Followed& bin : by_bin) {
+    repeated += bin.followed;
+  }
   misfit.noise_scale = (chi2 - repeated) / rest_freedom;
   misfit.repeats = std::max(0.0, repeated - repeated_freedom * misfit.noise_scale);
   misfit.repeatable_log_p =
       log_f_tail(repeated / repeated_freedom / misfit.noise_scale, repeated_freedom, rest_freedom);
+  const double of_bin = 2.0 * static_cast<double>(others);
+  const double rest_of_bin = of_bin * static_cast<double>(shots - 1);
+  if (is_uneven(by_bin, rest_of_bin)) {
+    misfit.repeatable_log_p =
+        std::max(misfit.repeatable_log_p, log_p_by_bin(by_bin, of_bin, rest_of_bin));
+  }
   return misfit;
 }
 
