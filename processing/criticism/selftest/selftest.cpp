@@ -167,7 +167,9 @@ class Run {
   void add_nulls() {
     result_.nulls = options_.nulls;
     for (std::size_t i = 0; i < options_.nulls; ++i) {
-      cases_.push_back({.use = {}, .null = true, .seed = options_.seed + i});
+      // No two seeds share a campaign.
+      constexpr std::uint64_t kMostNulls = 10000;
+      cases_.push_back({.use = {}, .null = true, .seed = options_.seed * kMostNulls + i});
     }
   }
 
