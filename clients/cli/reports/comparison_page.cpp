@@ -10,6 +10,7 @@
 #include "clients/cli/reports/comparison_text.hpp"
 #include "clients/cli/reports/diagnosis_text.hpp"
 #include "clients/cli/reports/model_text.hpp"
+#include "clients/cli/reports/share_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "processing/criticism/search/confirmed_hum.hpp"
 
@@ -110,9 +111,8 @@ PageTable places(const Comparison& comparison, const Campaign& campaign) {
     }
     table.rows.push_back({campaign.bench.gauges[tile.gauge].name, tile.window,
                           band_text(comparison.bands[tile.band]), campaign.shots[tile.shot].id,
-                          fmt::format("{:.2g} %", 100.0 * tile.share),
-                          fmt::format("{:.3g}", tile.sigma),
-                          fmt::format("{:.2g} %", tile.percent_of_peak),
+                          share_text(tile.share), fmt::format("{:.3g}", tile.sigma),
+                          share_text(tile.percent_of_peak / 100.0),
                           fmt::format("{:.1f}", tile.log_p), tile.repeats ? "yes" : "no"});
   }
   return table;
@@ -310,10 +310,6 @@ std::string hidden_words(const Diagnosis& diagnosis) {
              : "";
 }
 
-std::string percent(double share) {
-  return fmt::format("{:.2g} %", 100.0 * share);
-}
-
 PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
   const HeldOut& held_out = diagnosis.held_out;
   const std::string misfit =
@@ -325,13 +321,14 @@ PageSection held_out_section(const Diagnosis& diagnosis, std::size_t shots) {
       {fmt::format("On {} that the fit did not see, chi-square per residual {}; {} leaves {:.4g}.",
                    shots > 1 ? "shots" : "parts of the one record", misfit,
                    floor_name(held_out.floor), held_out.floor)}};
-  section.tables.push_back(
-      {{"", "chi-square per degree of freedom", "repeats, share of the signal",
-        "noise, share of the signal"},
-       {{"before", fmt::format("{:.4g}", diagnosis.before.chi2_reduced),
-         percent(diagnosis.before.repeatable_share), percent(diagnosis.before.noise_floor_share)},
-        {"after", fmt::format("{:.4g}", diagnosis.after.chi2_reduced),
-         percent(diagnosis.after.repeatable_share), percent(diagnosis.after.noise_floor_share)}}});
+  section.tables.push_back({{"", "chi-square per degree of freedom", "repeats, share of the signal",
+                             "noise, share of the signal"},
+                            {{"before", fmt::format("{:.4g}", diagnosis.before.chi2_reduced),
+                              share_text(diagnosis.before.repeatable_share),
+                              share_text(diagnosis.before.noise_floor_share)},
+                             {"after", fmt::format("{:.4g}", diagnosis.after.chi2_reduced),
+                              share_text(diagnosis.after.repeatable_share),
+                              share_text(diagnosis.after.noise_floor_share)}}});
   return section;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clients/cli/reports/model_text.hpp"
+#include "clients/cli/reports/share_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"
 
@@ -61,22 +62,22 @@ std::string in_words(const Misfit& misfit, std::size_t shots) {
   const double floor = misfit.noise_floor_share;
   if (shots == 1) {
     return fmt::format(
-        "Of the signal's energy {:.2g} % is noise and {:.2g} % more than that is left unexplained; "
+        "Of the signal's energy {} is noise and {} more than that is left unexplained; "
         "whether it would come again one shot cannot say.",
-        100.0 * floor, 100.0 * misfit.repeatable_share);
+        share_text(floor), share_text(misfit.repeatable_share));
   }
   if (scatters(misfit)) {
     return fmt::format(
-        "Of the signal's energy {:.2g} % is noise; the model does not explain {:.2g} % that "
+        "Of the signal's energy {} is noise; the model does not explain {} that "
         "differs "
-        "from shot to shot and {:.2g} % that repeats.",
-        100.0 * (floor - misfit.scatter_share), 100.0 * misfit.scatter_share,
-        100.0 * misfit.repeatable_share);
+        "from shot to shot and {} that repeats.",
+        share_text(floor - misfit.scatter_share), share_text(misfit.scatter_share),
+        share_text(misfit.repeatable_share));
   }
   const std::string sizes = fmt::format(
-      "Of the signal's energy {:.2g} % is noise and {:.2g} % repeats from shot to shot without the "
+      "Of the signal's energy {} is noise and {} repeats from shot to shot without the "
       "model explaining it",
-      100.0 * floor, 100.0 * misfit.repeatable_share);
+      share_text(floor), share_text(misfit.repeatable_share));
   const double ratio = floor > 0.0 ? misfit.repeatable_share / floor : 0.0;
   if (ratio > 1.0) {
     return sizes + fmt::format(": {:.3g} times the noise.", ratio);

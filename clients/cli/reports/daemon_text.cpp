@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/cli/reports/share_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "proto/light.hpp"
 
@@ -139,8 +140,8 @@ std::string comparison_line(const v1::Comparison& comparison, bool colour) {
                                                               : Ink::doubtful;
   std::string text =
       "model: " + inked(wire::name_of(comparison.light()), ink, colour) +
-      fmt::format(", chi2/N {:.3g}, {:.2g} % of the signal beyond noise",
-                  comparison.misfit().chi2_reduced(), 100.0 * comparison.excess_share());
+      fmt::format(", chi2/N {:.3g}, {} of the signal beyond noise",
+                  comparison.misfit().chi2_reduced(), share_text(comparison.excess_share()));
   if (comparison.trend_size() > 1) {
     text += ", last shots";
     constexpr int kShown = 6;

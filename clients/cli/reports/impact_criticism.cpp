@@ -6,6 +6,7 @@
 
 #include "clients/cli/reports/candidates_page.hpp"
 #include "clients/cli/reports/comparison_text.hpp"
+#include "clients/cli/reports/share_text.hpp"
 #include "clients/terminal/plot.hpp"
 #include "processing/base/error.hpp"
 #include "processing/criticism/impact/impact_notes.hpp"
@@ -77,11 +78,11 @@ PageSection places_section(const ImpactComparison& comparison, const Campaign& c
       {}};
   for (const ImpactTile& tile : comparison.tiles) {
     if (tile.significant && table.rows.size() < 2 * kShown) {
-      table.rows.push_back(
-          {gauge_of(tile, campaign), tile.window, band_of(tile),
-           fmt::format("{:.1f}", speed_of(tile, campaign)), campaign.shots[tile.shot].id,
-           fmt::format("{:.2g} %", 100.0 * tile.share), fmt::format("{:.3g}", tile.sigma),
-           fmt::format("{:.2g} %", tile.percent_of_peak)});
+      table.rows.push_back({gauge_of(tile, campaign), tile.window, band_of(tile),
+                            fmt::format("{:.1f}", speed_of(tile, campaign)),
+                            campaign.shots[tile.shot].id, share_text(tile.share),
+                            fmt::format("{:.3g}", tile.sigma),
+                            share_text(tile.percent_of_peak / 100.0)});
     }
   }
   if (table.rows.empty()) {

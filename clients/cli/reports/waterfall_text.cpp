@@ -7,6 +7,7 @@
 
 #include "clients/cli/reports/criticism_text.hpp"
 #include "clients/cli/reports/model_text.hpp"
+#include "clients/cli/reports/share_text.hpp"
 #include "clients/figure/layout.hpp"
 #include "clients/terminal/plot.hpp"
 
@@ -352,12 +353,12 @@ std::string left_words(const Waterfall& fall) {
   }
   text += " What still repeats from shot to shot is ";
   text += fall.allowance.empty()
-              ? fmt::format("{:.2g} % of what noise leaves", 100.0 * fall.repeats / fall.floor)
+              ? share_text(fall.repeats / fall.floor) + " of what noise leaves"
               : fmt::format("{:.3g} times the noise, {} {}",
                             last.repeatable_share / last.noise_floor_share,
                             fall.within_allowance ? "within" : "more than", fall.allowance);
-  text += fmt::format(", and {:.2g} % of the signal's energy; noise is {:.2g} %.",
-                      100.0 * last.repeatable_share, 100.0 * last.noise_floor_share);
+  text += fmt::format(", and {} of the signal's energy; noise is {}.",
+                      share_text(last.repeatable_share), share_text(last.noise_floor_share));
   return scattered(fall) ? text + fmt::format(
                                       " Beside the noise before the pulses alone the last model "
                                       "leaves {:.4g} per degree of freedom: what differs from "
