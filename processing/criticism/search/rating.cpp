@@ -171,24 +171,29 @@ void Rating::weigh_beside_rounding(std::vector<Refit>& list) const {
 
 void Rating::weigh_by_pulses(std::vector<Refit>& list) const {
   WhiteResiduals& residuals = ground_.study.residuals();
-  const auto pulses_of = [&](const Studied& own) {
+  const auto pulses_of = [&](const Studied& own, std::size_t worker) {
     return residuals.only_carries(own.composition, own.fit.theta)
-               ? residuals.whiten_pulses(own.composition, own.fit.theta, 0)
+               ? residuals.whiten_pulses(own.composition, own.fit.theta, worker)
                : Eigen::VectorXd();
   };
-  const auto weighed = [&](const Refit& refit) { return with_search(refit.log_p) <= kOrdinary; };
-  if (ground_.far_off() || std::ranges::none_of(list, weighed)) {
-    return;
-  }
-  const Eigen::VectorXd without = pulses_of(ground_.base);
+  std::vector<Refit*> weighed;
   for (Refit& refit : list) {
-    if (weighed(refit)) {
-      refit.pulses = pulses_of(refit.studied);
-      const double share =
-          share_of_pulses(ground_.base.fit, without, refit.studied.fit, refit.pulses);
-      refit.log_p = std::max(refit.log_p, chance_of(refit, share * refit.gain));
+    if (with_search(refit.log_p) <= kOrdinary) {
+      weighed.push_back(&refit);
     }
   }
+  if (ground_.far_off() || weighed.empty()) {
+    return;
+  }
+  const Workers& executor = ground_.study.executor();
+  const Eigen::VectorXd without = pulses_of(ground_.base, executor.first);
+  executor.run(weighed.size(), [&](std::size_t i, std::size_t worker) {
+    Refit& refit = *weighed[i];
+    refit.pulses = pulses_of(refit.studied, worker);
+    const double share =
+        share_of_pulses(ground_.base.fit, without, refit.studied.fit, refit.pulses);
+    refit.log_p = std::max(refit.log_p, chance_of(refit, share * refit.gain));
+  });
 }
 
 void Rating::weigh_beside_slow_noise(std::vector<Refit>& list) const {
