@@ -11,6 +11,7 @@
 #include "processing/algebra/algebra.hpp"
 #include "processing/calibration/null_directions.hpp"
 #include "processing/calibration/part_model.hpp"
+#include "processing/criticism/fitting/share_of_pulses.hpp"
 #include "processing/criticism/fitting/study.hpp"
 #include "processing/criticism/records/judged_band.hpp"
 #include "processing/criticism/search/candidates.hpp"
@@ -196,18 +197,11 @@ class PartFit {
     Alone measured;
   };
 
-  /// The share of two explanations' difference that lies in what they make of the pulses. A free
-  /// source follows the reference gauge's noise to the end of the record, and each explanation
-  /// carries that noise to the other gauges in its own way: their sums of squares differ by chance,
-  /// with a variance of four times this difference, even where the pulses are the same to both.
-  [[nodiscard]] static double share_of_pulses(const Explanation& a, const Explanation& b) {
-    const double all = (a.white - b.white).squaredNorm();
-    return all > 0.0 ? std::min(1.0, (a.pulses - b.pulses).squaredNorm() / all) : 1.0;
-  }
+  [[nodiscard]] static LeftByFit left_by(const Explanation& own) { return {own.white, own.pulses}; }
 
   /// By how much the worse of two explanations is behind, as far as the records can tell.
   [[nodiscard]] static double lag(const Explanation& worse, const Explanation& better) {
-    const double chance = (1.0 - share_of_pulses(worse, better)) *
+    const double chance = (1.0 - share_of_pulses(left_by(worse), left_by(better))) *
                           (worse.white.squaredNorm() - better.white.squaredNorm());
     return worse.objective - better.objective - chance;
   }

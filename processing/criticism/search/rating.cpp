@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "processing/criticism/fitting/share_of_pulses.hpp"
 #include "processing/criticism/fitting/statistics.hpp"
 #include "processing/criticism/search/beside.hpp"
 #include "processing/criticism/search/beside_rounding.hpp"
@@ -190,8 +191,8 @@ void Rating::weigh_by_pulses(std::vector<Refit>& list) const {
   executor.run(weighed.size(), [&](std::size_t i, std::size_t worker) {
     Refit& refit = *weighed[i];
     refit.pulses = pulses_of(refit.studied, worker);
-    const double share =
-        share_of_pulses(ground_.base.fit, without, refit.studied.fit, refit.pulses);
+    const double share = share_of_pulses({ground_.base.fit.residual, without},
+                                         {refit.studied.fit.residual, refit.pulses});
     refit.log_p = std::max(refit.log_p, chance_of(refit, share * refit.gain));
   });
 }

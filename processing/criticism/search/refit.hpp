@@ -51,14 +51,6 @@ struct Refit {
   bool rough = false;
 };
 
-/// Of what two fits make differently of the records, in squares, that which they make of the
-/// pulses. The source follows the reference gauge's noise through the whole record, and each fit
-/// carries that noise to the other gauges in its own way: their squares differ by chance even where
-/// the pulses are the same to both, as to an end that answers after the record's.
-/// @param pulses  what the fits make of them; empty: not known, and then they are all
-[[nodiscard]] double share_of_pulses(const ModelFit& one, const Eigen::VectorXd& pulses_of_one,
-                                     const ModelFit& other, const Eigen::VectorXd& pulses_of_other);
-
 /// By how much one refit stands before another, as a square of a normal deviate. Noise that is
 /// greater in the direction of either than its spectrum says makes the difference weigh less, and
 /// so do noise that is known roughly and what is not of the pulses.
